@@ -52,13 +52,9 @@ class Joukowski:
     @property
     def chord(self) -> float:
         """Extent of the mapped airfoil along x."""
-        return float(np.ptp(self._outline().real))
-
-    def _outline(self) -> Complex:
-        """Return the airfoil in the plane of the map, before it is scaled."""
         angles = self.edge + np.linspace(0.0, 2.0 * np.pi, 4001)
         circle = self.center + self.radius * np.exp(1j * angles)
-        return np.asarray(circle + 1.0 / circle)
+        return float(np.ptp((circle + 1.0 / circle).real))
 
     def grid(self, rows: int, columns: int, extent: float) -> Complex:
         """Return nodes (rows, columns) in the plane of the circle, outwards and around.

@@ -132,8 +132,8 @@ def _sign(products: Floats) -> Floats:
 def _along(number: Indices, valid: Bools, axis: int) -> Indices:
     """Return pairs of neighbouring valid nodes along an axis, (2, N)."""
     n, ok = np.swapaxes(number, 0, axis), np.swapaxes(valid, 0, axis)
-    both = ok[:-1] & ok[1:]
-    return np.stack([n[:-1][both], n[1:][both]])
+    pairs = ok[:-1] & ok[1:]
+    return np.stack([n[:-1][pairs], n[1:][pairs]])
 
 
 def _tree(graph: scipy.sparse.csr_array, valid: Bools) -> Indices:

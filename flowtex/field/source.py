@@ -11,7 +11,7 @@ import threading
 import warnings
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from flowtex.field.field import FlowField
 from flowtex.field.io.files import open_file
 from flowtex.field.io.identity import Identity
 from flowtex.field.io.meshes import (
+    Parts,
     TimeStep,
     drawn_parts,
     is_reader,
@@ -31,9 +32,6 @@ from flowtex.field.io.meshes import (
 )
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import candidates
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
@@ -165,7 +163,7 @@ class FlowSource(Source):
         block: str | None = None,
     ) -> None:
         super().__init__(name)
-        self._grids: dict[str, pv.DataSet] = {}
+        self._grids: Parts = {}
         self._parts: dict[str, FlowSource] = {}
         self._lock = threading.Lock()
         self._mesh = mesh
@@ -289,7 +287,7 @@ class FlowSource(Source):
         return steps
 
 
-def _choices(mesh: Any, *, series: bool) -> dict[str, pv.DataSet]:
+def _choices(mesh: Any, *, series: bool) -> Parts:
     """Return the blocks that may be chosen, the default ones first; none for a single one."""
     if isinstance(mesh, (list, tuple)):
         return {}
@@ -301,5 +299,5 @@ def _choices(mesh: Any, *, series: bool) -> dict[str, pv.DataSet]:
     return parts if len(parts) > 1 else {}
 
 
-def _bytes(grid: pv.DataSet) -> int:
+def _bytes(grid: Any) -> int:
     return int(grid.actual_memory_size) * 1024

@@ -263,10 +263,10 @@ class Levels:
     ) -> _Piece:
         """Return the piece of an array over the nodes at some rows and columns."""
         leading = () if step is None else (step,)
-        whole = f"{level}/{name}"
+        array = f"{level}/{name}"
         if name in ("x", "y"):
-            return _Piece(whole, (slice(None),), whole)
-        return _Piece(whole, leading, whole, (rows, columns))
+            return _Piece(array, (slice(None),), array)
+        return _Piece(array, leading, array, (rows, columns))
 
     def _read(self, *pieces: _Piece) -> list[AnyArray]:
         """Read parts of arrays, all at once."""

@@ -1,7 +1,7 @@
 """The objects of a store as they are read; a missing one is an error in plain words.
 
-Zarr takes an object that is missing for one of zeros. That would draw land, or still water, where
-data are lost, so here it is an error. Parts of shards that many tiles need, those of arrays over
+Zarr takes a missing object for zeros. That would draw land, or still water, where data are lost, so
+here it is an error. Parts of shards that many tiles need, those of arrays over
 the nodes, are kept as they came.
 """
 

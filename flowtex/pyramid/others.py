@@ -198,13 +198,13 @@ def _interpolated(
     values: Floats, at: tuple[Indices, Indices], shares: tuple[Floats, Floats]
 ) -> Floats:
     """Interpolate (J, I) between lines; NaN has no weight, and results where half is missing."""
-    known = np.isfinite(values)
+    finite = np.isfinite(values)
     total, weight = (np.zeros((at[0].shape[1], at[1].shape[1])) for _ in range(2))
     for a, down in enumerate((1 - shares[0], shares[0])):
         for b, across in enumerate((1 - shares[1], shares[1])):
             nodes = np.ix_(at[0][a], at[1][b])
-            share = down[:, None] * across * known[nodes]
-            total += share * np.where(known[nodes], values[nodes], 0.0)
+            share = down[:, None] * across * finite[nodes]
+            total += share * np.where(finite[nodes], values[nodes], 0.0)
             weight += share
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(weight > 0.5 - 1e-9, total / weight, np.nan)

@@ -10,11 +10,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import digest
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
@@ -23,7 +23,7 @@ from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import dataset_paths, file_and_group
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
-from flowtex.field.datasets.regions import Regions
+from flowtex.field.datasets.regions import Regions, Selection
 from flowtex.field.io.arrays import FieldArrays
 from flowtex.field.io.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.field.io.inspection.zarr_folder import check_zarr
@@ -40,9 +40,6 @@ from flowtex.pyramid.places import (
 )
 from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
-
-#: Rows or columns, by numbers or as a slice.
-Selection: TypeAlias = Indices | slice
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000

@@ -185,8 +185,8 @@ def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indi
     return nodes._replace(scalars=scalars)
 
 
-# What is opened lasts for one run: the next one may find another pyramid at the same place. That of
-# the run before would keep what it has read, so only one is held.
+# An opened store is kept for one run: the next one may find another pyramid at the same place. Only
+# one is kept, as that of the run before would hold its data.
 @lru_cache(maxsize=1)
 def _levels(place: str, run: str) -> Levels:
     del run

@@ -257,17 +257,15 @@ class TextureSet:
             for channel, moved in enumerate(self._displacements(displacement[0, m], error)):
                 np.multiply(moved, by_length, out=result[..., channel])
         if m == 0:
-            result[..., 3] = self._usable_reach(reach[0], slices)
+            # Nodes at rest leave the reach to their neighbours.
+            still = ~np.abs(slices.rate[0]).any(axis=-1)
+            last = 2 * float(self.store.lags[-1])
+            result[..., 3] = np.where(still, np.inf, reach[0]).clip(max=last)
         if layer == 2:
             result[..., 3] = self._speed(slices)
         if m + 1 == UNCERTAIN_LAYER and (field := self.geometry.field).uncertainty:
             result[..., 3] = unknown_share(field, self._step(slices))[self.geometry.texels]
         return result
-
-    def _usable_reach(self, reach: AnyArray, slices: TraceSlices) -> AnyArray:
-        """Return the reach to draw with; at nodes at rest the neighbours alone decide."""
-        still = ~np.abs(slices.rate[0]).any(axis=-1)
-        return np.where(still, np.inf, reach).clip(max=2 * float(self.store.lags[-1]))
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
         """Return the speed of the flow at the nodes in multiples of its typical speed, (J, I)."""

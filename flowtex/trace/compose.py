@@ -336,15 +336,15 @@ class _Doubling:
         for number in range(2 * MOST_PIECES if blocks else 0):
             check()
             longest = self._before if number >= MOST_PIECES else None
-            more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
-            if not len(more) and self._stuck:
+            unfinished = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
+            if not len(unfinished) and self._stuck:
                 # All at once: they are few, and each call has an overhead.
                 stuck, self._stuck = np.concatenate(self._stuck), []
                 work = partial(self._pass, final=number >= MOST_PIECES)
-                more = np.concatenate(list(run(work, _parts(stuck))))
-            if not len(more):
+                unfinished = np.concatenate(list(run(work, _parts(stuck))))
+            if not len(unfinished):
                 break
-            blocks = _parts(more)
+            blocks = _parts(unfinished)
         if self._suspects:
             self._find_ends()
 

@@ -21,12 +21,10 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.trace.charts import Numbers
 from flowtex.trace.sampler import Sampler
-
-Numbers = NDArray[np.int8]
 
 #: A step may grow or shrink by these factors.
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9

@@ -12,12 +12,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket, fill_blanked
-from flowtex.trace.charts import Charts, Patch, cap
+from flowtex.trace.charts import Charts, Numbers, Patch, cap
 from flowtex.trace.node_grid import LEAST_ROOM_CELLS, NodeGrid
 
 #: A particle slower than this share of the greatest speed has stopped.
@@ -70,7 +69,7 @@ class Sampler(ABC):
         position: Floats,
         lag: Floats,
         direction: float,
-        chart: NDArray[np.int8] | None = None,
+        chart: Numbers | None = None,
         ahead: Floats | None = None,
     ) -> Floats:
         """Return rates of change of positions by lag for particles at ``lag`` (N,).
@@ -120,9 +119,7 @@ class _Axes:
         self._grid, self._poles = grid, field.surface.poles
         self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
 
-    def sign(
-        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
-    ) -> Floats:
+    def sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
         """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
         along = one[0] * two[0] + one[1] * two[1]
         flat = slice(None) if chart is None else np.flatnonzero(chart == 0)

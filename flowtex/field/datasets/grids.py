@@ -154,8 +154,8 @@ def _wraps(places: Places) -> bool:
     step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
-    known = np.isfinite(gap) & np.isfinite(step) & (step > 0)
-    return bool(known.any() and near[known].all())
+    finite = np.isfinite(gap) & np.isfinite(step) & (step > 0)
+    return bool(finite.any() and near[finite].all())
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
@@ -168,8 +168,8 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     def same(one: Floats, other: Floats) -> bool:
         gap = np.linalg.norm(one - other, axis=-1)
         cell = np.nanmedian(np.linalg.norm(np.diff(p, axis=1), axis=-1))
-        known = np.isfinite(gap)
-        return bool(known.any() and (gap[known] <= REPEATED * cell).all())
+        finite = np.isfinite(gap)
+        return bool(finite.any() and (gap[finite] <= REPEATED * cell).all())
 
     last = columns
     for halo in range(min(4, columns // 4), 1, -1):

@@ -218,8 +218,8 @@ def _is_lonlat(a: Floats, b: Floats, lon: xr.DataArray, lat: xr.DataArray) -> bo
         wide = np.nanmax(np.abs(a), initial=0.0)
     # A line has values of one coordinate only.
     finite = np.isfinite(a), np.isfinite(b)
-    known = (finite[0] & finite[1]).any() if lon.ndim > 1 else finite[0].any() and finite[1].any()
-    if not known:
+    usable = (finite[0] & finite[1]).any() if lon.ndim > 1 else all(f.any() for f in finite)
+    if not usable:
         msg = f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
         raise FieldError(msg)
     if far > 90.001 or wide > 720:

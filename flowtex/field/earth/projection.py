@@ -267,9 +267,7 @@ class Projection:
         finite = np.isfinite(lon) & np.isfinite(lat)
         if not finite.all():  # some lie on the outline, and by rounding outside it
             inner = inverse(INSIDE * x, INSIDE * y)
-            lon, lat = (
-                np.where(finite, one, two) for one, two in zip((lon, lat), inner, strict=True)
-            )
+            lon, lat = (np.where(finite, a, b) for a, b in zip((lon, lat), inner, strict=True))
             finite = np.isfinite(lon) & np.isfinite(lat)
         lon, lat = np.where(finite, lon, np.nan), np.where(finite, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat

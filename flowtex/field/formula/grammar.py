@@ -224,9 +224,9 @@ class _Parser:
             return CONSTANTS[name]
         if name == "t":
             self.fail("t is the time; give times=, such as times=np.linspace(0, 10, 41)", at)
-        known = ", ".join(sorted(self.names))
+        names = ", ".join(sorted(self.names))
         return self.fail(
-            f"{name} is unknown; known are {known}. Give a parameter its value, as in {name}=1", at
+            f"{name} is unknown; known are {names}. Give a parameter its value, as in {name}=1", at
         )
 
     def call(self, name: str, at: int) -> Tree:

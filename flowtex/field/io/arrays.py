@@ -1,4 +1,4 @@
-"""What a source gives of a flow: arrays that are not checked yet, and their names and units.
+"""The data of a source: arrays that are not checked yet, and their names and units.
 
 The names are those of the arguments of :meth:`FlowField.from_arrays` and
 :meth:`FlowField.from_triangles`, to which :meth:`FlowField.of` passes them.
@@ -25,7 +25,7 @@ class SectionAxes(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FieldArrays:
-    """What all sources give; velocity and scalars may be read late."""
+    """The data of all sources; velocity and scalars may be read late."""
 
     points: ArrayLike
     velocity: Any

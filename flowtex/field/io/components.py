@@ -1,8 +1,8 @@
-"""Vectors that a file has as single components, found by their names.
+"""Vectors in single components, found by the names of arrays.
 
-Solvers, and what turns their results into tables, write ``X Velocity``, ``VelocityY``, ``vel_z``,
-``Velocity:0``, ``u`` or ``Velocity u [m/s]``. Names that differ in one letter or number alone, that
-of the component, are one vector.
+Solvers and their converters write ``X Velocity``, ``VelocityY``, ``vel_z``, ``Velocity:0``, ``u``
+or ``Velocity u [m/s]``. Names that differ only in one letter or number, that of the component, are
+one vector.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 NO_VELOCITY = re.compile(
     r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE
 )
-#: What follows the flow and is not its velocity; a real array of vectors is left to the user.
+#: Momenta, which are not velocities; a real array of vectors is left to the user.
 _MOMENTUM = re.compile(r".*momentum.*|rho.?[uv]?", re.IGNORECASE)
 _VELOCITY = re.compile(r"(.*[ _.:-])?(vel|velocit(y|ies)|wind|[uv])([ _.:-].*)?", re.IGNORECASE)
 
@@ -42,30 +42,30 @@ _EDGES = " _.:-()[]"
 def find_vectors(names: Sequence[str], *, pairs: bool = False) -> dict[str, tuple[str, ...]]:
     """Return the names of the three components of each vector, by a name for the vector.
 
-    With ``pairs``, as on a flat mesh, two components do where there is no third. A vector is named
-    as its components without their letter, ``Velocity``, or where that says nothing or is the name
-    of an array, as all of them, ``u,v,w``.
+    With ``pairs``, as on a flat mesh, two components are sufficient without a third. A vector has
+    the name of its components without their letter, ``Velocity``, or if that is too short or the
+    name of an array, all their names, ``u,v,w``.
     """
-    known = set(names)
-    found: dict[str, tuple[str, ...]] = {}
+    all_names = set(names)
+    vectors: dict[str, tuple[str, ...]] = {}
     for name in names:
         for before, alphabet, after in _parses(name):
             parts = [before + token + after for token in alphabet]
             # Four numbered arrays are not a vector.
-            more = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
-            if name != parts[0] or (more and known.issuperset(more)):
+            numbered = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
+            if name != parts[0] or (numbered and all_names.issuperset(numbered)):
                 continue
-            if pairs and parts[1] in known and parts[2] not in known:
+            if pairs and parts[1] in all_names and parts[2] not in all_names:
                 parts = parts[:2]
-            if known.issuperset(parts) and tuple(parts) not in found.values():
+            if all_names.issuperset(parts) and tuple(parts) not in vectors.values():
                 stem = _stem(before, after)
-                free = len(stem) > 1 and stem not in known and stem not in found
-                found[stem if free else ",".join(parts)] = tuple(parts)
-    return found
+                free = len(stem) > 1 and stem not in all_names and stem not in vectors
+                vectors[stem if free else ",".join(parts)] = tuple(parts)
+    return vectors
 
 
 def _parses(name: str) -> Iterator[tuple[str, str, str]]:
-    """Go through the ways to read a name as text, alphabet of the component, and text."""
+    """Yield the ways to read a name: text, alphabet of the component, and text."""
     bare = _UNIT.sub("", name)
     for form in _FORMS:
         match = form.fullmatch(bare)
@@ -78,12 +78,12 @@ def _parses(name: str) -> Iterator[tuple[str, str, str]]:
             continue
         velocity = bool(_VELOCITY.fullmatch(stem))
         for alphabet in _ALPHABETS:
-            if token in alphabet and _plausible(stem, alphabet, before, velocity=velocity):
+            if token in alphabet and _is_plausible(stem, alphabet, before, velocity=velocity):
                 yield before, alphabet, after
 
 
-def _plausible(stem: str, alphabet: str, before: str, *, velocity: bool) -> bool:
-    """Whether a word may be a component: x, y and z are places, and numbers count anything."""
+def _is_plausible(stem: str, alphabet: str, before: str, *, velocity: bool) -> bool:
+    """Return whether a name may be a component: x, y, z and numbers also have other uses."""
     if alphabet[0] in "uU":
         return velocity or not stem
     if alphabet[0].isdecimal():

@@ -1,6 +1,6 @@
 """From files to the arrays of a field: of a mesh, or of data of the Earth.
 
-PyVista's readers open most files; PLOT3D, which says little about itself, goes through
+PyVista's readers open most files; PLOT3D, which does not describe itself, is read by
 :mod:`flowtex.field.io.plot3d`.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
@@ -28,13 +28,16 @@ from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.surfaces import beside
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 
 def open_reader(file: Path) -> Any:
     """Return the reader of a file; raises a ValueError if the format is unknown."""
     import pyvista as pv
 
     class DecomposedReader(pv.POpenFOAMReader):
-        """PyVista's reader, which has to know of pieces before it opens the case."""
+        """PyVista's reader, which must know of pieces before it opens the case."""
 
         def _set_defaults(self) -> None:
             super()._set_defaults()
@@ -55,7 +58,7 @@ class _CGNSReader:
         from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
         self._reader = reader
-        # With patches each zone is its own tree, and patches are not structured grids.
+        # With patches each zone is a tree, and patches are not structured grids.
         reader.load_boundary_patch = False
         reader.enable_all_bases()
         reader.reader.UpdateInformation()
@@ -66,11 +69,11 @@ class _CGNSReader:
         self.active_time_value = self.time_values[0] if self.time_values else 0.0
 
     def set_active_time_value(self, time: float) -> None:
-        """Choose the time that is read."""
+        """Set the time to read."""
         self.active_time_value = time
 
-    def read(self) -> Any:
-        """Read the blocks at the time that is set."""
+    def read(self) -> pv.MultiBlock:
+        """Read the blocks at the active time."""
         if self.time_values:
             self._reader.reader.UpdateTimeStep(self.active_time_value)
         return self._reader.read()
@@ -87,18 +90,18 @@ _KNOWN_FORMATS = (
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
 
 
-#: Arguments that are for meshes; the others are for data of the Earth.
+#: Arguments for meshes; the others are for data of the Earth.
 OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
 
 
 @dataclass(frozen=True)
 class OpenFile:
-    """A file that was opened, of which no more is read than its format asks for."""
+    """A file that was opened, and read only as far as its format requires."""
 
     path: Path
     source: Any  #: One of PyVista's readers, a mesh, or a list of time steps.
     velocity: str | None  #: Name of the velocity where the format fixes it.
-    problem: str = ""  #: Why nothing can be drawn.
+    problem: str = ""  #: The reason if nothing can be drawn.
 
 
 def read_file(
@@ -109,7 +112,7 @@ def read_file(
     vectors: str | None = None,
     **options: Any,
 ) -> GridArrays | TriangleArrays:
-    """Read what a field needs from a mesh; errors are to be named by :func:`errors_of`."""
+    """Read the arrays of a field from a mesh; callers name errors by :func:`errors_of`."""
     file = open_file(path)
     if file.problem:
         raise FieldError(file.problem)
@@ -121,7 +124,7 @@ def read_file(
 
 
 def open_file(path: str | Path) -> OpenFile:
-    """Open a file; errors are to be named by :func:`errors_of`."""
+    """Open a file; callers name errors by :func:`errors_of`."""
     file = Path(path).expanduser()
     _check_path(file)
     inspect_file(file)
@@ -140,15 +143,15 @@ def open_file(path: str | Path) -> OpenFile:
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
-        what = repr(file.suffix) if file.suffix else "no suffix"
+        reason = repr(file.suffix) if file.suffix else "no suffix"
         if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-            what = "not a PLOT3D grid in any layout"
-        msg = f"unknown format ({what}); expected {_KNOWN_FORMATS}"
+            reason = "not a PLOT3D grid in any layout"
+        msg = f"unknown format ({reason}); expected {_KNOWN_FORMATS}"
         raise FieldError(msg) from error
 
 
 def _check_path(file: Path) -> None:
-    """Refuse a path that leads to nothing readable, before any reader sees it."""
+    """Raise a FieldError for a path to nothing readable, before any reader opens it."""
     problem = ""
     if _ADDRESS.match(str(file)) and not file.exists():
         problem = (
@@ -162,9 +165,9 @@ def _check_path(file: Path) -> None:
         problem = "its folder has no folder constant; expected the folder of an OpenFOAM case"
     elif not file.exists():
         problem = "the file does not exist; check the spelling and the folder"
-        near = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
-        if near:
-            problem += f". Similar names: {', '.join(near[:5])}"
+        similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
+        if similar:
+            problem += f". Similar names: {', '.join(similar[:5])}"
     elif file.is_dir():
         problem = "this is a folder; expected a file: name the mesh inside it"
         if (file / "constant" / "polyMesh").exists():
@@ -214,7 +217,7 @@ def read_files(
     uncertainty: Any = None,
     **options: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs; errors are to be named by :func:`errors_of`."""
+    """Read the arrays of a field; callers name errors by :func:`errors_of`."""
     paths = dataset_paths(path)
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}
@@ -240,14 +243,14 @@ def read_files(
 
 
 def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
-    """Name a file, or the first of several, in what goes wrong until a field is made of it."""
+    """Name a file, or the first of several, in errors until its field is made."""
     paths = dataset_paths(path)
     first = paths[0] if paths else path
     return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
 
 
-def refuse(choices: Mapping[str, Any], what: str) -> None:
-    """Refuse options that apply to something else."""
-    if given := [name for name, value in choices.items() if value not in (None, False)]:
-        msg = f"{', '.join(given)} applies to {what}; omit it"
+def refuse(choices: Mapping[str, Any], subject: str) -> None:
+    """Raise a FieldError for options that apply to other data."""
+    if names := [name for name, value in choices.items() if value not in (None, False)]:
+        msg = f"{', '.join(names)} applies to {subject}; omit it"
         raise FieldError(msg)

@@ -1,7 +1,7 @@
 """From PyVista's meshes to the arrays of a field.
 
-Each time step of a structured mesh gives one plane of nodes (:mod:`flowtex.field.io.planes`):
-positions, vectors, other single-component arrays, and what is hidden. Vectors on cells become
+Each time step of a structured mesh becomes one plane of nodes (:mod:`flowtex.field.io.planes`):
+positions, vectors, other single-component arrays, and masks. Vectors on cells become
 vectors on nodes. The steps are then stacked into the arguments of :meth:`FlowField.from_arrays`,
 which checks the rest. All other meshes, and cuts, go through :mod:`flowtex.field.io.surfaces`.
 """
@@ -48,8 +48,8 @@ from flowtex.field.signs import axes, products
 class _PlaneStep(SheetStep):
     """The arrays of one plane at one time, (J, I, ...).
 
-    ``cells`` (J - 1, I - 1) are those that the mesh shows and that have vectors. ``wrap`` says
-    whether the last line along (j, i) is the first one again.
+    ``cells`` (J - 1, I - 1) are those that the mesh shows and that have vectors. ``wrap`` is
+    whether the last line along (j, i) repeats the first one.
     """
 
     cells: Bools
@@ -69,11 +69,11 @@ def read_meshes(
     block: int | str | None = None,
     name: str = "",
 ) -> GridArrays | TriangleArrays:
-    """Read what :meth:`FlowField.from_pyvista` needs from a mesh or a series of them."""
+    """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
-        words = "slice" if slice is not None else "contour"
-        msg = f"plane is {plane!r} and {words} is {cut.text}; choose one of the two"
+        option = "slice" if slice is not None else "contour"
+        msg = f"plane is {plane!r} and {option} is {cut.text}; choose one of the two"
         raise FieldError(msg)
     steps = time_steps(mesh, block, cut=cut is not None)
     first = next(steps)
@@ -81,11 +81,11 @@ def read_meshes(
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
         arrays = _read_planes(chain([first], steps), vectors, plane, times, **options)
         return GridArrays(**arrays, **options, name=name)
-    given = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
-    if wrong := [f"{name}={value!r}" for name, value in given.items() if value not in (None, "")]:
-        instead = 'to cut it, use slice="x=0.5"; otherwise ' if plane is not None else ""
+    choices = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
+    if refused := [f"{k}={value!r}" for k, value in choices.items() if value not in (None, "")]:
+        remedy = 'to cut it, use slice="x=0.5"; otherwise ' if plane is not None else ""
         msg = (
-            f"{', '.join(wrong)} applies to structured meshes, and this one is not; {instead}omit "
+            f"{', '.join(refused)} applies to structured meshes, and this one is not; {remedy}omit "
             "it, or sample the mesh onto a structured one, as in "
             "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
         )
@@ -119,7 +119,7 @@ def _read_planes(
 
 
 def _choose(grid: Any, plane: str | None, vectors: str | None) -> tuple[Plane, MeshArray]:
-    """Find the plane and the vectors in the first step, telling all faults at once."""
+    """Find the plane and the vectors in the first step, with all faults in one error."""
     faults = plane_faults(tuple(grid.dimensions), plane)
     if min(grid.dimensions) > 0:
         faults += vector_faults(grid, vectors)
@@ -128,7 +128,7 @@ def _choose(grid: Any, plane: str | None, vectors: str | None) -> tuple[Plane, M
 
 
 def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
-    """Refuse a step that is shaped otherwise than the first, or lacks its vectors."""
+    """Raise a FieldError for a step of another shape than the first, or without its vectors."""
     grid = step.grid
     if not is_structured(grid) or tuple(grid.dimensions) != plane.dimensions:
         size = count_nodes(tuple(grid.dimensions)) if is_structured(grid) else part_size(grid)
@@ -169,13 +169,13 @@ def _plane_step(
     )
     for array in catalogue(grid):
         if array.numeric and array.components == 1 and array != vectors:
-            # Points come first in the catalogue, and win over cells of the same name.
+            # Points come first in the catalogue, and take precedence over cells of the same name.
             sheet.scalars.setdefault(array.name, _scalar(grid, plane, array, wrap))
     return sheet
 
 
 def _scalar(grid: Any, plane: Plane, array: MeshArray, wrap: tuple[bool, bool]) -> Floats:
-    """One single-component array on the nodes of a plane, (J, I)."""
+    """Return a single-component array on the nodes of a plane, (J, I)."""
     values = values_of(grid, array).reshape(-1)
     if array.where == "points":
         return plane.nodes(values).astype(np.float64)
@@ -184,7 +184,7 @@ def _scalar(grid: Any, plane: Plane, array: MeshArray, wrap: tuple[bool, bool]) 
 
 
 def _positions(grid: Any, plane: Plane) -> Floats:
-    """Positions of the nodes of a plane, (J, I, 3)."""
+    """Return positions of the nodes of a plane, (J, I, 3)."""
     import pyvista as pv
 
     if isinstance(grid, pv.StructuredGrid):
@@ -203,7 +203,7 @@ def _positions(grid: Any, plane: Plane) -> Floats:
 
 
 def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
-    """Whether the last line along (j, i) is the first one again, so that cells go round."""
+    """Return whether the last line along (j, i) repeats the first one, so that cells go round."""
     wrap = []
     for letter, lines in (("j", points), ("i", np.swapaxes(points, 0, 1))):
         closure = find_closure(lines)

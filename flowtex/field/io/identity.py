@@ -1,9 +1,9 @@
-"""Which state of a file was read: its path, size, time of change and number on the disk.
+"""The state of a file that was read: its path, size, time of change and number on the disk.
 
-A file that leads to others is known with these: members of a list, vectors and solutions beside a
+It includes the files to which the file leads: members of a list, vectors and solutions beside a
 mesh, all files in the folder of an EnSight case, and those below an OpenFOAM case or a Zarr store.
-What cannot be known: a change of the same size within the resolution of the disk's clock, what a
-CGNS or HDF5 file links to, and changes among more than :data:`MOST_FILES` files.
+It misses changes of the same size within the resolution of the disk's clock, targets of links in
+CGNS and HDF5 files, and changes among more than :data:`MOST_FILES` files.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from flowtex.field.io.surfaces import beside
 #: not exist.
 Identity = tuple[tuple[str, int, int, int], ...]
 
-#: Endings of files that list others, how, and bytes of such a list that are read.
+#: Endings of files that list others, the pattern of members, and bytes that are read of a list.
 LISTS, MEMBER, LIST_BYTES = (
     (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp"),
     re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
     4_000_000,
 )
-#: Lists within lists that are followed, and files that are looked at.
+#: Levels of lists that are followed, and most files that are examined.
 LIST_DEPTH, MOST_FILES = 3, 10_000
 #: Endings of files whose data may be in others of the same name.
 WITH_OTHERS = (*beside.SUFFIXES, *plot3d.GRID_SUFFIXES, ".q")
 
 
 def file_identity(paths: Iterable[Path]) -> Identity:
-    """Return the state of files, and of those that are read along with them."""
-    found = (file for path in paths for file in _files(path.expanduser().absolute(), 0))
-    return tuple(_state(file) for file in islice(found, MOST_FILES))
+    """Return the state of files, and of those that are read with them."""
+    files = (file for path in paths for file in _files(path.expanduser().absolute(), 0))
+    return tuple(_state(file) for file in islice(files, MOST_FILES))
 
 
 def members_of(path: Path) -> list[Path]:
@@ -68,9 +68,9 @@ def _files(path: Path, depth: int) -> Iterator[Path]:
 
 
 def _below(folder: Path) -> Iterator[Path]:
-    for here, folders, names in os.walk(folder):
+    for path, folders, names in os.walk(folder):
         folders.sort()
-        yield from (Path(here, name) for name in sorted(names))
+        yield from (Path(path, name) for name in sorted(names))
 
 
 def _state(path: Path) -> tuple[str, int, int, int]:

@@ -1,6 +1,6 @@
-"""What a PyVista object holds: meshes, their times, and what they hide.
+"""The content of a PyVista object: meshes, their times, and hidden parts.
 
-A mesh, a block of a MultiBlock, a list of meshes and a reader of a time series all come down to a
+A mesh, a block of a MultiBlock, a list of meshes and a reader of a time series all become a
 sequence of :class:`TimeStep`. Meshes are yielded one at a time, so that a long series is never in
 memory as a whole.
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -21,18 +21,24 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.io.vectors import MeshArray, candidates, catalogue, missing_arrays
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
+#: Blocks by their paths.
+Parts: TypeAlias = "dict[str, pv.DataSet]"
+
 #: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
 #: cells that are duplicates of a neighbouring piece carry data and count as visible.
 _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
 #: Nodes of two steps closer than this share of the extent of the mesh are the same.
 SAME_NODE_SHARE = 1e-6
-#: Blocks that a message lists at most.
+#: Most blocks that a message lists.
 MOST_LISTED = 12
 
 
 @dataclass(frozen=True)
 class TimeStep:
-    """One mesh and its time, or ``None`` when no time is given with it."""
+    """One mesh and its time, or ``None`` if it has none."""
 
     grid: Any
     time: float | None
@@ -42,7 +48,7 @@ class TimeStep:
 def time_steps(
     source: Any, block: int | str | None = None, *, cut: bool = False
 ) -> Iterator[TimeStep]:
-    """Go through the time steps of a mesh, blocks, a list or a reader; of one block if named."""
+    """Yield the time steps of a mesh, blocks, a list or a reader, or of one block of these."""
     if is_reader(source):
         yield from _read(source, block, cut=cut)
     elif isinstance(source, (list, tuple)):
@@ -59,26 +65,26 @@ def time_steps(
 
 
 def is_reader(source: Any) -> bool:
-    """Whether this is one of PyVista's readers."""
-    if hasattr(type(source), "IsA"):  # of VTK: a mesh that is asked loads all accessors
+    """Return whether this is one of PyVista's readers."""
+    if hasattr(type(source), "IsA"):  # of VTK: an attribute of a mesh loads all accessors
         return False
     return hasattr(source, "read") and (hasattr(source, "time_values") or hasattr(source, "reader"))
 
 
 def is_structured(mesh: Any) -> bool:
-    """Whether this is a mesh with an order of nodes along i, j and k."""
+    """Return whether a mesh has nodes along i, j and k."""
     import pyvista as pv
 
     return isinstance(mesh, (pv.StructuredGrid, pv.RectilinearGrid, pv.ImageData))
 
 
 def times_of(source: Any) -> list[float]:
-    """Return the times of a reader; none where it has no series, or for a mesh."""
+    """Return the times of a reader; empty for a mesh, or without a series."""
     return [float(t) for t in getattr(source, "time_values", None) or []]
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the meshes in a tree of blocks by path; those of one name get their number."""
+    """Yield the meshes in a tree of blocks by path; equal names get their number."""
     import pyvista as pv
 
     if not isinstance(mesh, pv.MultiBlock):
@@ -87,12 +93,12 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     keys: list[Any] = mesh.keys()
     for number, (key, block) in enumerate(zip(keys, mesh, strict=True)):
         if block is not None:
-            own = str(number) if key is None else key
-            own = own if keys.count(key) == 1 or key is None else f"{own} {number}"
-            yield from leaves(block, f"{name}/{own}" if name else own)
+            label = str(number) if key is None else key
+            label = label if keys.count(key) == 1 or key is None else f"{label} {number}"
+            yield from leaves(block, f"{name}/{label}" if name else label)
 
 
-def parts_of(mesh: Any) -> dict[str, Any]:
+def parts_of(mesh: Any) -> Parts:
     """Return the meshes in a tree of blocks by their paths; those without cells are left out."""
     import pyvista as pv
 
@@ -102,36 +108,36 @@ def parts_of(mesh: Any) -> dict[str, Any]:
 
 def drawn_parts(
     mesh: Any, *, series: bool = False, cut: bool = False
-) -> tuple[dict[str, Any], Literal["steps", "together", "choose"]]:
-    """Return the blocks of a mesh to draw by default, and how they belong together.
+) -> tuple[Parts, Literal["steps", "together", "choose"]]:
+    """Return the blocks of a mesh to draw by default, and how to combine them.
 
-    Volumes are cut ``together``, and surfaces are drawn so. Structured grids come before what is
-    around them. Those with the same nodes are time ``steps``, unless the mesh is itself one step
-    of a ``series``. Of others one has to be chosen, where there are several.
+    Volumes are cut ``together``, and surfaces are drawn together. Structured grids take precedence
+    over their surroundings. Those with the same nodes are time ``steps``, unless the mesh is one
+    step of a ``series``. Of several others one must be chosen.
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
     flat = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 2}
     solid = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 3}
     usable = {name: grid for name, grid in grids.items() if grid.max_cell_dimensionality > 1}
-    meant = usable or grids or solid or flat or parts
+    drawn = usable or grids or solid or flat or parts
     if cut and solid:
-        meant = solid
-    if not series and _same_nodes(list(meant.values())):
-        return meant, "steps"
-    if len(meant) > 1 and (meant is flat or (meant is solid and cut)):
-        return meant, "together"
-    return meant, "choose"
+        drawn = solid
+    if not series and _same_nodes(list(drawn.values())):
+        return drawn, "steps"
+    if len(drawn) > 1 and (drawn is flat or (drawn is solid and cut)):
+        return drawn, "together"
+    return drawn, "choose"
 
 
-def several_parts(mesh: Any, *, series: bool = False, cut: bool = False) -> dict[str, Any]:
-    """Return the blocks of a mesh by their paths, where one has to be chosen; else none."""
-    meant, how = drawn_parts(mesh, series=series, cut=cut)
-    return parts_of(mesh) if how == "choose" and len(meant) > 1 else {}
+def several_parts(mesh: Any, *, series: bool = False, cut: bool = False) -> Parts:
+    """Return the blocks of a mesh by their paths, if one must be chosen; otherwise none."""
+    drawn, combination = drawn_parts(mesh, series=series, cut=cut)
+    return parts_of(mesh) if combination == "choose" and len(drawn) > 1 else {}
 
 
-def _same_nodes(meshes: list[Any]) -> bool:
-    """Whether meshes have the same nodes, judged by their sizes and bounds."""
+def _same_nodes(meshes: list[pv.DataSet]) -> bool:
+    """Return whether meshes have the same nodes, judged by their sizes and bounds."""
     if not meshes:
         return False
     first = np.asarray(meshes[0].bounds)
@@ -150,8 +156,8 @@ def part_size(mesh: Any) -> str:
     return f"{mesh.n_points:,} points, {mesh.n_cells:,} cells"
 
 
-def several_fault(parts: dict[str, Any], label: str) -> str:
-    """Return words about a choice of several blocks."""
+def several_fault(parts: Parts, label: str) -> str:
+    """Return the message for a choice of several blocks."""
     listed = [
         f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
     ]
@@ -165,7 +171,7 @@ def several_fault(parts: dict[str, Any], label: str) -> str:
 
 
 def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
-    """Read one time after the other, and leave the reader at the time it was set to."""
+    """Read one time after the other, and restore the time of the reader."""
     times = times_of(reader)
     if len(times) < 2 or not hasattr(reader, "set_active_time_value"):
         for step in _blocks(_wrapped(reader.read(), "the mesh"), block, cut=cut):
@@ -182,7 +188,7 @@ def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeSt
         reader.set_active_time_value(before)
 
 
-def pick(mesh: Any, block: int | str) -> Any:
+def pick(mesh: Any, block: int | str) -> pv.DataSet:
     """Return one of the meshes in a mesh, by number or by name."""
     parts = parts_of(mesh)
     ends = [name for name in parts if name.rpartition("/")[2] == block]
@@ -197,14 +203,14 @@ def pick(mesh: Any, block: int | str) -> Any:
 
 
 def _blocks(mesh: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
-    """Take a mesh for one step, and a MultiBlock of meshes with the same nodes for a series."""
+    """Yield a mesh as one step, and a MultiBlock of meshes with the same nodes as a series."""
     if block is not None:
         mesh = pick(mesh, block)
-    meant, how = drawn_parts(mesh, cut=cut)
-    if how != "steps" or len(meant) < 2:
+    drawn, combination = drawn_parts(mesh, cut=cut)
+    if combination != "steps" or len(drawn) < 2:
         yield _single(mesh, "the mesh", cut=cut)
         return
-    for name, part in meant.items():
+    for name, part in drawn.items():
         yield TimeStep(part, _time(part), f"block {name!r}")
 
 
@@ -216,17 +222,17 @@ def _single(
     if block is not None:
         part, time = pick(mesh, block), _time(mesh)
         return TimeStep(part, _time(part) if time is None else time, label)
-    if several := several_parts(mesh, series=True, cut=cut):
-        raise FieldError(several_fault(several, label))
-    meant, _ = drawn_parts(mesh, series=True, cut=cut)
-    if not meant:
+    if parts := several_parts(mesh, series=True, cut=cut):
+        raise FieldError(several_fault(parts, label))
+    drawn, _ = drawn_parts(mesh, series=True, cut=cut)
+    if not drawn:
         raise FieldError(_no_mesh(mesh, label))
-    part, time = next(iter(meant.values())), _time(mesh)
+    part, time = next(iter(drawn.values())), _time(mesh)
     time = _time(part) if time is None else time
-    return TimeStep(part if len(meant) == 1 else _together(meant), time, label)
+    return TimeStep(part if len(drawn) == 1 else _together(drawn), time, label)
 
 
-def _together(parts: dict[str, Any]) -> Any:
+def _together(parts: Parts) -> pv.UnstructuredGrid:
     """Return several blocks as one mesh, of those that have vectors."""
     import pyvista as pv
 
@@ -236,7 +242,7 @@ def _together(parts: dict[str, Any]) -> Any:
 
 
 def check_arrays(step: TimeStep, vectors: MeshArray) -> None:
-    """Refuse a step that lacks the vectors of the first one."""
+    """Raise a FieldError for a step without the vectors of the first one."""
     missing = missing_arrays(step.grid, vectors)
     if missing:
         arrays = [str(array) for array in catalogue(step.grid)]
@@ -249,10 +255,10 @@ def check_arrays(step: TimeStep, vectors: MeshArray) -> None:
 
 
 def check_nodes(before: Floats, after: Floats, shown: Bools, label: str) -> None:
-    """Refuse a mesh that moves."""
-    known = shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
-    moved = float(np.max(np.abs(after[known] - before[known]), initial=0.0))
-    if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[known], axis=0).max()):
+    """Raise a FieldError for a mesh that moves."""
+    compared = shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
+    moved = float(np.max(np.abs(after[compared] - before[compared]), initial=0.0))
+    if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[compared], axis=0).max()):
         msg = (
             f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
             "meshes are not supported: sample all steps onto one mesh with mesh.sample(step). If "
@@ -261,7 +267,7 @@ def check_nodes(before: Floats, after: Floats, shown: Bools, label: str) -> None
         raise FieldError(msg)
 
 
-def _wrapped(source: Any, label: str) -> Any:
+def _wrapped(source: Any, label: str) -> pv.DataObject:
     """Return a PyVista mesh, also of a bare VTK one."""
     import pyvista as pv
 
@@ -283,23 +289,23 @@ def _wrapped(source: Any, label: str) -> Any:
     raise FieldError(msg)
 
 
-def _time(mesh: Any) -> float | None:
-    """Time of a mesh as VTK's writers keep it."""
+def _time(mesh: pv.DataObject) -> float | None:
+    """Return the time of a mesh, in the field data of VTK's writers."""
     if "TimeValue" not in mesh.field_data:
         return None
     values = np.asarray(mesh.field_data["TimeValue"], dtype=float).ravel()
     return float(values[0]) if len(values) else None
 
 
-def _no_mesh(mesh: Any, label: str) -> str:
+def _no_mesh(mesh: pv.DataObject, label: str) -> str:
     kinds = sorted({type(block).__name__ for _, block in leaves(mesh)})
     if not kinds:
         return f"{label} has no blocks; check the file or filter that made it"
     return f"{label} is a {', '.join(kinds)}; expected a mesh, with points and cells"
 
 
-def hidden_nodes(mesh: Any) -> Bools:
-    """Nodes that a mesh hides, (N,)."""
+def hidden_nodes(mesh: pv.DataSet) -> Bools:
+    """Return which nodes a mesh hides, (N,)."""
     data = mesh.point_data
     hidden = np.zeros(mesh.n_points, dtype=bool)
     if "vtkGhostType" in data:
@@ -310,8 +316,8 @@ def hidden_nodes(mesh: Any) -> Bools:
     return hidden
 
 
-def visible_cells(mesh: Any) -> Bools:
-    """Cells that a mesh shows, (N,)."""
+def visible_cells(mesh: pv.DataSet) -> Bools:
+    """Return which cells a mesh shows, (N,)."""
     if "vtkGhostType" not in mesh.cell_data:
         return np.ones(mesh.n_cells, dtype=bool)
     return np.asarray((np.asarray(mesh.cell_data["vtkGhostType"]) & _HIDDEN_CELL) == 0)

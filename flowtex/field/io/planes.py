@@ -1,7 +1,7 @@
-"""One plane of nodes out of a structured mesh, as arrays of (j, i) order.
+"""One plane of nodes of a structured mesh, as arrays of (j, i) order.
 
-A structured mesh of I x J x K nodes keeps node (i, j, k) at place i + I (j + J k). Taking one
-value of an index away leaves the other two in their order, so that
+A structured mesh of I x J x K nodes has node (i, j, k) at place i + I (j + J k). With one index
+fixed, the other two keep their order:
 
 =============  =======  =======
 plane          i is     j is
@@ -14,8 +14,8 @@ plane          i is     j is
 Nothing is mirrored to obtain a right-handed surface: index (i, j) of the plane is that of
 the mesh.
 
-Values of cells come to the nodes as the mean of the visible cells around each node, on both
-sides of the plane, so that nothing leaks out of blanked cells.
+Values at the nodes are means of the visible cells around each node, on both sides of the plane, so
+that blanked cells have no effect.
 """
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ class Plane:
 
 
 def count_nodes(dimensions: tuple[int, int, int]) -> str:
-    """Words for the size of a mesh."""
+    """Return the size of a mesh as text."""
     return " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
 
 
 def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
-    """Return faults in a choice of plane; ``None`` is the mesh, or the middle of a volume."""
+    """Return faults in a choice of plane; ``None`` means the mesh, or the middle of a volume."""
     size = count_nodes(dimensions)
     if min(dimensions) < 1:
         return ["the mesh has no nodes; check the file or filter that made it"]
@@ -116,9 +116,9 @@ def _example(dimensions: tuple[int, int, int]) -> str:
 def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
     """Return the mean of the visible cells around each node, (J, I, ...); NaN without such cells.
 
-    Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` says which of
-    them count, (L, J - 1, I - 1). ``wrap`` says whether the last line of nodes along (j, i) is the
-    first one again, so that the cells beyond it are known.
+    Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` marks those that
+    count, (L, J - 1, I - 1). ``wrap`` is whether the last line of nodes along (j, i) repeats the
+    first one, so that the cells beyond it are known.
     """
     seen = visible.reshape(*visible.shape, *[1] * (values.ndim - 3))
     total = _around(np.where(seen, values, 0.0).sum(axis=0), wrap)
@@ -138,7 +138,7 @@ def nodes_to_keep(visible: Bools, wrap: tuple[bool, bool]) -> Bools:
 
 
 def _around(cells: Floats, wrap: tuple[bool, bool]) -> Floats:
-    """Sum of the four cells around each node, (J - 1, I - 1, ...) to (J, I, ...)."""
+    """Return sums of the four cells around each node, (J - 1, I - 1, ...) to (J, I, ...)."""
     for axis in (0, 1):
         width = [(1, 1) if a == axis else (0, 0) for a in range(cells.ndim)]
         padded = np.pad(cells, width, mode="wrap" if wrap[axis] else "constant")

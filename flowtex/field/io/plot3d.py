@@ -1,9 +1,9 @@
-"""PLOT3D: which of its many layouts a file has, where its solution is, and how VTK reads both.
+"""PLOT3D: the layout of a file, its solution, and reading both with VTK.
 
-A PLOT3D file says nothing about itself: text or binary, byte order, Fortran's record marks, one
-grid or several, two or three dimensions, single or double precision, blanking or none. All of
-them change the length of the file, so the layout is the one whose length fits. This is worked
-out before VTK opens the file: left to itself, it takes any number in a broken header for a size.
+A PLOT3D file does not describe itself: text or binary, byte order, Fortran's record marks, one grid
+or several, two or three dimensions, single or double precision, blanking or none. All of these
+change the length of the file, so the layout is the one whose length fits. It is determined before
+VTK opens the file, because VTK takes any number in a broken header for a size.
 """
 
 from __future__ import annotations
@@ -13,28 +13,31 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 #: VTK's number for the function that makes ``Velocity`` from density and momentum.
 VELOCITY = 200
 
-#: Suffixes under which PLOT3D grids are met.
+#: Usual suffixes of PLOT3D grids.
 GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
-#: Grids in one file, at most; a header with more is not one.
+#: Most grids in one file; a header with more is invalid.
 MOST_GRIDS = 100_000
-#: Bytes in memory of one byte of text: a number has two at least, and its word takes some 50.
+#: Bytes in memory of one byte of text: a number has at least two, and its word takes some 50.
 TEXT_GROWTH = 25
 _TEXT = frozenset(b"0123456789+-.eEdD \t\r\n,")
 
 
 @dataclass(frozen=True)
 class Layout:
-    """How a grid file is laid out; ``dimensions`` has 2 or 3 numbers for each grid."""
+    """The layout of a grid file; ``dimensions`` has 2 or 3 numbers for each grid."""
 
     dimensions: tuple[tuple[int, ...], ...]
     multiple: bool
@@ -46,7 +49,7 @@ class Layout:
 
     @property
     def length(self) -> int:
-        """Length of such a file: bytes when binary, else how many numbers it has."""
+        """Length of such a file: bytes when binary, otherwise numbers."""
         axes = len(self.dimensions[0])
         word = 4 if self.binary else 1
         real = word * (2 if self.double and self.binary else 1)
@@ -57,7 +60,7 @@ class Layout:
 
 
 def find_layout(path: Path) -> Layout | None:
-    """Find out how a grid file is laid out, or return ``None`` where it is no PLOT3D grid."""
+    """Return the layout of a grid file, or ``None`` if it is no PLOT3D grid."""
     with path.open("rb") as file:
         head = file.read(4 * (3 * MOST_GRIDS + 4))
     if not head:
@@ -65,12 +68,12 @@ def find_layout(path: Path) -> Layout | None:
     if set(head[:256]) <= _TEXT:
         return _text_layout(path)
     size = path.stat().st_size
-    for order, marks, several, axes in product(("<", ">"), (False, True), (False, True), (3, 2)):
-        dimensions = _binary_header(head, order, axes, marks=marks, several=several)
+    for order, marks, multiple, axes in product(("<", ">"), (False, True), (False, True), (3, 2)):
+        dimensions = _binary_header(head, order, axes, marks=marks, multiple=multiple)
         for double, blanked in product((False, True), (False, True)):
             layout = Layout(
                 dimensions,
-                multiple=several,
+                multiple=multiple,
                 blanked=blanked,
                 big_endian=order == ">",
                 record_marks=marks,
@@ -82,13 +85,13 @@ def find_layout(path: Path) -> Layout | None:
 
 
 def _binary_header(
-    head: bytes, order: str, axes: int, *, marks: bool, several: bool
+    head: bytes, order: str, axes: int, *, marks: bool, multiple: bool
 ) -> tuple[tuple[int, ...], ...]:
-    """Dimensions as a header of this form has them, or nothing where they make no sense."""
+    """Return the dimensions in a header of this form; empty if they are not plausible."""
     words = np.frombuffer(head[: len(head) // 4 * 4], dtype=f"{order}i4")
     # A record mark stands before and after each record.
     count, first = 1, int(marks)
-    if several:
+    if multiple:
         count, first = int(words[first : first + 1].sum()), 3 * first + 1
     return _grids(words[first : first + axes * count].tolist(), count, axes)
 
@@ -96,23 +99,23 @@ def _binary_header(
 def _text_layout(path: Path) -> Layout | None:
     check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     words = path.read_bytes().replace(b",", b" ").split()
-    for several, axes in product((False, True), (3, 2)):
+    for multiple, axes in product((False, True), (3, 2)):
         try:
-            count = int(words[0]) if several else 1
-            numbers = [int(word) for word in words[several : several + axes * count]]
+            count = int(words[0]) if multiple else 1
+            numbers = [int(word) for word in words[multiple : multiple + axes * count]]
         except ValueError:
             continue
         dimensions = _grids(numbers, count, axes)
         for blanked in (False, True):
-            layout = Layout(dimensions, multiple=several, blanked=blanked, binary=False)
+            layout = Layout(dimensions, multiple=multiple, blanked=blanked, binary=False)
             if dimensions and layout.length == len(words):
                 return layout
     return None
 
 
 def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], ...]:
-    known = 0 < count <= MOST_GRIDS and len(numbers) == axes * count
-    if not known or not all(0 < n < 2**31 for n in numbers):
+    plausible = 0 < count <= MOST_GRIDS and len(numbers) == axes * count
+    if not plausible or not all(0 < n < 2**31 for n in numbers):
         return ()
     return tuple(tuple(numbers[n * axes : n * axes + axes]) for n in range(count))
 
@@ -148,7 +151,7 @@ def _solution_names(grid: Path) -> Iterator[str]:
 
 
 def _check_solution(layout: Layout, solution: Path) -> None:
-    """Refuse a solution of other grids, or one that is cut: VTK allocates what its header says."""
+    """Raise a FieldError for a solution that is cut, or of other grids."""
     if not layout.binary:
         return
     axes, grids = len(layout.dimensions[0]), layout.dimensions
@@ -156,18 +159,18 @@ def _check_solution(layout: Layout, solution: Path) -> None:
     with solution.open("rb") as file:
         head = file.read(4 * (3 * len(grids) + 4))
     # A grid of three dimensions that is cut may be as long as one of two.
-    for own in (axes, 5 - axes):
-        found = _binary_header(
+    for rank in (axes, 5 - axes):
+        sizes = _binary_header(
             head,
             ">" if layout.big_endian else "<",
-            own,
+            rank,
             marks=layout.record_marks,
-            several=layout.multiple,
+            multiple=layout.multiple,
         )
-        fits = own == axes or size == _solution_length(layout, found, own)
-        if found and fits and found != grids:
+        fits = rank == axes or size == _solution_length(layout, sizes, rank)
+        if sizes and fits and sizes != grids:
             msg = (
-                f"{solution.name} has grids of {found[:3]} nodes, but the grid file has {grids[:3]}"
+                f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has {grids[:3]}"
             )
             raise FieldError(
                 msg + ("; the grid file is truncated, or the solution belongs to another grid")
@@ -184,7 +187,7 @@ def _solution_length(layout: Layout, grids: tuple[tuple[int, ...], ...], axes: i
     return header + sum((4 + (axes + 2) * math.prod(grid)) * real + 2 * mark for grid in grids)
 
 
-def read_plot3d(grid: Path, layout: Layout, solution: Path) -> Any:
+def read_plot3d(grid: Path, layout: Layout, solution: Path) -> pv.MultiBlock:
     """Read a grid with its solution into a PyVista MultiBlock whose blocks have ``Velocity``."""
     _check_solution(layout, solution)
     import pyvista as pv
@@ -203,4 +206,5 @@ def read_plot3d(grid: Path, layout: Layout, solution: Path) -> Any:
     reader.SetQFileName(str(solution))
     reader.AddFunction(VELOCITY)
     reader.Update()
-    return pv.wrap(reader.GetOutput())
+    blocks: pv.MultiBlock = pv.wrap(reader.GetOutput())
+    return blocks

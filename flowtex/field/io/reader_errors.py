@@ -1,6 +1,6 @@
-"""What goes wrong while a file is read, as one sentence.
+"""Errors of reading a file, as one sentence.
 
-Whatever a reader raises, and whatever VTK logs, becomes one :class:`~flowtex.field.FieldError` that
+Each error of a reader, and each that VTK logs, becomes one :class:`~flowtex.field.FieldError` that
 starts with the name of the file.
 """
 
@@ -12,11 +12,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 from xml.etree.ElementTree import ParseError
 
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 #: Held while VTK's output window, its logger and Python's root logger are changed: each exists once
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
@@ -26,10 +29,10 @@ _VTK_GLOBALS = threading.RLock()
 
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Name the file in what readers raise and VTK logs, one thread at a time."""
+    """Name the file in errors of readers and in VTK's log, one thread at a time."""
     file = Path(path).expanduser()
     cause: Exception | None = None
-    has_vtk = find_spec("pyvista") is not None  # what others read needs none
+    has_vtk = find_spec("pyvista") is not None  # other readers do not need it
     with _VTK_GLOBALS, _vtk_log() if has_vtk else nullcontext() as catcher:
         try:
             yield
@@ -38,15 +41,15 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         except MemoryError:
             cause = RuntimeError("its data do not fit into memory")
         except (AttributeError, IndexError, TypeError, EOFError) as error:
-            # Readers of broken files trip over what is missing in them.
+            # Readers fail so where parts of a broken file are missing.
             cause = RuntimeError(f"its content is invalid ({error})")
         except Exception as error:
-            # Those of ecCodes have no class in common with others.
+            # Errors of ecCodes have no class in common with others.
             if not type(error).__module__.startswith("gribapi"):
                 raise
             cause = error
     if catcher and catcher.error_events:
-        # VTK continues after an error and gives a part of the data, or none: the cause is here.
+        # VTK continues after an error with partial data, or none: this is the cause.
         first = _first_line(catcher.error_events[0].alert)
         msg = (
             f"{file}: the file is damaged, incomplete, or not of this format. VTK reports: {first}"
@@ -65,7 +68,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
 
 
 @contextmanager
-def _vtk_log() -> Iterator[Any]:
+def _vtk_log() -> Iterator[pv.VtkErrorCatcher]:
     """Collect VTK's errors and warnings while the block runs, and print none.
 
     VTK sends errors to an output window and, apart from it, to a logger that writes to standard
@@ -93,7 +96,7 @@ def _vtk_log() -> Iterator[Any]:
 
 
 def _not_from_vtk(record: logging.LogRecord) -> bool:
-    """Drop what PyVista's observer of VTK passes on to the root logger."""
+    """Drop the messages that PyVista's observer of VTK passes to the root logger."""
     return not (record.module == "observers" and "pyvista" in record.pathname)
 
 

@@ -14,6 +14,7 @@ from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.files import OpenFile, open_file
 from flowtex.field.io.meshes import (
+    Parts,
     drawn_parts,
     hidden_nodes,
     is_reader,
@@ -34,7 +35,7 @@ from flowtex.field.io.vectors import MeshArray, candidates, catalogue, values_of
 
 
 class ArraySummary(NamedTuple):
-    """One array, its finite range, of lengths where it is a vector, and what it is made of."""
+    """One array, its finite range, that of lengths for a vector, and its components' names."""
 
     name: str
     where: Literal["points", "cells"]
@@ -55,7 +56,7 @@ class BlockSummary(NamedTuple):
 
 @dataclass(frozen=True)
 class FileSummary:
-    """What a file holds."""
+    """The content of a file."""
 
     path: Path
     grid: str  #: Type of its mesh: of the default block if it has several.
@@ -63,12 +64,12 @@ class FileSummary:
     cells: dict[str, int]  #: Number of cells of an unstructured mesh by kind.
     bounds: tuple[tuple[float, float], ...]  #: ((x, x), (y, y), (z, z)).
     volume: bool  #: Whether a volume can be cut.
-    blocks: tuple[BlockSummary, ...]  #: Those that hold something, where there are several.
+    blocks: tuple[BlockSummary, ...]  #: Blocks with content, if there are several.
     arrays: tuple[ArraySummary, ...]
-    candidates: tuple[str, ...]  #: Names of what may be the velocity.
+    candidates: tuple[str, ...]  #: Names of possible velocities.
     times: tuple[float, ...]
     blanked: int  #: Number of hidden nodes.
-    problem: str  #: What keeps :meth:`FlowField.from_file` from reading it as it stands.
+    problem: str  #: The reason if :meth:`FlowField.from_file` cannot read it without choices.
 
 
 def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
@@ -82,17 +83,17 @@ def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
 
 def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     parts = list(leaves(mesh))
-    meant = list(drawn_parts(mesh)[0].values())
-    part = (meant or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
+    drawn = list(drawn_parts(mesh)[0].values())
+    part = (drawn or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
     data = hasattr(part, "point_data")
     arrays = catalogue(part) if data else []
-    found = candidates(part) if data else []
+    velocities = candidates(part) if data else []
     vectors = file.velocity
-    names = dict.fromkeys(array.name for array in found) if vectors is None else [vectors]
+    names = dict.fromkeys(array.name for array in velocities) if vectors is None else [vectors]
     times = times_of(file.source)
     if isinstance(file.source, list):
         times = [float(step.time) for step in file.source]
-    whole = mesh if block is None else part
+    drawn_mesh = mesh if block is None else part
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
@@ -101,11 +102,11 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
         volume=data and part.max_cell_dimensionality == 3,
         blocks=tuple(_blocks(parts, parts_of(mesh))) if len(parts) > 1 else (),
-        arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
+        arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))),
         candidates=tuple(names),
         times=tuple(times),
         blanked=int(hidden_nodes(part).sum()) if data else 0,
-        problem=file.problem or _problem(whole, vectors, series=len(times) > 1),
+        problem=file.problem or _problem(drawn_mesh, vectors, series=len(times) > 1),
     )
 
 
@@ -128,7 +129,7 @@ def _cells(mesh: Any) -> dict[str, int]:
     return {name: int(count) for name, count in kinds if count}
 
 
-def _blocks(parts: list[tuple[str, Any]], meshes: dict[str, Any]) -> Iterator[BlockSummary]:
+def _blocks(parts: list[tuple[str, Any]], meshes: Parts) -> Iterator[BlockSummary]:
     numbers = {name: number for number, name in enumerate(meshes)}
     for name, part in parts:
         size = part_size(part) if name in meshes else ""
@@ -136,9 +137,9 @@ def _blocks(parts: list[tuple[str, Any]], meshes: dict[str, Any]) -> Iterator[Bl
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
-    """Return what has to be chosen to make a field, or why none can be made."""
-    if several := several_parts(mesh, series=series):
-        return several_fault(several, "the file")
+    """Return the choice that a field requires, or the reason why none can be made."""
+    if parts := several_parts(mesh, series=series):
+        return several_fault(parts, "the file")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # issued when the field is made
         try:

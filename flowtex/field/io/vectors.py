@@ -1,7 +1,7 @@
-"""The arrays of a mesh, and which of them are the velocity.
+"""The arrays of a mesh, and the choice of the velocity.
 
 A velocity is an array of two or three components, or as many arrays of one: those that are named,
-or whose names show that they belong together (:mod:`flowtex.field.io.components`).
+or whose names belong together (:mod:`flowtex.field.io.components`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,10 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.notices import notify
 from flowtex.field.io.components import NO_VELOCITY, find_vectors
 
-#: Arrays that say what is hidden and nothing about the flow.
+if TYPE_CHECKING:
+    import pyvista as pv
+
+#: Arrays that only mark hidden parts.
 BLANKING = ("vtkGhostType", "IBlank", "vtkValidPointMask")
 #: Names of velocities among several vectors.
 VELOCITY = re.compile(
@@ -30,22 +33,22 @@ _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 @dataclass(frozen=True)
 class MeshArray:
-    """An array of a mesh: its name, where its values are, and how many there are at each."""
+    """An array of a mesh: its name, the place of its values, and its number of components."""
 
     name: str
     where: Literal["points", "cells"]
     components: int
     numeric: bool = True
     real: bool = True
-    parts: tuple[str, ...] = ()  #: Names of the arrays of one component that it is made of, if any.
+    parts: tuple[str, ...] = ()  #: Names of its arrays of one component, if any.
 
     def __str__(self) -> str:
         made = f" from {', '.join(self.parts)}" if self.parts else ""
         return f"{self.name} ({self.where}, {self.components}{made})"
 
 
-def catalogue(mesh: Any) -> list[MeshArray]:
-    """List the arrays on the points and cells of a mesh, without those that only hide."""
+def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
+    """Return the arrays on the points and cells of a mesh, without those of :data:`BLANKING`."""
     return [
         MeshArray(name, where, math.prod(shape), numeric=kind in "fiub", real=kind == "f")
         for where in _PLACES
@@ -56,11 +59,11 @@ def catalogue(mesh: Any) -> list[MeshArray]:
     ]
 
 
-def _data(mesh: Any, where: str) -> Any:
+def _data(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
     return mesh.point_data if where == "points" else mesh.cell_data
 
 
-def values_of(mesh: Any, array: MeshArray) -> AnyArray:
+def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:
     """Return the values of an array, (N,) or (N, C)."""
     data = _data(mesh, array.where)
     if array.parts:
@@ -68,8 +71,8 @@ def values_of(mesh: Any, array: MeshArray) -> AnyArray:
     return np.asarray(data[array.name])
 
 
-def candidates(mesh: Any) -> list[MeshArray]:
-    """Arrays that may be the velocity, or those that single components make by their names."""
+def candidates(mesh: pv.DataSet) -> list[MeshArray]:
+    """Return possible velocities: arrays, or vectors of single components by their names."""
     named = set()
     for data in (mesh.GetPointData(), mesh.GetCellData()):
         named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
@@ -81,32 +84,31 @@ def candidates(mesh: Any) -> list[MeshArray]:
         and array.name not in named
         and not NO_VELOCITY.fullmatch(array.name)
     ]
-    # An array that stands on cells as well was computed from one of the two: those of points
-    # come first.
+    # Of arrays on points and cells one was computed from the other: those of points come first.
     by_name = {array.name: array for array in reversed(arrays)}
-    return [array for array in arrays if by_name[array.name] is array] or _found(mesh)
+    return [array for array in arrays if by_name[array.name] is array] or _component_vectors(mesh)
 
 
-def _found(mesh: Any) -> list[MeshArray]:
-    """Return the vectors that single components make by their names; pairs on flat meshes."""
+def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
+    """Return vectors of single components by their names; pairs on flat meshes."""
     arrays = catalogue(mesh)
     low, high = mesh.bounds[4:]
-    found = []
+    vectors = []
     for where in _PLACES:
         names = [a.name for a in arrays if a.where == where and a.real and a.components == 1]
         for name, parts in find_vectors(names, pairs=low == high).items():
-            found.append(MeshArray(name, where, len(parts), parts=parts))
-    return found
+            vectors.append(MeshArray(name, where, len(parts), parts=parts))
+    return vectors
 
 
-def missing_arrays(mesh: Any, vectors: MeshArray) -> list[str]:
-    """Return what a mesh lacks of the vectors of another one."""
+def missing_arrays(mesh: pv.DataSet, vectors: MeshArray) -> list[str]:
+    """Return the arrays of another mesh's vectors that a mesh lacks."""
     needed = [f"{part} ({vectors.where}, 1)" for part in vectors.parts] or [str(vectors)]
-    known = {str(array) for array in catalogue(mesh)}
-    return [array for array in needed if array not in known]
+    present = {str(array) for array in catalogue(mesh)}
+    return [array for array in needed if array not in present]
 
 
-def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
+def choose_vectors(mesh: pv.DataSet, vectors: str | None) -> MeshArray:
     """Return the selected vectors; :func:`vector_faults` returned none before."""
     if vectors is None:
         chosen = _preferred(mesh)[0]
@@ -118,26 +120,26 @@ def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
                 f'Choose one of them as in vectors="{others[0].name}"'
             )
         return chosen
-    return next(a for a in _meant(mesh, vectors) if _is_vector(a))
+    return next(a for a in _named_arrays(mesh, vectors) if _is_vector(a))
 
 
-def vector_faults(mesh: Any, vectors: Any) -> list[str]:
-    """Faults in a choice of vectors; ``None`` means the only ones."""
+def vector_faults(mesh: pv.DataSet, vectors: Any) -> list[str]:
+    """Return faults in a choice of vectors; ``None`` means the only ones."""
     arrays = catalogue(mesh)
     listed = ", ".join(map(str, arrays)) or "none"
     if vectors is None:
         return _search_faults(mesh, listed)
-    meant = _meant(mesh, vectors)
-    if any(_is_vector(a) for a in meant):
+    named = _named_arrays(mesh, vectors)
+    if any(_is_vector(a) for a in named):
         return []
-    if meant:
+    if named:
         return [
-            f"vectors is {vectors!r}, an array of {meant[0].components} component(s); expected 2 "
+            f"vectors is {vectors!r}, an array of {named[0].components} component(s); expected 2 "
             "or 3 components at each point or cell, or the names of 2 or 3 arrays of one "
             "component, separated by commas. The arrays of the mesh, with their numbers of "
             f"components: {listed}"
         ]
-    words = _words(vectors)
+    words = _component_names(vectors)
     if len(words) > 1:
         return [_component_fault(vectors, words, arrays, listed)]
     return [
@@ -146,14 +148,14 @@ def vector_faults(mesh: Any, vectors: Any) -> list[str]:
     ]
 
 
-def _meant(mesh: Any, vectors: Any) -> list[MeshArray]:
-    """Return the arrays of a name, or what is made of the components that it lists."""
+def _named_arrays(mesh: pv.DataSet, vectors: Any) -> list[MeshArray]:
+    """Return the arrays of a name, or the vectors of the components that it lists."""
     arrays = catalogue(mesh)
     if named := [a for a in arrays if a.name == vectors]:
         return named
-    if found := [a for a in _found(mesh) if a.name == vectors]:
+    if found := [a for a in _component_vectors(mesh) if a.name == vectors]:
         return found
-    words = _words(vectors)
+    words = _component_names(vectors)
     if len(words) not in (2, 3):
         return []
     scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
@@ -164,7 +166,7 @@ def _meant(mesh: Any, vectors: Any) -> list[MeshArray]:
     ]
 
 
-def _words(vectors: Any) -> tuple[str, ...]:
+def _component_names(vectors: Any) -> tuple[str, ...]:
     """Return the names between commas."""
     return tuple(word.strip() for word in str(vectors).split(","))
 
@@ -192,11 +194,11 @@ def _hint(name: Any, arrays: list[MeshArray]) -> str:
     return f'. Did you mean "{close[0]}"?' if close else "."
 
 
-def _preferred(mesh: Any) -> list[MeshArray]:
-    """Candidates, or the one that the mesh marks as its vectors or a name identifies."""
+def _preferred(mesh: pv.DataSet) -> list[MeshArray]:
+    """Return possible velocities, or the one that the mesh marks or a name identifies."""
     arrays = candidates(mesh)
     active = mesh.active_vectors_name
-    # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.
+    # VTK's PLOT3D reader marks the momentum automatically: that is no choice.
     if active == "Momentum" and any(a.name == "Velocity" for a in arrays):
         active = None
     marked = [a for a in arrays if a.name == active][:1]
@@ -204,7 +206,7 @@ def _preferred(mesh: Any) -> list[MeshArray]:
     return marked or (named if len(named) == 1 else arrays)
 
 
-def _search_faults(mesh: Any, listed: str) -> list[str]:
+def _search_faults(mesh: pv.DataSet, listed: str) -> list[str]:
     arrays = _preferred(mesh)
     if not arrays:
         return [

@@ -124,7 +124,8 @@ class Clusters:
         points, count = self.field.points[0], int(cluster.max()) + 1
         center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
         normal = _sums(self.normals, cluster, count)
-        distances = _squares(points - center[cluster])
+        away = points - center[cluster]
+        distances = np.einsum("nc,nc->n", away, away)
         parts = []
         for k in range(3):
             node, beside = self.triangles[:, k - 1], self.triangles[:, k]
@@ -247,10 +248,6 @@ def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
     """Return which triangles (M,) face away from the normals of their corners."""
     normal = np.asarray(sum(normals[triangles[:, k]] for k in range(3)))
     return np.asarray(dot(triangle_normals(points, triangles), normal) <= 0)
-
-
-def _squares(vectors: Floats) -> Floats:
-    return np.asarray(np.einsum("nc,nc->n", vectors, vectors))
 
 
 def _sums(values: Floats, number: Indices, count: int) -> Floats:

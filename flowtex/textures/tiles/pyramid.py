@@ -428,10 +428,10 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
     """Return the path length in a tile (J, I, 3), and the rows and columns of its halo."""
     sides = []
     for axis in (0, 1):
-        both = np.moveaxis(valid, axis, 0)
+        nodes = np.moveaxis(valid, axis, 0)
         size = norm(np.diff(points, axis=axis))
-        known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
-        sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
+        lengths = np.moveaxis(size, axis, 0)[nodes[1:] & nodes[:-1]]
+        sides.append(np.percentile(lengths[lengths > 0], (5, 95)) if lengths.any() else np.ones(2))
     # A little less, so that rounding does not double the lag for even cells.
     longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
     rows, columns = (int(HALO_SHARE * longest / least) + HALO_SPARE for least, _ in sides)

@@ -373,9 +373,9 @@ def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
     near = SAME_POINT_CELLS * np.array([size[node] for node in at])
     positions = np.array([point.position for point in points])
     kept = np.ones(len(points), dtype=bool)
-    for one, other in sorted(scipy.spatial.KDTree(positions).query_pairs(near.max())):
-        if kept[one] and points[one].poincare_index == points[other].poincare_index:
-            kept[other] &= np.linalg.norm(positions[one] - positions[other]) >= near[other]
+    for first, second in sorted(scipy.spatial.KDTree(positions).query_pairs(near.max())):
+        if kept[first] and points[first].poincare_index == points[second].poincare_index:
+            kept[second] &= np.linalg.norm(positions[first] - positions[second]) >= near[second]
     return [point for point, is_kept in zip(points, kept, strict=True) if is_kept]
 
 

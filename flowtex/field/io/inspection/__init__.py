@@ -1,1 +1,1 @@
-"""Compares what a file declares with its size and the free memory, before a reader opens it."""
+"""Checks of a file's declarations against its size and the free memory, before it is opened."""

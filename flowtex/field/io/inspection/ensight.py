@@ -1,6 +1,6 @@
 """EnSight Gold as text: parts and variables have as many values as they declare.
 
-VTK continues with what it has where a file ends early. Binary files, parts of polygons and
+VTK continues with partial data where a file ends early. Binary files, parts of polygons and
 polyhedra, and geometries of several times are left to the reader.
 """
 
@@ -16,18 +16,18 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
-#: Values of a variable at each place.
+#: Values of a variable at each node or element.
 COMPONENTS = {"scalar": 1, "vector": 3, "tensor symm": 6, "tensor asym": 9}
 _MODEL = re.compile(r"^model:(?:\s+\d+){0,2}\s+(\S+)", re.MULTILINE)
 _VARIABLE = re.compile(
     rf"^({'|'.join(COMPONENTS)}) per (node|element):.*[ \t](\S+)[ \t]*$", re.MULTILINE
 )
-#: Places that values are given for, by part and section.
+#: Numbers of nodes or elements by part and section.
 _Sizes = dict[tuple[int, str], int]
 
 
 def check_ensight(case: Path) -> None:
-    """Refuse a case of which a file has fewer values than it declares."""
+    """Raise a FieldError if a file of a case has fewer values than it declares."""
     text = case.read_text(encoding="utf-8", errors="replace")
     model = _MODEL.search(text)
     geometry = case.parent / model[1] if model else case
@@ -70,7 +70,7 @@ def _geometry(text: TextScanner) -> _Sizes:
         elif word == "part":
             part = _number(text, word)
             text.line()
-            text.line()  # what it is called
+            text.line()  # its name
         elif word == "coordinates":
             sizes[part, "node"] = count = _number(text, word)
             _values(text, count * (3 + ids[0]), f"part {part}")
@@ -88,26 +88,26 @@ def _geometry(text: TextScanner) -> _Sizes:
 
 
 def _variable(text: TextScanner, sizes: _Sizes, components: int, place: str) -> _Sizes:
-    """Go through the values of a variable at nodes or elements."""
-    text.line()  # what it is called
+    """Check the values of a variable at nodes or elements."""
+    text.line()  # its name
     while text.word() == b"part":
         part = _number(text, "part")
         section = text.word().decode(errors="replace")
-        if (text.line() or b"").strip():  # values of some places alone
+        if (text.line() or b"").strip():  # values of only some places
             break
-        what = f"{section} of part {part}"
-        at = place if section in ("coordinates", "block") else section
-        check_count(int((part, at) in sizes), 1, what, "places")
-        _values(text, components * sizes[part, at], what)
+        label = f"{section} of part {part}"
+        kind = place if section in ("coordinates", "block") else section
+        check_count(int((part, kind) in sizes), 1, label, "places")
+        _values(text, components * sizes[part, kind], label)
     return {}
 
 
-def _number(text: TextScanner, what: str) -> int:
+def _number(text: TextScanner, label: str) -> int:
     word = text.word()
-    check_count(int(word.isdigit()), 1, what, "whole numbers")
+    check_count(int(word.isdigit()), 1, label, "whole numbers")
     return int(word)
 
 
-def _values(text: TextScanner, count: int, what: str) -> None:
-    check_memory(8 * count, what)
-    check_count(text.numbers(count), count, what, "values")
+def _values(text: TextScanner, count: int, label: str) -> None:
+    check_memory(8 * count, label)
+    check_count(text.numbers(count), count, label, "values")

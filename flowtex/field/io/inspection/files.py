@@ -1,4 +1,4 @@
-"""One look into a file before any reader opens it, by its content and by its name."""
+"""Inspection of a file before any reader opens it, by its content and its name."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flowtex.field.io.inspection.zarr_folder import DOCUMENTS, check_zarr
 #: Bytes that identify most files.
 HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
-#: Files of a series or of several blocks that are looked into, at most.
+#: Most files of a series or of several blocks that are inspected.
 MOST_MEMBERS = 100_000
-#: What is checked whatever the file begins with, as its reader is chosen by the suffix.
+#: Checks by suffix, whatever the content, as the reader is chosen by the suffix.
 BY_SUFFIX: dict[str, Callable[[Path], None]] = {
     ".case": check_ensight,
     ".obj": check_obj,
@@ -29,11 +29,10 @@ BY_SUFFIX: dict[str, Callable[[Path], None]] = {
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
-    """Refuse a file that lacks what it declares, needs too much memory, or refers to others.
+    """Raise a FieldError for a file that is incomplete, needs too much memory, or links to others.
 
-    Those that it names as members of a series, or as its blocks, are looked into as well, each once
-    for each of its times of change. Of folders those of Zarr are. Arrays are read ``whole``, as
-    those of meshes, or parts of them are.
+    Members of a series and blocks are inspected as well, each once for each time of change, and
+    folders of Zarr. ``whole`` is whether arrays are read as a whole, as those of meshes.
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
@@ -58,7 +57,7 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
 
 @lru_cache(maxsize=1024)
 def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, ...]:  # noqa: FBT001
-    """Look into one file, and return those that it names."""
+    """Inspect one file, and return the files that it names."""
     with path.open("rb") as stream:
         head = stream.read(HEAD_BYTES)
         is_hdf5 = _is_hdf5(stream, size)
@@ -68,8 +67,8 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     if head.startswith(netcdf.MAGICS):
         netcdf.check_netcdf(path, whole=whole)
     elif suffix in netcdf.SUFFIXES and not is_hdf5:
-        found = f"it begins with {head[:8]!r}" if head else "it is empty"
-        msg = f"this is not a NetCDF file: {found}; expected 'CDF', or HDF5"
+        beginning = f"it begins with {head[:8]!r}" if head else "it is empty"
+        msg = f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5"
         raise FieldError(msg)
     if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         grib.check_grib(path)
@@ -80,7 +79,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
 
 
 def _is_hdf5(stream: BinaryIO, size: int) -> bool:
-    """Whether HDF5 begins somewhere: what is before it is the user's."""
+    """Return whether HDF5 begins somewhere, perhaps after a block of the user."""
     at = 0
     while at < size:
         stream.seek(at)

@@ -9,14 +9,14 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
 MAGIC = b"GRIB"
-#: What is between messages is gone over in parts of this many bytes.
+#: Bytes that are read at once between messages.
 CHUNK_BYTES = 1 << 16
-#: Messages of GRIB 1 that are longer than three bytes can say count in units of 120.
+#: Messages of GRIB 1 that are too long for three bytes count in units of 120.
 LONG_MESSAGE, LONG_UNIT = 0x800000, 120
 
 
 def check_grib(path: Path) -> None:
-    """Refuse a file whose last message is cut, or with a grid that does not fit into memory."""
+    """Raise a FieldError for a cut last message, or a grid that does not fit into memory."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         at = _next(stream, 0)
@@ -25,20 +25,20 @@ def check_grib(path: Path) -> None:
             number += 1
             stream.seek(at)
             head = stream.read(16)
-            what = f"message {number}"
-            check_count(len(head), 16, what)
+            label = f"message {number}"
+            check_count(len(head), 16, label)
             length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
             if head[7] == 1 and length >= LONG_MESSAGE:
-                # Its length is not to be had without the sections.
+                # The exact length follows only from the sections.
                 length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
-            check_count(size - at, length, what)
-            points = _points(stream, at, head[7], min(at + length, size), what)
-            check_memory(8 * points, f"the grid of {what}")
+            check_count(size - at, length, label)
+            points = _points(stream, at, head[7], min(at + length, size), label)
+            check_memory(8 * points, f"the grid of {label}")
             at = _next(stream, at + max(length, 4))
 
 
 def _next(stream: BinaryIO, at: int) -> int | None:
-    """Return where the next message begins; between two there may be anything."""
+    """Return the position of the next message; between two any bytes may lie."""
     stream.seek(at)
     data = b""
     while part := stream.read(CHUNK_BYTES):
@@ -48,8 +48,8 @@ def _next(stream: BinaryIO, at: int) -> int | None:
     return None
 
 
-def _points(stream: BinaryIO, at: int, edition: int, end: int, what: str) -> int:
-    """Return how many points the largest grid of a message has."""
+def _points(stream: BinaryIO, at: int, edition: int, end: int, label: str) -> int:
+    """Return the number of points of the largest grid of a message."""
     if edition == 1:
         stream.seek(at + 8)
         section = stream.read(8)
@@ -71,6 +71,6 @@ def _points(stream: BinaryIO, at: int, edition: int, end: int, what: str) -> int
     # ecCodes reads for ever where sections do not lead to the end.
     stream.seek(place)
     if place + 4 != end or stream.read(4) != b"7777":
-        msg = f"the sections of {what} do not match its length; the file is corrupt"
+        msg = f"the sections of {label} do not match its length; the file is corrupt"
         raise FieldError(msg)
     return most

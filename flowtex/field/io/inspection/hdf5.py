@@ -1,7 +1,7 @@
-"""HDF5, and NetCDF-4, CGNS, Exodus and VTKHDF, which are HDF5: nothing of other files is read.
+"""HDF5, and NetCDF-4, CGNS, Exodus and VTKHDF, which are HDF5: no other files are read.
 
 Datasets may lie in other files (external storage and virtual datasets), and so may groups (external
-links). Whoever makes a file could so have any other file read that the reader may read.
+links). Otherwise the author of a file could make the reader read any other file.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
-    """Refuse a file that leads to others, is cut, or has arrays too large for the memory."""
+    """Raise a FieldError for a file that links to others, is cut, or does not fit into memory."""
     import h5py
 
     try:
@@ -41,8 +41,8 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
             raise
         ends = re.search(r"eof = (\d+).*base_addr = (\d+), stored_eof = (\d+)", str(error))
         if ends:
-            found, base, declared = map(int, ends.groups())
-            check_count(found, base + declared, "the header")
+            size, base, declared = map(int, ends.groups())
+            check_count(size, base + declared, "the header")
         msg = f"the file is damaged: HDF5 reports: {error}; write or copy it again"
         raise FieldError(msg) from error
 
@@ -69,9 +69,9 @@ def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
         check_memory(size * math.prod(shape), f"the dataset {name}")
 
 
-def _refuse(what: str, target: str) -> NoReturn:
+def _refuse(link: str, target: str) -> NoReturn:
     msg = (
-        f"{what} in the file {target!r}, but only data in the file itself are read; copy "
+        f"{link} in the file {target!r}, but only data in the file itself are read; copy "
         "everything into one file, for example with ds.to_netcdf"
     )
     raise FieldError(msg)

@@ -1,4 +1,4 @@
-"""The sentences of files that are cut, that need too much memory, or that lead elsewhere."""
+"""Errors of files that are cut or need too much memory."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.memory import available_bytes
 from flowtex.errors import FieldError
 
-#: A reader and what is made of its data take some times what a file declares.
+#: Share of the memory for data: a reader and later computations take several times as much.
 MEMORY_SHARE = 0.5
 
 
 def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
-    """Refuse a file that has less than it declares."""
+    """Raise a FieldError if a file has less than it declares."""
     if found < declared:
         msg = (
             f"the file is truncated or damaged: {what} declares {_text(declared)} {unit}, but the "
@@ -26,7 +26,7 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
 
 
 def check_memory(nbytes: int, what: str) -> None:
-    """Refuse to read what takes more than a share of the memory that is available."""
+    """Raise a FieldError if data take more than a share of the available memory."""
     budget = int(available_bytes() * MEMORY_SHARE)
     if nbytes > budget:
         msg = (
@@ -50,6 +50,6 @@ def _text(count: int) -> str:
 
 
 def values_in(array: Any) -> AnyArray:
-    """Return the values of a variable of xarray's, where they fit into memory as float64."""
+    """Return the values of a variable of xarray's, if they fit into memory as float64."""
     check_memory(8 * array.size, f"the variable {getattr(array, 'name', None) or 'without a name'}")
     return np.asarray(array.values)

@@ -1,6 +1,6 @@
 """NetCDF classic (CDF-1, 2 and 5): the file is as long as its header declares.
 
-netCDF's library reads zeros, or what it has, of a file that is shorter.
+netCDF's library reads zeros, or partial data, from a shorter file.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 #: Bytes of a value by the number of its type.
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
-#: Number of records where the writer did not know it.
+#: Number of records that the writer did not know.
 STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
 
 
 def check_netcdf(path: Path, *, whole: bool) -> None:
-    """Refuse a file that is shorter than it declares, or has arrays too large for the memory."""
+    """Raise a FieldError for a file that is shorter than declared, or too large for the memory."""
     with path.open("rb") as stream:
         size = path.stat().st_size
         header = _Header(stream, size)
@@ -40,9 +40,9 @@ class _Header:
         self._offset = ">I" if version == 1 else ">Q"
         self._records = self._number()
         self._dimensions: list[int] = []
-        #: Name, shape and bytes of each variable, of one record where it has such.
+        #: Name, shape and bytes of each variable, of one record if it has records.
         self.arrays: list[tuple[str, tuple[int, ...], int]] = []
-        #: Where each variable begins, its bytes, and whether it has records.
+        #: Begin, bytes, and whether it has records, of each variable.
         self._places: list[tuple[int, int, bool]] = []
         for _ in self._entries():
             self._name()
@@ -52,16 +52,16 @@ class _Header:
             self._variable()
 
     def length(self, size: int) -> int:
-        """Return how many bytes the file has to have, when it has ``size`` of them."""
+        """Return the declared length of the file in bytes; it has ``size`` bytes."""
         each = [nbytes for _, nbytes, repeated in self._places if repeated]
-        # Values fill up to four bytes, apart from those of the only variable that has records.
+        # Values are padded to four bytes, except for those of a single variable with records.
         record = each[0] if len(each) == 1 else sum(-(-nbytes // 4) * 4 for nbytes in each)
         records = self._records
         if records in STREAMING:
             start = min((begin for begin, _, repeated in self._places if repeated), default=size)
             records = max(size - start, 0) // record if record else 0
             if records * record + start < size:
-                # A record that is begun is not complete.
+                # The last record is incomplete.
                 records += 1
         ends = [
             begin + nbytes + (record * (records - 1) if repeated else 0)
@@ -83,7 +83,7 @@ class _Header:
         if kind not in SIZES:
             msg = f"the file is damaged: the variable {name} has the unknown type {kind}"
             raise FieldError(msg)
-        self._number()  # its size once more, which has too few bits for a large one
+        self._number()  # its size again, with too few bits for a large one
         begin = self._unpack(self._offset)
         shape = tuple(self._dimensions[number] for number in numbers)
         repeated = bool(shape) and shape[0] == 0
@@ -101,8 +101,8 @@ class _Header:
             self._read(-(-nbytes // 4) * 4)
 
     def _entries(self) -> range:
-        """Return a range of as many as a list has."""
-        self._unpack(">I")  # what is listed
+        """Return a range over the entries of a list."""
+        self._unpack(">I")  # the kind of entries
         count = self._number()
         self._fits(count, 8)
         return range(count)
@@ -124,7 +124,7 @@ class _Header:
         return self._stream.read(count)
 
     def _fits(self, count: int, nbytes: int) -> None:
-        """Refuse a count of things that the rest of the file has no room for."""
+        """Raise a FieldError if the rest of the file is too short for a count of entries."""
         if count * nbytes > self._left:
             msg = (
                 f"the file is truncated or damaged: its header needs {count * nbytes:,} more "

@@ -18,7 +18,7 @@ _OF_NUMBERS[list(b"0123456789+-.eEdDnNaAiIfFtTyY")] = True
 
 
 class TextScanner:
-    """Goes once through a file of words, numbers and blocks of bytes, up to ``end`` in bytes."""
+    """One pass through a file of words, numbers and blocks of bytes, up to ``end`` in bytes."""
 
     def __init__(self, stream: BinaryIO, end: int) -> None:
         self._stream, self._end = stream, end
@@ -62,7 +62,7 @@ class TextScanner:
         return line.removesuffix(b"\r")
 
     def skip(self, count: int) -> int:
-        """Go over bytes, and return how many there were."""
+        """Skip bytes, and return their number."""
         count = min(count, self.left)
         inside = min(count, len(self._buffer) - self._at)
         self._at += inside
@@ -78,7 +78,7 @@ class TextScanner:
         return data
 
     def numbers(self, most: int | None = None) -> int:
-        """Go over numbers, at most so many, up to a word that is none; return their count."""
+        """Skip numbers, at most ``most``, up to another word; return their count."""
         count = 0
         while most is None or count < most:
             if self._at == len(self._buffer) and not self._more():
@@ -95,22 +95,22 @@ class TextScanner:
                     continue
                 stop = stop or len(part)
             starts = np.flatnonzero(~blank & np.concatenate([[True], blank[:-1]]))
-            strange = np.flatnonzero(~blank & ~_OF_NUMBERS[part])
-            ended = bool(strange.size) and int(strange[0]) < stop
+            others = np.flatnonzero(~blank & ~_OF_NUMBERS[part])
+            ended = bool(others.size) and int(others[0]) < stop
             if ended:
-                stop = int(starts[np.searchsorted(starts, strange[0], "right") - 1])
-            here = int(np.searchsorted(starts, stop))
-            if most is not None and count + here > most:
-                here = most - count
-                stop = int(starts[here])
-            count += here
+                stop = int(starts[np.searchsorted(starts, others[0], "right") - 1])
+            found = int(np.searchsorted(starts, stop))
+            if most is not None and count + found > most:
+                found = most - count
+                stop = int(starts[found])
+            count += found
             self._at += stop
             if ended:
                 break
         return count
 
     def _more(self) -> bool:
-        """Read a chunk where there is one, and drop what was gone over."""
+        """Read a chunk if there is one, and drop the bytes before the position."""
         room = min(CHUNK_BYTES, self._end - self._stream.tell())
         data = self._stream.read(max(room, 0))
         if data:

@@ -1,4 +1,4 @@
-"""OBJ, PLY and STL: what is declared is there, and faces have the corners that they name."""
+"""OBJ, PLY and STL: declared elements are present, and faces have the corners that they name."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ STL_HEAD, STL_TRIANGLE = 84, 50
 
 
 def check_obj(path: Path) -> None:
-    """Refuse a file whose last line is cut, or whose faces name missing points.
+    """Raise a FieldError for a cut last line, or faces with missing points.
 
-    The format declares nothing: of one that ends early after a line only points that no face uses
-    tell, and a whole one may have such.
+    The format has no counts: only points that no face uses indicate an early end after a line, and
+    a complete file may also have such points.
     """
     points = most = 0
     with path.open("rb") as stream:
@@ -47,7 +47,7 @@ def check_obj(path: Path) -> None:
 
 
 def check_stl(path: Path) -> None:
-    """Refuse a file with fewer triangles than it declares, or text without its last line."""
+    """Raise a FieldError for fewer triangles than declared, or text without its last line."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         head = stream.read(STL_HEAD)
@@ -60,7 +60,7 @@ def check_stl(path: Path) -> None:
 
 
 def check_ply(path: Path) -> None:
-    """Refuse a file with fewer elements than its header declares."""
+    """Raise a FieldError for fewer elements than the header declares."""
     with path.open("rb") as stream:
         form, elements = _ply_header(stream)
         text = TextScanner(stream, path.stat().st_size)
@@ -73,7 +73,7 @@ def check_ply(path: Path) -> None:
 
 
 def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[str]]]]]:
-    """Return the format, and the elements: name, count and the words of their properties."""
+    """Return the format, and the elements: name, count and properties, each in words."""
     form = ""
     elements: list[tuple[str, int, list[list[str]]]] = []
     for line in stream:
@@ -93,16 +93,13 @@ def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[s
                 pass
             case _:
                 break
-    msg = (
-        f"the file is damaged: its header has {line[:80]!r}"
-        if elements
-        else ("the file is truncated")
-    )
-    raise FieldError(msg + "; write or copy it again")
+    fault = f"damaged: its header has {line[:80]!r}" if elements else "truncated"
+    msg = f"the file is {fault}; write or copy it again"
+    raise FieldError(msg)
 
 
 def _text_elements(text: TextScanner, count: int, properties: list[list[str]]) -> int:
-    """Go over the lines of elements, and return how many are whole."""
+    """Skip the lines of elements, and return how many are complete."""
     for number in range(count):
         while (line := text.line()) is not None and not line.strip():
             pass
@@ -112,7 +109,7 @@ def _text_elements(text: TextScanner, count: int, properties: list[list[str]]) -
 
 
 def _has_too_few(words: list[bytes], properties: list[list[str]]) -> bool:
-    """Return whether a line ends before all properties, and the entries of lists, are there."""
+    """Return whether a line lacks properties or entries of lists."""
     needed = 0
     for kind in properties:
         if needed >= len(words):
@@ -125,7 +122,7 @@ def _has_too_few(words: list[bytes], properties: list[list[str]]) -> bool:
 def _binary_elements(
     text: TextScanner, count: int, properties: list[list[str]], *, big: bool
 ) -> int:
-    """Go over elements, and return how many there were."""
+    """Skip elements, and return how many are complete."""
     if all(len(kind) == 1 for kind in properties):
         size = sum(PLY_TYPES[kind[0]] for kind in properties)
         return text.skip(size * count) // size if size else count

@@ -1,6 +1,6 @@
-"""Legacy files of VTK: all arrays that are declared are there.
+"""Legacy files of VTK: all declared arrays are present.
 
-VTK allocates what a keyword declares, and continues with what it has where the file ends early.
+VTK allocates what a keyword declares, and continues with partial data where the file ends early.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
 MAGIC = b"# vtk DataFile Version"
-#: Bytes of a value in the file and in memory; VTK recognises types by how their names begin.
+#: Bytes of a value in the file and in memory; VTK recognises types by the beginning of the name.
 TYPES = {
     b"unsigned_char": (1, 1),
     b"signed_char": (1, 1),
@@ -44,7 +44,7 @@ COMPONENTS = {
 }
 CELLS = (b"cells", b"vertices", b"lines", b"polygons", b"triangle_strips")
 COORDINATES = (b"x_coordinate", b"y_coordinate", b"z_coordinate")
-#: Keywords; VTK recognises them by how they begin, as types.
+#: Keywords, which VTK also recognises by their beginning.
 KEYWORDS = (
     *(*COMPONENTS, *CELLS, *COORDINATES, b"dataset", b"dimensions", b"extent", b"spacing"),
     *(b"origin", b"aspect_ratio", b"points", b"blanking", b"cell_types", b"point_data"),
@@ -54,19 +54,19 @@ KEYWORDS = (
 
 
 def check_vtk_legacy(path: Path) -> None:
-    """Refuse a file that ends early, or whose arrays do not fit into memory."""
+    """Raise a FieldError for a file that ends early, or does not fit into memory."""
     with path.open("rb") as stream:
         _Legacy(TextScanner(stream, path.stat().st_size)).check()
 
 
 class _Legacy:
-    """Goes through a file as VTK's reader does, and refuses what it cannot follow."""
+    """One pass through a file as by VTK's reader, which refuses unknown content."""
 
     def __init__(self, text: TextScanner) -> None:
         self._text = text
         self._binary = False
         self._version = 0
-        #: Points or cells that attributes are given for.
+        #: Number of points or cells of the current attributes.
         self._tuples = 0
         #: Bytes of all arrays in memory.
         self._total = 0
@@ -80,28 +80,28 @@ class _Legacy:
         self._text.line()  # the title
         self._binary = self._text.word().lower().startswith(b"binary")
         while word := self._text.word().lower():
-            keyword = next((known for known in KEYWORDS if word.startswith(known)), None)
+            keyword = next((k for k in KEYWORDS if word.startswith(k)), None)
             if keyword is None:
                 _refuse(word, "a keyword")
             self._section(keyword)
         check_memory(self._total, "the file")
 
     def _section(self, keyword: bytes) -> None:
-        """Check what a keyword declares."""
+        """Check the section of a keyword."""
         match keyword:
             case _ if keyword in CELLS:
                 self._cells(keyword)
             case _ if keyword in COMPONENTS:
-                what = keyword + b" " + self._text.word()
-                self._array(what, self._text.word(), self._tuples, COMPONENTS[keyword])
+                name = keyword + b" " + self._text.word()
+                self._array(name, self._text.word(), self._tuples, COMPONENTS[keyword])
             case b"point_data" | b"cell_data":
                 self._tuples = self._count(keyword)
             case b"scalars" | b"color_scalars" | b"texture_coordinates":
                 self._scalars(keyword)
             case b"lookup_table":
-                what = keyword + b" " + self._text.word()
+                name = keyword + b" " + self._text.word()
                 kind = b"unsigned_char" if self._binary else b"float"
-                self._array(what, kind, self._count(keyword), 4)
+                self._array(name, kind, self._count(keyword), 4)
             case b"field":
                 self._text.word()
                 for _ in range(self._count(keyword)):
@@ -144,20 +144,20 @@ class _Legacy:
 
     def _scalars(self, word: bytes) -> None:
         name = self._text.word()
-        what = word + b" " + name
+        label = word + b" " + name
         if word.startswith(b"color_scalars"):
             kind = b"unsigned_char" if self._binary else b"float"
-            self._array(what, kind, self._tuples, self._count(what))
+            self._array(label, kind, self._tuples, self._count(label))
         elif word.startswith(b"texture_coordinates"):
-            components = self._count(what)
-            self._array(what, self._text.word(), self._tuples, components)
+            components = self._count(label)
+            self._array(label, self._text.word(), self._tuples, components)
         else:
             kind, components = self._text.word(), 1
             if self._text.next_word().lower() != b"lookup_table":
-                components = self._count(what)
+                components = self._count(label)
             self._text.word()
             self._text.word()  # the table's name
-            self._array(what, kind, self._tuples, components)
+            self._array(label, kind, self._tuples, components)
 
     def _field_array(self) -> None:
         name = self._text.word()
@@ -168,47 +168,47 @@ class _Legacy:
         self._array(b"FIELD " + name, self._text.word(), tuples, components)
 
     def _array(self, name: bytes, kind: bytes, tuples: int, components: int) -> None:
-        """Go over the values of an array, and refuse one that has fewer than it declares."""
-        kind, what = kind.lower(), name.decode(errors="replace")
+        """Skip the values of an array, which must have as many as it declares."""
+        kind, label = kind.lower(), name.decode(errors="replace")
         values = tuples * components
         if kind.startswith((b"string", b"utf8_string", b"variant")):
-            self._words(kind, values, what)
+            self._words(kind, values, label)
         elif kind.startswith(b"bit"):
-            self._values(values, (values + 7) // 8, what)
+            self._values(values, (values + 7) // 8, label)
         else:
             sizes = next((size for start, size in TYPES.items() if kind.startswith(start)), None)
             if sizes is None:
-                _refuse(kind, f"the type of {what}")
+                _refuse(kind, f"the type of {label}")
             self._total += sizes[1] * values
-            self._values(values, sizes[0] * values, what)
+            self._values(values, sizes[0] * values, label)
         self._metadata_after(components)
 
-    def _values(self, values: int, nbytes: int, what: str) -> None:
+    def _values(self, values: int, nbytes: int, label: str) -> None:
         if not self._binary:
-            check_count(self._text.numbers(values), values, what, "numbers")
+            check_count(self._text.numbers(values), values, label, "numbers")
         elif nbytes:
             self._text.line()
-            check_count(self._text.skip(nbytes), nbytes, what)
+            check_count(self._text.skip(nbytes), nbytes, label)
 
-    def _words(self, kind: bytes, values: int, what: str) -> None:
-        """Go over texts: lines, or in binary files bytes whose number comes before them."""
+    def _words(self, kind: bytes, values: int, label: str) -> None:
+        """Skip texts: lines, or in binary files bytes after their number."""
         self._text.line()
         for number in range(values):
             if kind.startswith(b"variant") or not self._binary:
-                there = self._text.line() is not None
+                present = self._text.line() is not None
             else:
-                there = bool(head := self._text.read(1))
-                if there:
+                present = bool(head := self._text.read(1))
+                if present:
                     length = 2 ** (3 - (head[0] >> 6))
                     head += self._text.read(length - 1)
                     mask = (1 << (8 * length)) - 1 if length == 8 else (1 << (8 * length - 2)) - 1
                     size = int.from_bytes(head, "big") & mask
-                    check_count(self._text.skip(size), size, what)
-            if not there:
-                check_count(number, values, what, "texts")
+                    check_count(self._text.skip(size), size, label)
+            if not present:
+                check_count(number, values, label, "texts")
 
     def _metadata_after(self, components: int) -> None:
-        """Go over what VTK writes of an array after its values."""
+        """Skip the metadata that VTK writes after the values of an array."""
         if self._text.next_word().lower().startswith(b"metadata"):
             self._text.word()
             self._metadata(components)
@@ -226,10 +226,10 @@ class _Legacy:
             _refuse(word, "a whole number")
         return int(word)
 
-    def _count(self, what: bytes) -> int:
+    def _count(self, label: bytes) -> int:
         count = self._number()
         if count < 0:
-            msg = f"the file is damaged: {what.decode()} declares {count}; write or copy it again"
+            msg = f"the file is damaged: {label.decode()} declares {count}; write or copy it again"
             raise FieldError(msg)
         return count
 

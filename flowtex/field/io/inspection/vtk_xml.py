@@ -1,6 +1,6 @@
-"""VTK's XML files: their arrays are there, and as long as the pieces declare.
+"""VTK's XML files: their arrays are present, and as long as the pieces declare.
 
-VTK allocates what a piece declares before it reads the first value.
+VTK allocates the declared size before it reads the first value.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ SUFFIXES = (
 CHUNK_BYTES = 1 << 20
 _TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
-#: What a grid of a kind has, and the attribute that counts it.
+#: Kinds of cells, and the attributes with their counts.
 CELLS = {"Verts": "NumberOfVerts", "Lines": "NumberOfLines"}
 CELLS |= {"Strips": "NumberOfStrips", "Polys": "NumberOfPolys", "Cells": "NumberOfCells"}
 
 
 def is_xml(head: bytes) -> bool:
-    """Whether a file that begins so may be XML."""
+    """Return whether a file with this beginning may be XML."""
     return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
 def check_vtk_xml(path: Path) -> list[Path]:
-    """Return the files that one names, of a series or of blocks; refuse one that is cut.
+    """Return the files of a series or of blocks that a file names.
 
-    Its arrays have to fit into the file and into memory.
+    Raises a FieldError if its arrays do not fit into the file or into memory.
     """
     with path.open("rb") as stream:
         if b"\0" in stream.read(4):
@@ -64,7 +64,7 @@ def check_vtk_xml(path: Path) -> list[Path]:
 
 @dataclass
 class _Array:
-    """One array as it is declared; ``values`` is ``None`` where another array gives the count."""
+    """The declaration of an array; ``values`` is ``None`` where another array has the count."""
 
     name: str
     section: str
@@ -74,20 +74,20 @@ class _Array:
     offset: int
     time: str
     piece: int
-    #: Where its tag begins, and its content ends.
+    #: Begin of its tag, and end of its content.
     begin: int
     end: int = 0
 
 
 class _Document:
-    """What the elements of a file declare, up to the appended data."""
+    """The declarations of a file's elements, up to the appended data."""
 
     def __init__(self) -> None:
         self.arrays: list[_Array] = []
         self.members: list[str] = []
         self.header, self.compressed = 4, ""
         self.order: Literal["little", "big"] = "little"
-        #: Where the appended data begin, and whether they are in base64.
+        #: Begin of the appended data, and whether they are in base64.
         self.appended: int | None = None
         self.encoded = False
         #: Bytes of the arrays that VTK makes for the pieces of other files.
@@ -105,7 +105,7 @@ class _Document:
 
     @property
     def copies(self) -> int:
-        """How many times as large as its pieces the grid is that VTK makes."""
+        """Size of the grid that VTK makes, in multiples of its pieces."""
         return max(1, -(-self._whole // max(self._points, 1)))
 
     @property
@@ -122,8 +122,8 @@ class _Document:
         except _Appended:
             pass
         except expat.ExpatError as error:
-            what = "no element found", "unclosed token", "unclosed CDATA"
-            cut = any(word in str(error) for word in what)
+            endings = "no element found", "unclosed token", "unclosed CDATA"
+            cut = any(word in str(error) for word in endings)
             fault = "is truncated: its XML ends early" if cut else "is not valid XML"
             msg = f"the file {fault} ({error}); write or copy it again"
             raise FieldError(msg) from error
@@ -144,7 +144,7 @@ class _Document:
             self.members += filter(None, (attributes.get("file"), attributes.get("Source")))
         elif "WholeExtent" in attributes:
             self._whole = math.prod(_sides(attributes["WholeExtent"]))
-        elif tag == "Piece" and len(self._path) == 3:  # VTK reads those of the grid alone
+        elif tag == "Piece" and len(self._path) == 3:  # VTK reads only those of the grid
             self._piece, self._pieces = attributes, self._pieces + 1
             self._points += self._tuples("PointData") or 0
         elif tag in ("Coordinates", "Points"):
@@ -179,7 +179,7 @@ class _Document:
         )
 
     def _tuples(self, section: str, name: str = "") -> int | None:
-        """Return how many tuples an array of a section has; ``None`` where others say it."""
+        """Return the number of tuples of an array; ``None`` where another array has it."""
         count = {key: _whole(self._piece.get(key, "0")) for key in self._piece if key != "Extent"}
         if "Extent" in self._piece:
             sides = _sides(self._piece["Extent"])
@@ -206,22 +206,22 @@ class _Document:
         self._path.pop()
 
     def _stop(self) -> None:
-        """Note where the content of the array ends that was begun last."""
+        """Store the end of the content of the last array."""
         if self.arrays and not self.arrays[-1].end:
             self.arrays[-1].end = self._parser.CurrentByteIndex
 
 
 class _Appended(Exception):
-    """The elements are over: what follows is data."""
+    """The elements have ended, and data follow."""
 
 
 class _Contents:
-    """What a file has of the arrays that it declares."""
+    """The content of the arrays in a file."""
 
     def __init__(self, stream: BinaryIO, size: int, document: _Document) -> None:
         self._stream, self._size, self._document = stream, size, document
         self._base = size
-        #: Values of the connectivity of cells, and how many their offsets ask for.
+        #: Numbers of values of the connectivity of cells, and of those that their offsets need.
         self._joined: dict[tuple[int, str], dict[str, int]] = {}
         if document.appended is not None:
             tag = self._after_tag(document.appended)
@@ -229,31 +229,31 @@ class _Contents:
             self._base = tag + self._read(tag, CHUNK_BYTES).find(b"_") + 1
 
     def check(self, array: _Array) -> None:
-        """Refuse an array of which the file has less than is declared."""
+        """Raise a FieldError if the file has less of an array than declared."""
         if array.values == 0:
             return
-        what = f"the array {array.name}"
-        joins = array.section in CELLS and array.name in ("offsets", "connectivity")
+        label = f"the array {array.name}"
+        is_topology = array.section in CELLS and array.name in ("offsets", "connectivity")
         if array.format == "ascii":
             begin = self._after_tag(array.begin)
             self._stream.seek(begin)
             values = TextScanner(self._stream, array.end).numbers(array.values)
             tail = self._read(max(begin, array.end - 64), array.end - max(begin, array.end - 64))
-            last = int((re.findall(rb"\d+", tail) or [b"0"])[-1]) if joins else None
+            last = int((re.findall(rb"\d+", tail) or [b"0"])[-1]) if is_topology else None
         else:
-            block = _Block(self._stream, self._document, *self._place(array), what)
+            block = _Block(self._stream, self._document, *self._place(array), label)
             values = block.nbytes * 8 // array.bits
-            last = block.last(array.bits // 8) if joins else None
+            last = block.last(array.bits // 8) if is_topology else None
         if array.values is not None:
-            check_count(values, array.values, what, "values")
-        if joins and last is not None:
-            both = self._joined.setdefault((array.piece, array.section), {})
-            both[array.name] = last if array.name == "offsets" else values
-            if len(both) == 2:
-                check_count(both["connectivity"], both["offsets"], "the offsets of cells", "nodes")
+            check_count(values, array.values, label, "values")
+        if is_topology and last is not None:
+            ends = self._joined.setdefault((array.piece, array.section), {})
+            ends[array.name] = last if array.name == "offsets" else values
+            if len(ends) == 2:
+                check_count(ends["connectivity"], ends["offsets"], "the offsets of cells", "nodes")
 
     def _place(self, array: _Array) -> tuple[int, int, bool]:
-        """Return where an array begins, where it ends at the latest, and whether in base64."""
+        """Return the begin of an array, its latest end, and whether it is in base64."""
         if array.format == "appended":
             return self._base + array.offset, self._size, self._document.encoded
         begin = self._after_tag(array.begin)
@@ -270,7 +270,7 @@ class _Contents:
 
 
 class _Block:
-    """The bytes of one array: a header with their number, or with those of compressed blocks."""
+    """The bytes of one array, after a header with their number, or those of compressed blocks."""
 
     def __init__(
         self,
@@ -299,7 +299,7 @@ class _Block:
         check_memory(full, f"one block of {what}")
 
     def last(self, nbytes: int) -> int | None:
-        """Return the last value, an integer of this many bytes; ``None`` where it is not known."""
+        """Return the last value, an integer of this many bytes; ``None`` if unknown."""
         if self.nbytes < nbytes:
             return 0
         if not self._sizes:
@@ -309,7 +309,7 @@ class _Block:
             packed = self._read(head + sum(self._sizes[:-1]), self._sizes[-1], head)
             try:
                 data = zlib.decompressobj().decompress(packed, self._last_size)[-nbytes:]
-            except zlib.error:  # of which VTK tells
+            except zlib.error:  # VTK reports it
                 return None
         else:
             return None
@@ -323,16 +323,16 @@ class _Block:
         return np.frombuffer(data, kind).tolist()
 
     def _read(self, offset: int, count: int, head: int) -> bytes:
-        """Return bytes of the block, whose first ``head`` may be encoded on their own."""
+        """Return bytes of the block, whose first ``head`` may be encoded separately."""
         if not self._encoded:
             self._stream.seek(self._begin + offset)
             return self._stream.read(count)
         begin = self._begin
         if head:
-            own = -(-head // 3) * 4
+            encoded_head = -(-head // 3) * 4
             self._stream.seek(begin)
-            if self._sizes or b"=" in self._stream.read(own):
-                begin, offset = begin + own, offset - head
+            if self._sizes or b"=" in self._stream.read(encoded_head):
+                begin, offset = begin + encoded_head, offset - head
         first, stop = offset // 3 * 4, -(-(offset + count) // 3) * 4
         self._stream.seek(begin + first)
         text = self._stream.read(stop - first)
@@ -349,7 +349,7 @@ def _sides(extent: str) -> tuple[int, ...]:
 
 
 def _whole(word: str) -> int:
-    """Return a whole number as VTK reads it: 0 where it is none; no count is below 0."""
+    """Return a whole number as VTK reads it: 0 for other words."""
     match = re.match(r"\s*[+-]?\d{1,20}", word)
     return int(match.group()) if match else 0
 

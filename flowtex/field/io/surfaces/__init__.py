@@ -1,1 +1,1 @@
-"""Surfaces of triangles from meshes of any kind: as they are, cut out of a volume, or around it."""
+"""Surfaces of triangles from meshes of any kind: surfaces, cuts through a volume, or its hull."""

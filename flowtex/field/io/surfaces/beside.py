@@ -1,4 +1,4 @@
-"""Files of a surface that have no room for vectors, with these in a file beside them."""
+"""Formats of surfaces that cannot store vectors, with vectors in a file beside them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from flowtex.field.io.vectors import candidates
 
 #: Endings of such files.
 SUFFIXES = (".obj", ".ply", ".stl")
-#: Name that the vectors get.
+#: Name of the vectors.
 NAME = "velocity"
 
 
 def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
-    """Return the mesh of a file, or its time steps, with vectors, their name, and what is wrong.
+    """Return the mesh of a file, or its time steps, with vectors, their name, and the problem.
 
-    They are in ``NAME.npy``, in the order that the reader gives points or triangles; of an STL the
-    points may be three for each triangle, as it has them, or one for each place, as PyVista.
+    They are in ``NAME.npy``, in the order of points or triangles of the reader; points of an STL
+    may be three for each triangle, as in the file, or one for each place, as in PyVista.
     """
     import pyvista as pv
 
@@ -61,7 +61,7 @@ def _vectors(file: Path) -> AnyArray:
         msg = "the file has no vectors, because its format cannot store them"
         raise FieldError(msg)
     try:
-        # Mapped first: NumPy allocates what the header declares, whether the file has it or not.
+        # Mapped first: NumPy allocates the declared size even if the file is shorter.
         vectors = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, OSError) as error:
         msg = f"{path.name} is not a NumPy array ({error})"

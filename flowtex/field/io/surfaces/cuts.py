@@ -1,4 +1,4 @@
-"""The surface that is drawn of a mesh: its own, a plane through a volume, or a contour of it.
+"""The drawn surface of a mesh: its surface, a plane through a volume, or a contour of it.
 
 A cut is given as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or as numbers.
 """
@@ -9,7 +9,7 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,12 +21,15 @@ from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
 from flowtex.field.triangles.topology import needle_edges
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 _NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
-#: Flags of VTK's ghost arrays for cells that are not drawn: those of other pieces, too, for they
-#: would lie upon these.
+#: Flags of VTK's ghost arrays for cells that are not drawn, also of other pieces, which would
+#: coincide with these.
 _NOT_DRAWN = 1 | 8 | 32
-#: Point array that says what is hidden, for as long as filters are at work.
+#: Point array that marks hidden points during filters.
 HIDDEN = "flowtex hidden"
 
 Vector = tuple[float, float, float]
@@ -40,13 +43,13 @@ class Slice:
     point: Vector | None
     text: str
 
-    def faults(self, mesh: Any) -> list[str]:
-        """Nothing can be wrong before it is tried."""
+    def faults(self, mesh: pv.DataSet) -> list[str]:
+        """Return no faults: a plane is tested by the cut."""
         return []
 
-    def of(self, mesh: Any) -> Any:
+    def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the section of a volume."""
-        # Polygons would come apart where some of their points are as good as one.
+        # Polygons would be torn where some of their points nearly coincide.
         middle = self.point or mesh.center
         cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
         if not cut.n_cells:
@@ -67,8 +70,8 @@ class Contour:
     value: float
     text: str
 
-    def faults(self, mesh: Any) -> list[str]:
-        """Raise the error for an unknown array."""
+    def faults(self, mesh: pv.DataSet) -> list[str]:
+        """Return the fault of an unknown array."""
         names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
         if self.name in names:
             return []
@@ -81,7 +84,7 @@ class Contour:
             f"component{hint}; {expected}"
         ]
 
-    def of(self, mesh: Any) -> Any:
+    def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the contour in a volume whose array is on points."""
         cut = mesh.contour([self.value], scalars=self.name)
         if not cut.n_cells:
@@ -107,65 +110,65 @@ def find_cut(slice: Any, contour: Any) -> Cut | None:
     return None if contour is None else _contour(contour)
 
 
-def _slice(given: Any) -> Slice:
+def _slice(raw: Any) -> Slice:
     normal: Any = None
     point: Any = None
-    if isinstance(given, str):
-        if match := _AXIS.fullmatch(given):
+    if isinstance(raw, str):
+        if match := _AXIS.fullmatch(raw):
             axis = match["axis"].lower()
             normal, at = _NORMALS[axis], match["at"]
             point = None if at is None else [float(a == axis) * _number(at) for a in "xyz"]
         else:
-            first, through, second = given.partition("through")
+            first, through, second = raw.partition("through")
             normal = first.split(",")
             point = second.split(",") if through else None
-    elif isinstance(given, (list, tuple, np.ndarray)):
-        normal, point = given if len(given) == 2 else (given, None)
+    elif isinstance(raw, (list, tuple, np.ndarray)):
+        normal, point = raw if len(raw) == 2 else (raw, None)
         normal = _NORMALS.get(normal, normal) if isinstance(normal, str) else normal
-    way, place = _vector(normal), None if point is None else _vector(point)
-    if way is None or not any(way) or (point is not None and place is None):
+    direction, place = _vector(normal), None if point is None else _vector(point)
+    if direction is None or not any(direction) or (point is not None and place is None):
         msg = (
-            f'slice is {given!r}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
+            f'slice is {raw!r}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
             'with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three '
             "numbers each"
         )
         raise FieldError(msg)
-    return Slice(way, place, repr(given))
+    return Slice(direction, place, repr(raw))
 
 
-def _contour(given: Any) -> Contour:
-    pair = given.rpartition("=")[::2] if isinstance(given, str) else given
+def _contour(raw: Any) -> Contour:
+    pair = raw.rpartition("=")[::2] if isinstance(raw, str) else raw
     if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
         name, value = pair[0].strip(), _number(pair[1])
         if name and math.isfinite(value):
-            return Contour(name, value, repr(given))
-    msg = f'contour is {given!r}; expected an array and its value, as in contour="pressure=101325"'
+            return Contour(name, value, repr(raw))
+    msg = f'contour is {raw!r}; expected an array and its value, as in contour="pressure=101325"'
     raise FieldError(msg)
 
 
-def _vector(given: Any) -> Vector | None:
+def _vector(raw: Any) -> Vector | None:
     try:
-        x, y, z = (_number(number) for number in given)
+        x, y, z = (_number(number) for number in raw)
     except (TypeError, ValueError):
         return None
     return (x, y, z) if math.isfinite(x + y + z) else None
 
 
-def _number(given: Any) -> float:
+def _number(raw: Any) -> float:
     try:
-        return float(given)
+        return float(raw)
     except (TypeError, ValueError):
         return math.nan
 
 
-def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
-    """Faults in a cut of a mesh, and in a mesh that has no surface."""
+def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
+    """Return faults in a cut of a mesh, and in a mesh that has no surface."""
     dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
         return ["the mesh has no cells; check the file or filter that made it"]
     if dimension < 2:
-        what = ("points", "lines")[dimension]
-        return [f"the mesh has only {what}; expected a surface, or a volume to cut"]
+        kind = "lines" if dimension else "points"
+        return [f"the mesh has only {kind}; expected a surface, or a volume to cut"]
     if cut is None:
         return []
     if dimension == 2:
@@ -179,12 +182,12 @@ def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
 
 def surface_of(
     mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
-) -> tuple[Any, Indices]:
+) -> tuple[pv.PolyData, Indices]:
     """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
 
-    Arrays on the cells of a volume that is cut come to its points before. :data:`HIDDEN` is above
-    zero at points that depend on hidden ones. ``tell`` issues a notice about what was chosen
-    automatically; :func:`cut_faults` returned none before.
+    Arrays on the cells of a volume are interpolated to its points before a cut. :data:`HIDDEN` is
+    above zero at points that depend on hidden ones. ``tell`` issues a notice about automatic
+    choices; :func:`cut_faults` returned none before.
     """
     import pyvista as pv
 
@@ -193,10 +196,10 @@ def surface_of(
         kinds = mesh.distinct_cell_types
         flat = cut is None and any(kind.dimension == 2 for kind in kinds)
         if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
-            what = "cells of two dimensions are" if flat else "outer surface of the volume is"
-            notify(f"the {what} drawn; to cut the volume, use {_examples(mesh)}")
-        meant = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
-        drawn: Any = np.isin(mesh.celltypes, meant)
+            text = "cells of two dimensions are" if flat else "outer surface of the volume is"
+            notify(f"the {text} drawn; to cut the volume, use {_examples(mesh)}")
+        drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
+        drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
         mesh = cut.of(_exact(_on_points(mesh, vectors)))
@@ -208,16 +211,16 @@ def surface_of(
         mesh = mesh.triangulate()
     triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
     if cut is not None:
-        # Where a plane goes through the corners of cells, there are triangles without area. Those
-        # with a short side tell which points are as good as one; callers need not know the others.
+        # A plane through the corners of cells has triangles without area. Those with a short side
+        # show which points nearly coincide; others are left out.
         points = np.asarray(mesh.points, dtype=np.float64)
-        told = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
-        triangles = triangles[told]
+        kept = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
+        triangles = triangles[kept]
     return mesh, triangles
 
 
-def _examples(mesh: Any) -> str:
-    """Return how the volume may be cut: across its shortest side, or by one of its arrays."""
+def _examples(mesh: pv.DataSet) -> str:
+    """Return examples of cuts of a volume: across its shortest side, and by one of its arrays."""
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
@@ -226,7 +229,7 @@ def _examples(mesh: Any) -> str:
     return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
 
 
-def _shown_cells(mesh: Any) -> Any:
+def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
     """Return a mesh without its hidden cells, and with the hidden points marked."""
     hidden = hidden_nodes(mesh)
     ghosts = mesh.cell_data.get("vtkGhostType")
@@ -245,8 +248,8 @@ def _shown_cells(mesh: Any) -> Any:
     return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
 
 
-def _exact(mesh: Any) -> Any:
-    """Return a volume in double precision: in single, slivers that VTK cuts off face anywhere."""
+def _exact(mesh: Any) -> pv.DataSet:
+    """Return a volume in double precision; in single, slivers of a cut have random normals."""
     import pyvista as pv
 
     if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
@@ -256,8 +259,8 @@ def _exact(mesh: Any) -> Any:
     return mesh
 
 
-def _on_points(mesh: Any, vectors: MeshArray) -> Any:
-    """Return a volume with its arrays on its points; the mesh may be changed."""
+def _on_points(mesh: pv.DataSet, vectors: MeshArray) -> pv.DataSet:
+    """Return a volume with its arrays on its points, perhaps the changed mesh."""
     chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
     names = [
         a.name

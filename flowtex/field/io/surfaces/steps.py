@@ -18,13 +18,13 @@ from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, value
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
-#: Usual steps in a gap that is told of.
+#: Length of a gap in usual steps from which on a notice is issued.
 GAP_STEPS = 8
 
 
 @dataclass(kw_only=True)
 class SheetStep:
-    """The arrays of what is drawn at one time: positions, vectors, scalars, and what is shown."""
+    """The drawn arrays at one time: positions, vectors, scalars, and the mask of shown nodes."""
 
     time: float | None
     points: Floats
@@ -35,17 +35,19 @@ class SheetStep:
 
 def stacked(sheets: Sequence[SheetStep], times: ArrayLike | None) -> dict[str, Any]:
     """Return arrays of all steps, with the scalars that each of them has."""
-    known = [sheet.time for sheet in sheets if sheet.time is not None]
-    if times is None and len(known) == len(sheets):
-        times = known
-        _tell_gaps(known)
+    moments = [sheet.time for sheet in sheets if sheet.time is not None]
+    if times is None and len(moments) == len(sheets):
+        times = moments
+        _notify_gaps(moments)
     names = []
     for name in sheets[0].scalars:
         lacking = [n for n, sheet in enumerate(sheets) if name not in sheet.scalars]
         if not lacking:
             names.append(name)
             continue
-        when = f"time {known[lacking[0]]:g}" if len(known) == len(sheets) else f"step {lacking[0]}"
+        when = (
+            f"time {moments[lacking[0]]:g}" if len(moments) == len(sheets) else f"step {lacking[0]}"
+        )
         notify(f"{name!r} is missing at {when}, so it is not read")
     return {
         "points": sheets[0].points,
@@ -56,8 +58,8 @@ def stacked(sheets: Sequence[SheetStep], times: ArrayLike | None) -> dict[str, A
     }
 
 
-def _tell_gaps(times: Sequence[float]) -> None:
-    """Tell of a time to the next that is many times the usual one, as after initial values."""
+def _notify_gaps(times: Sequence[float]) -> None:
+    """Issue a notice about a step that is much longer than usual, as after initial values."""
     steps = np.diff(times)
     if len(steps) > 1 and steps.max() > GAP_STEPS * (usual := float(np.median(steps))) > 0:
         n = int(np.argmax(steps))
@@ -78,7 +80,7 @@ class _SurfaceStep(SheetStep):
 def read_surfaces(
     steps: Iterable[TimeStep], vectors: str | None, cut: Cut | None, times: ArrayLike | None
 ) -> dict[str, Any]:
-    """Read what :meth:`FlowField.from_pyvista` needs from meshes at one or several times."""
+    """Read the arrays for :meth:`FlowField.from_pyvista` from meshes at one or several times."""
     sheets: list[_SurfaceStep] = []
     chosen: MeshArray | None = None
     for step in steps:
@@ -93,7 +95,7 @@ def read_surfaces(
 
 
 def _check_same(first: _SurfaceStep, sheet: _SurfaceStep, step: TimeStep) -> None:
-    """Refuse a step whose surface is another one."""
+    """Raise a FieldError for a step with another surface."""
     if first.points.shape != sheet.points.shape or not np.array_equal(
         first.triangles, sheet.triangles
     ):
@@ -134,8 +136,8 @@ def _surface_step(
             values = values.reshape(-1)
         if array.where == "points":
             return values
-        known = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
-        return nodal_means(values[None], triangles, areas, len(points), known)[0]
+        finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+        return nodal_means(values[None], triangles, areas, len(points), finite)[0]
 
     shown = np.asarray(surface.point_data[HIDDEN]) <= 0
     sheet = _SurfaceStep(
@@ -143,6 +145,6 @@ def _surface_step(
     )
     for array in arrays:
         if array != vectors:
-            # Points come first in the catalogue, and win over cells of the same name.
+            # Points come first in the catalogue, and take precedence over cells of the same name.
             sheet.scalars.setdefault(array.name, at_nodes(array))
     return sheet
