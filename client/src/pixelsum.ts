@@ -124,10 +124,10 @@ function greyOf(value: number, contrast: number, c: Constants): number {
 export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum | null {
   const { header } = at.scene;
   const { geometry, slices, shaders } = header;
-  if (header.paper || isMoving(header, settings)) return null;
+  if (header.paper || isMoving(header, settings, true)) return null;
   const c = constantsOf(shaders.fragment);
   const focus = camera.state.focal_point;
-  const still = { eye: camera.eye, between: at.moment[2], time: slices.times[0], clock: 0 };
+  const still = { eye: camera.eye, between: at.moment[2], time: slices.times[0], clock: 0, still: true };
   const view = { ...still, focus, anchor: [0, 0, 0] as Vector, density: 1, pixel: 1 };
   const u = uniforms(header, settings, view);
   const grain = grainAt(at, settings, camera, rows);

@@ -248,7 +248,7 @@ export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, r
     whole.push(points.slice(0, end < 0 ? undefined : end) as Vector[]);
   }
   const set = Number(settings.samples);
-  const samples = isMoving(scene.header, settings) ? 2 * set - 1 : set;
+  const samples = isMoving(scene.header, settings, true) ? 2 * set - 1 : set;
   const count = sides === 2 ? Math.floor(samples / 2) : samples - 1;
   const step = Number(settings.spacing) * grainAt(at, settings, camera, rows);
   const joined = (reach: number) => {

@@ -288,7 +288,7 @@ export class ProgressiveRenderer {
   /** As many times more each sample costs while grains move. */
   private factor(samples: number): number {
     const { settings, player } = this.viewer;
-    return settings.motion !== "off" || player.varies ? motionFactor(samples) : 1;
+    return settings.motion !== "off" || (player.varies && player.playing) ? motionFactor(samples) : 1;
   }
 
   /** Draw, and learn what it costs. */

@@ -13,6 +13,8 @@ export interface ViewState {
   between: number;
   time: number;
   clock: number;
+  /** Whether the grains of a field that varies stand still, as where no time goes by. */
+  still?: boolean;
   /** Pixels that are drawn along one that the settings speak of. */
   density: number;
   /** Length that a pixel drawn covers at the focus. */
@@ -52,7 +54,7 @@ export function uniforms(
     u_unit: slices.unit,
     u_rateLayer: slices.count - 1,
     u_cell: slices.cell,
-    u_samples: isMoving(header, settings) ? 2 * s.samples - 1 : s.samples,
+    u_samples: isMoving(header, settings, view.still) ? 2 * s.samples - 1 : s.samples,
     u_spacing: s.spacing,
     u_grain: s.grain * view.density,
     u_kernel: constants.kernels.indexOf(kernel),
@@ -76,9 +78,9 @@ export function uniforms(
 }
 
 /** Whether the grains change in time, which is a variant of the shader. */
-export function isMoving(header: Header, settings: Settings): boolean {
+export function isMoving(header: Header, settings: Settings, still = false): boolean {
   const streams = settings.motion !== "off" && !isSignFree(header);
-  return !header.paper && (header.slices.steps > 1 || streams);
+  return !header.paper && (streams || (header.slices.steps > 1 && !still));
 }
 
 /** Whether the texture is one of streaklets, which is a variant too. */
@@ -110,10 +112,10 @@ export function isNear(header: Header, settings: Settings, view: ViewState): boo
 }
 
 /** Names that are defined before the shaders' text at these settings. */
-export function variantOf(header: Header, settings: Settings, isClose: boolean): string[] {
+export function variantOf(header: Header, settings: Settings, isClose: boolean, still: boolean): string[] {
   const chosen = {
     FLOWTEX_CELLS: isClose,
-    FLOWTEX_MOVING: isMoving(header, settings),
+    FLOWTEX_MOVING: isMoving(header, settings, still),
     FLOWTEX_SPARSE: isSparse(header, settings),
   };
   return Object.entries(chosen).flatMap(([name, holds]) => (holds ? [name] : []));

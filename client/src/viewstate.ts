@@ -41,6 +41,7 @@ export function viewState({ header, camera, anchor, player, rows }: Look, shown:
     between: shown[2],
     time: player.timeOf(shown),
     clock: player.clock,
+    still: !player.playing,
     density,
     pixel: (2 * camera.height) / Math.max(rows * density, 1),
   };

@@ -120,10 +120,10 @@ export class WebGL2Painter implements Painter {
     return shown && scene.isMade(shown.slice(0, 2)) ? shown : null;
   }
 
-  /** The program that draws at the present settings, from near or from afar. */
-  private program(header: Header, isClose = this.isClose(header)): Program {
+  /** The program that draws at the present settings, from near or from afar, also while no time goes by. */
+  private program(header: Header, isClose = this.isClose(header), still = !this.view.player.playing): Program {
     const { vertex, fragment } = header.shaders;
-    const variant = variantOf(header, this.view.settings, isClose);
+    const variant = variantOf(header, this.view.settings, isClose, still);
     return this.view.graphics.programs.get(vertex, fragment, ...variant);
   }
 
@@ -153,7 +153,8 @@ export class WebGL2Painter implements Painter {
     const isComplete = !view.sharp && this.renderer.draw(program, shown, until);
     if (isComplete) {
       void scene.pickers; // the pointer asks for them next,
-      if (header.slices.critical) this.program(header, true); // and the wheel for this
+      if (header.slices.critical) this.program(header, true); // the wheel for this,
+      if (view.player.varies) this.program(header, this.isClose(header), false); // and the player for this
     }
     view.painted(isComplete);
   }

@@ -198,7 +198,7 @@ def probe(
     else:
         camera = pixel
     before, after, between = view.moment
-    state = ViewState(between=between, clock=clock, density=density)
+    state = ViewState(between=between, still=True, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
     field_values = values_at(view.field, place.index, view.time)

@@ -735,20 +735,21 @@ subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings)
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
 geometry.columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.
 two_sided||signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
-header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(
-kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.show_level,
-u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.
-extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.
-sides,u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):
-{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.
-slices.steps>1||streams)}function isSparse(header,settings){return!header.paper&&settings.texture==="streaklets"}function hasArrows(header,settings){
-return Number(settings.arrows)>0&&!isSignFree(header)&&!header.paper}function arrowDistance({constants},{arrows}){return constants.
-arrows.least*Math.max(Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,
-constants}=header,s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?
-Math.max(gap,0)/Math.hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.
-extent/s.resolution;return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){
-let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.
-entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
+header,settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.
+kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
+show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,
+u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length===
+"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&!isSignFree(
+header);return!header.paper&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.paper&&
+settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(header)&&
+!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),constants.
+arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(
+...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.
+eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(s.samples/
+2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={FLOWTEX_CELLS:isClose,
+FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(chosen).flatMap(
+([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
 (view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
 geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,
@@ -806,10 +807,10 @@ directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]
 position):slope,velocity=scale2(unit(along2),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
 layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
-points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
-2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
-ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,
+count2=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{
+let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(
+PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
 let element=document.createElementNS(SVG2,tag);for(let[name,value]of Object.entries(attributes))element.setAttribute(name,
 `${value}`);return element}function fitting2(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,
 -y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(
@@ -1491,7 +1492,7 @@ return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.ra
 anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
 frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
 return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
-timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+timeOf(shown),clock:player.clock,still:!player.playing,density,pixel:2*camera.height/Math.max(rows*density,1)}}function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -1546,41 +1547,41 @@ viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCam
 state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
 geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
 now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
-player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
-now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
-this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
-layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
-warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].
-map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;
-let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
-region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
-let{graphics,viewer}=this,{camera}=viewer,{scene}=this.content;if(!camera||!scene)return;let gl=graphics.context,{width,
-height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&
-(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(
-width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),
-gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(
-gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?0:1),gl.clear(gl.COLOR_BUFFER_BIT|
-gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height,around2={camera,anchor:view.
-anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),
-bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(program,this.values(layer,scene,camera,view,samples,
-draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,layer=>this.values(layer,scene,
-camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,
-shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{
-width,height},values){let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,
-settings))return;let seen={...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.
-share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));
-if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);
-arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
-let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
-null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
-noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
-u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,rows.before],u_colour:header.colour,
-u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.
-geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
-{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
-pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
-w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,rows*height/h),pen.drawImage(canvas,0,first,w,rows,
-0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+player.varies&&player.playing?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();
+let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.
+height?this.fixed.strip:this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){
+let triangles=this.layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);
+if(program.warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[
+width,height].map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=
+triangles;let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(
+program,shown,region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=
+!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,{camera}=viewer,{scene}=this.content;if(!camera||
+!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.
+height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-
+top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
+height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
+gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?
+0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.
+height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;
+bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(program,this.values(
+layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,
+layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.
+density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(
+4))}drawArrows(shown,view,{width,height},values){let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||
+!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),planes:camera.planes};for(let[layer,
+placed]of scene.arrows.share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(
+header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(
+shown[0],shown[1]);arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({
+header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get(
+"noise")?.shape??null,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{
+...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
+header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,
+rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?
+1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;
+let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=
+w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.
+drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,rows*height/h),pen.drawImage(
+canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1996,20 +1997,21 @@ marks=view.requests.hasMarks?scene.marks.lacking(view.settings,moment):[];return
 wantMarks(marks),view.root.dataset.lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,isMade,
 this.renderer.leavesOut,marks.length>0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.
 slice(0,2))!==String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),
-shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
-shaders,variant=variantOf(header,this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
-let{view}=this;if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.
-header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
-{graphics,header}=view;if(graphics.isLost||!graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.
-next=[],view.advance(now);let shown=this.available(until);view.camera||view.place();let program=this.program(header);if(scene.
-prepare(),!shown||!view.camera)return;if(program.error)return view.panel.fail("The shader does not compile with this gra\
-phics driver.",program.error);if(!program.ready||!scene.isReady(view.settings))return view.request();let isComplete=!view.
-sharp&&this.renderer.draw(program,shown,until);isComplete&&(scene.pickers,header.slices.critical&&this.program(header,!0)),
-view.painted(isComplete)}get canPick(){let{scene,view}=this,{graphics}=view;return!!scene&&!graphics.isLost&&!!graphics.
-gl&&scene.pickers.every(({ready})=>ready)}find(x,y){let{tiles,shown,view}=this,{camera,canvas}=view;if(!tiles?.layers.length||
-!camera||!shown)return null;let{anchor}=view.view(shown,1),found=pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
-canvas},x,y),{marks}=tiles.layers[0].scene;if(found){let at={place:[x,y],position:found.point.position,height:view.root.
-clientHeight};found.point.mark=marks.at(at,camera,view.settings,shown)}return found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header),still=!this.view.player.playing){
+let{vertex,fragment}=header.shaders,variant=variantOf(header,this.view.settings,isClose,still);return this.view.graphics.
+programs.get(vertex,fragment,...variant)}isClose(header){let{view}=this;if(!view.camera)return!1;let seen=view.view([0,0,
+0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(
+part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,{graphics,header}=view;if(graphics.isLost||
+!graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.next=[],view.advance(now);let shown=this.
+available(until);view.camera||view.place();let program=this.program(header);if(scene.prepare(),!shown||!view.camera)return;
+if(program.error)return view.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.
+ready||!scene.isReady(view.settings))return view.request();let isComplete=!view.sharp&&this.renderer.draw(program,shown,
+until);isComplete&&(scene.pickers,header.slices.critical&&this.program(header,!0),view.player.varies&&this.program(header,
+this.isClose(header),!1)),view.painted(isComplete)}get canPick(){let{scene,view}=this,{graphics}=view;return!!scene&&!graphics.
+isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}find(x,y){let{tiles,shown,view}=this,{camera,canvas}=view;if(!tiles?.
+layers.length||!camera||!shown)return null;let{anchor}=view.view(shown,1),found=pickedPoint({layers:tiles.layers,camera,
+moment:shown,anchor,canvas},x,y),{marks}=tiles.layers[0].scene;if(found){let at={place:[x,y],position:found.point.position,
+height:view.root.clientHeight};found.point.mark=marks.at(at,camera,view.settings,shown)}return found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};camera=null;sharp=!1;frames=0;isVisible=!0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
 this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.
@@ -2136,11 +2138,11 @@ sign*by),weight}),step=stepAt(at(2*lag-from),bend)}return result2}function share
 c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
 d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
 Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
-shaders}=header;if(header.paper||isMoving(header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.
-state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,
-pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(
-at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],sparse2=isSparse(header,
-settings),set=Number(u.u_samples),whole=u.u_sides===2?Math.floor(set/2):set-1,sine=sparse2&&!isSignFree(header)?partingAt(
+shaders}=header;if(header.paper||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.
+state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,anchor:[0,0,
+0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*
+grain,layers=layersAt(at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],sparse2=isSparse(
+header,settings),set=Number(u.u_samples),whole=u.u_sides===2?Math.floor(set/2):set-1,sine=sparse2&&!isSignFree(header)?partingAt(
 at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.
 max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,
 side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[

@@ -284,27 +284,27 @@ size,timers:r.size}}end(){this.controller.abort(),this.globalListeners=0;for(let
 observers.clear();for(let e of this.timers)clearTimeout(e);this.timers.clear()}};function Rn(a,e,t,r=null){let{geometry:n,slices:s,constants:i}=a,o=e,c=fe(a),l=2**(Math.floor(Math.log2(n.extent))-i.noiseDoublings),
 h=t.eye[3],m=F(n.frame,T(t.eye,O(n.center,h))),u=Ln(a,e),p=u?"ramp":o.kernel,f=c&&p==="ramp"?"hann":p;return{u_eye:[...T(
 m,O(t.anchor,h)),h],u_between:t.between,u_slicesSize:[n.columns.size,n.rows.size],u_deepest:n.levels,u_lags:s.lags,u_lagCount:s.
-lags.length,u_sides:o.two_sided||c||u?s.sides:1,u_unit:s.unit,u_rateLayer:s.count-1,u_cell:s.cell,u_samples:st(a,e)?2*o.
-samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
+lags.length,u_sides:o.two_sided||c||u?s.sides:1,u_unit:s.unit,u_rateLayer:s.count-1,u_cell:s.cell,u_samples:st(a,e,t.still)?
+2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
 contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...ni(a,o,
 t),...si(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:br(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
-d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?ai(a.paper,o,r,t.density):{}}}function st(a,e){let t=e.motion!==
-"off"&&!fe(a);return!a.paper&&(a.slices.steps>1||t)}function Ln(a,e){return!a.paper&&e.texture==="streaklets"}function Le(a,e){
-return Number(e.arrows)>0&&!fe(a)&&!a.paper}function br({constants:a},{arrows:e}){return a.arrows.least*Math.max(Number(
-e),a.arrows.mostDense)}function at(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...T(t.eye,r.center))-
-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...T(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:r.extent/i.resolution;
-return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function kn(a,e,t){let r={FLOWTEX_CELLS:t,FLOWTEX_MOVING:st(
-a,e),FLOWTEX_SPARSE:Ln(a,e)};return Object.entries(r).flatMap(([n,s])=>s?[n]:[])}var Pn=(a,e)=>a-e*Math.floor(a/e);function ni(a,e,t){
-let{geometry:r,slices:n,constants:s}=a,i=n.steps>1,o=!i&&e.speed_in==="pixels",c=i?Pn((t.time-n.times[0])/(r.extent/n.pace),
-s.mostTurns):Pn(t.clock/e.period,1),l=i?r.extent:e.speed*e.period,h=Math.floor(c/s.clockStep)*s.clockStep;return{u_clock:[
-h,c-h],u_travel:l*(o?t.density:1),u_travelInPixels:o,u_travelBySpeed:i||e.motion==="speed",u_wave:s.wavePixels*t.density}}
-function si(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=F(s,T(e.focus,i)),
-c=2**(r-n)-1,l=2**n,h=o.map(p=>R(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*l);return{
-u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:u,u_noiseRestOdd:m.map((p,f)=>p-u[f])}}
-function ai(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),u_noiseGrain:a.grain,
-u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[Number(a.repeat[1]),
-Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function yr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.
-length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,R(r,0,1)]}var ii=.5,oi=6,ci=60,li=.5,it=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?ai(a.paper,o,r,t.density):{}}}function st(a,e,t=!1){let r=e.
+motion!=="off"&&!fe(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function Ln(a,e){return!a.paper&&e.texture==="streaklet\
+s"}function Le(a,e){return Number(e.arrows)>0&&!fe(a)&&!a.paper}function br({constants:a},{arrows:e}){return a.arrows.least*
+Math.max(Number(e),a.arrows.mostDense)}function at(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...T(t.
+eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...T(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:
+r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function kn(a,e,t,r){let n={FLOWTEX_CELLS:t,
+FLOWTEX_MOVING:st(a,e,r),FLOWTEX_SPARSE:Ln(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}var Pn=(a,e)=>a-e*Math.
+floor(a/e);function ni(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=n.steps>1,o=!i&&e.speed_in==="pixels",c=i?Pn((t.time-
+n.times[0])/(r.extent/n.pace),s.mostTurns):Pn(t.clock/e.period,1),l=i?r.extent:e.speed*e.period,h=Math.floor(c/s.clockStep)*
+s.clockStep;return{u_clock:[h,c-h],u_travel:l*(o?t.density:1),u_travelInPixels:o,u_travelBySpeed:i||e.motion==="speed",u_wave:s.
+wavePixels*t.density}}function si(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,
+o=F(s,T(e.focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>R(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.
+floor(p/l)*l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:u,u_noiseRestOdd:m.
+map((p,f)=>p-u[f])}}function ai(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),
+u_noiseGrain:a.grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[
+Number(a.repeat[1]),Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function yr(a,e){if(a.length<2)return[0,0,
+0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,R(r,0,1)]}var ii=.5,oi=6,ci=60,li=.5,it=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return yr(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
@@ -353,7 +353,7 @@ want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([,n])=>n);if(
 null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){this.tiles.stop(),this.wholes.stop(),this.marks.
 stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=F(o.
 frame,T(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(T(h,t))?u(h)?h:[0,
-0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,density:i,pixel:2*e.height/Math.max(n*i,1)}}var yi=-1e9;function mt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);for(let r=0;r<
+0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var yi=-1e9;function mt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);for(let r=0;r<
 a.length;r+=1)t[r]=a[r]-e[r%3];return t}function Bn(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
 for(let s of a)t[r++]=s,t[r++]=n;return t}function ut({shape:a,rows:e,columns:t}){let r=(n,{before:s,size:i})=>Array.from(
 {length:n},(o,c)=>(c+s+.5)/i);return Bn(r(a[1],t),r(a[0],e))}function Hn({alongI:a,alongJ:e}){return Bn(a,e)}function pt(a,e,t){
@@ -422,32 +422,32 @@ rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,Ar(t
 (this.lastCamera=new pe(e.state,e.limits,e.flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.
 content;if(!r?.header.geometry.planar||!t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,
 s=T(t.state.focal_point,n.center),i=F(n.frame,s),[o,c]=[e,t].map(l=>G(n,l,i));return Qn(o,c,this.canvas.width,this.canvas.
-height)}factor(e){let{settings:t,player:r}=this.viewer;return t.motion!=="off"||r.varies?cn(e):1}timed(e,t,r,n){let s=performance.
-now();n();let i=performance.now()-s,o=t.width*t.rows,c=this.factor(r),l=t.rows<t.height?this.fixed.strip:this.fixed.draft;
-e.price=ln(e.price,i,l,o,r,c)}warm(e,t){let r=this.layers.reduce((m,u)=>m+u.triangles,0),n=(r+ts)/(this.triangles+ts);if(e.
-warm&&n<es&&n>1/es)return;let{width:s,height:i}=this.canvas,o={width:s,height:i,top:0,rows:1},[c,l]=[s,i].map(m=>Math.max(
-Math.round(m*ur),1));e.warm||this.render(e,t,o,1),this.triangles=r;let h=[o,{width:c,height:l,top:0,rows:l}].map(m=>{let u=performance.
-now();return this.render(e,t,m,1),R(performance.now()-u,.5,500)});this.fixed={strip:h[0],draft:h[1]},e.warm=!0}render(e,t,r,n,s=!1){
-let{graphics:i,viewer:o}=this,{camera:c}=o,{scene:l}=this.content;if(!c||!l)return;let h=i.context,{width:m,height:u,top:p,
-rows:f}=r,d=o.view(t,o.ratio*u/this.canvas.height),{canvas:g}=i;g.width<m&&(g.width=m),g.height<u&&(g.height=u);let y=u-
-p-f;s?i.bindSmooth(m,f):h.bindFramebuffer(h.FRAMEBUFFER,null),h.viewport(0,s?-y:0,m,u),h.enable(h.SCISSOR_TEST),h.scissor(
-0,s?0:y,m,f),h.enable(h.DEPTH_TEST),h.depthFunc(h.LESS),h.disable(h.BLEND),h.disable(h.CULL_FACE);let[b,v,x]=l.header.background??
-[1,1,1];h.clearColor(b,v,x,o.isClear?0:1),h.clear(h.COLOR_BUFFER_BIT|h.DEPTH_BUFFER_BIT);let w=n!==o.settings.samples||u!==
-this.canvas.height,M={camera:c,anchor:d.anchor,width:m,height:u,ratio:o.ratio};l.earth.drawGround(M);let{bodies:A}=l;A.draw(
-M,"opaque"),A.seeThrough(()=>{for(let E of this.layers)i.programs.use(e,this.values(E,l,c,d,n,w)),E.draw(t[0],t[1],d.anchor,
-!0)}),this.drawArrows(t,d,r,E=>this.values(E,l,c,d,n,w)),A.draw(M,"clear"),l.marks.draw({...M,ratio:d.density},o.settings,
-t),s&&i.copySmooth(m,f),h.readPixels(0,0,1,1,h.RGBA,h.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(e,t,{width:r,height:n},s){
-let{camera:i,settings:o}=this.viewer,{scene:c}=this.content;if(!c||!i||!Le(c.header,o))return;let l={...i.sight(n/t.density),
-planes:i.planes};for(let[h,m]of c.arrows.share(l,o,this.layers)){let{arrows:u,header:p}=h,f=u.program(o,at(p,o,t));if(!f||
-!m.length)continue;h.bindTextures(e[0],e[1]);let d=h.scalarParts(e[0],e[1]);u.draw(f,m,d,t.anchor,{...s(h),u_picture:[r,
-n]})}}values({header:e,parts:t},{bodies:r},n,s,i,o){let{settings:c}=this.viewer,{columns:l,rows:h}=e.geometry,m=t.get("n\
-oise")?.shape??null,u=e.scalars.name!==null&&Le(e,c)&&c.arrow_color==="scalars";return{...Rn(e,{...c,samples:i},s,m),...o?
-hn(c,i,s.density):{},u_matrix:G(e.geometry,n,s.anchor),u_mapped:e.scalars.name!==null&&!u,u_plain:u,u_padding:[l.before,
-h.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_opacity:r.areBehind?1:e.opacity,u_toEye:F(
-e.geometry.frame,O(n.axes[2],-1))}}copy(e,t,r,n){if(!e)return;let{width:s,height:i,top:o,rows:c}=t,{width:l}=this.canvas,
-{canvas:h}=this.graphics,m=h.height-i+o;if(e.imageSmoothingEnabled=s!==l||i!==r,e.imageSmoothingEnabled){let{coarse:u,coarsePen:p}=this;
-u.width=s,u.height=c,p?.drawImage(h,0,m,s,c,0,0,s,c),[h,m]=[u,0]}e.clearRect(0,n,l,c*r/i),e.drawImage(h,0,m,s,c,0,n,l,c*
-r/i)}};var xt=4,wt=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
+height)}factor(e){let{settings:t,player:r}=this.viewer;return t.motion!=="off"||r.varies&&r.playing?cn(e):1}timed(e,t,r,n){
+let s=performance.now();n();let i=performance.now()-s,o=t.width*t.rows,c=this.factor(r),l=t.rows<t.height?this.fixed.strip:
+this.fixed.draft;e.price=ln(e.price,i,l,o,r,c)}warm(e,t){let r=this.layers.reduce((m,u)=>m+u.triangles,0),n=(r+ts)/(this.
+triangles+ts);if(e.warm&&n<es&&n>1/es)return;let{width:s,height:i}=this.canvas,o={width:s,height:i,top:0,rows:1},[c,l]=[
+s,i].map(m=>Math.max(Math.round(m*ur),1));e.warm||this.render(e,t,o,1),this.triangles=r;let h=[o,{width:c,height:l,top:0,
+rows:l}].map(m=>{let u=performance.now();return this.render(e,t,m,1),R(performance.now()-u,.5,500)});this.fixed={strip:h[0],
+draft:h[1]},e.warm=!0}render(e,t,r,n,s=!1){let{graphics:i,viewer:o}=this,{camera:c}=o,{scene:l}=this.content;if(!c||!l)return;
+let h=i.context,{width:m,height:u,top:p,rows:f}=r,d=o.view(t,o.ratio*u/this.canvas.height),{canvas:g}=i;g.width<m&&(g.width=
+m),g.height<u&&(g.height=u);let y=u-p-f;s?i.bindSmooth(m,f):h.bindFramebuffer(h.FRAMEBUFFER,null),h.viewport(0,s?-y:0,m,
+u),h.enable(h.SCISSOR_TEST),h.scissor(0,s?0:y,m,f),h.enable(h.DEPTH_TEST),h.depthFunc(h.LESS),h.disable(h.BLEND),h.disable(
+h.CULL_FACE);let[b,v,x]=l.header.background??[1,1,1];h.clearColor(b,v,x,o.isClear?0:1),h.clear(h.COLOR_BUFFER_BIT|h.DEPTH_BUFFER_BIT);
+let w=n!==o.settings.samples||u!==this.canvas.height,M={camera:c,anchor:d.anchor,width:m,height:u,ratio:o.ratio};l.earth.
+drawGround(M);let{bodies:A}=l;A.draw(M,"opaque"),A.seeThrough(()=>{for(let E of this.layers)i.programs.use(e,this.values(
+E,l,c,d,n,w)),E.draw(t[0],t[1],d.anchor,!0)}),this.drawArrows(t,d,r,E=>this.values(E,l,c,d,n,w)),A.draw(M,"clear"),l.marks.
+draw({...M,ratio:d.density},o.settings,t),s&&i.copySmooth(m,f),h.readPixels(0,0,1,1,h.RGBA,h.UNSIGNED_BYTE,new Uint8Array(
+4))}drawArrows(e,t,{width:r,height:n},s){let{camera:i,settings:o}=this.viewer,{scene:c}=this.content;if(!c||!i||!Le(c.header,
+o))return;let l={...i.sight(n/t.density),planes:i.planes};for(let[h,m]of c.arrows.share(l,o,this.layers)){let{arrows:u,header:p}=h,
+f=u.program(o,at(p,o,t));if(!f||!m.length)continue;h.bindTextures(e[0],e[1]);let d=h.scalarParts(e[0],e[1]);u.draw(f,m,d,
+t.anchor,{...s(h),u_picture:[r,n]})}}values({header:e,parts:t},{bodies:r},n,s,i,o){let{settings:c}=this.viewer,{columns:l,
+rows:h}=e.geometry,m=t.get("noise")?.shape??null,u=e.scalars.name!==null&&Le(e,c)&&c.arrow_color==="scalars";return{...Rn(
+e,{...c,samples:i},s,m),...o?hn(c,i,s.density):{},u_matrix:G(e.geometry,n,s.anchor),u_mapped:e.scalars.name!==null&&!u,u_plain:u,
+u_padding:[l.before,h.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_opacity:r.areBehind?1:
+e.opacity,u_toEye:F(e.geometry.frame,O(n.axes[2],-1))}}copy(e,t,r,n){if(!e)return;let{width:s,height:i,top:o,rows:c}=t,{
+width:l}=this.canvas,{canvas:h}=this.graphics,m=h.height-i+o;if(e.imageSmoothingEnabled=s!==l||i!==r,e.imageSmoothingEnabled){
+let{coarse:u,coarsePen:p}=this;u.width=s,u.height=c,p?.drawImage(h,0,m,s,c,0,0,s,c),[h,m]=[u,0]}e.clearRect(0,n,l,c*r/i),
+e.drawImage(h,0,m,s,c,0,n,l,c*r/i)}};var xt=4,wt=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
 Float64Array.from({length:e.corners.length/xt},(n,s)=>r+=this.area(Er(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
 surface;return Ne(r,n.subarray(xt*e,xt*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return P(Z(t,e),
@@ -807,18 +807,18 @@ c[1],...this.next,...l]);h.length&&t.requests.hasSteps&&!t.options.isComing?.()&
 r.make(c.slice(0,2),e),u=t.requests.hasMarks?r.marks.lacking(t.settings,c):[];return t.options.isComing?.()||t.requests.
 wantMarks(u),t.root.dataset.lacking=String(s.length+u.length||+!m),t.panel.wait(s,m,this.renderer.leavesOut,u.length>0),
 t.panel.showKinds(r.marks.legend(t.settings,c)),m&&String(c.slice(0,2))!==String(n?.slice(0,2))&&(t.trim(),t.change()),m?
-this.shown=c:(s.length||t.request(),n&&r.isMade(n.slice(0,2))?n:null)}program(e,t=this.isClose(e)){let{vertex:r,fragment:n}=e.
-shaders,s=kn(e,this.view.settings,t);return this.view.graphics.programs.get(r,n,...s)}isClose(e){let{view:t}=this;if(!t.
-camera)return!1;let r=t.view([0,0,0],t.ratio),n=this.tiles?.layers.slice(1).map(({scene:s})=>s.header)??[];return(n.length?
-n:[e]).some(s=>at(s,t.settings,r))}frame(e,t){let{view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||!s.gl||!r.isVisible||
-!i||!n||r.canvas.width<2)return;this.next=[],r.advance(e);let o=this.available(t);r.camera||r.place();let c=this.program(
-i);if(n.prepare(),!o||!r.camera)return;if(c.error)return r.panel.fail("The shader does not compile with this graphics dr\
-iver.",c.error);if(!c.ready||!n.isReady(r.settings))return r.request();let l=!r.sharp&&this.renderer.draw(c,o,t);l&&(n.pickers,
-i.slices.critical&&this.program(i,!0)),r.painted(l)}get canPick(){let{scene:e,view:t}=this,{graphics:r}=t;return!!e&&!r.
-isLost&&!!r.gl&&e.pickers.every(({ready:n})=>n)}find(e,t){let{tiles:r,shown:n,view:s}=this,{camera:i,canvas:o}=s;if(!r?.
-layers.length||!i||!n)return null;let{anchor:c}=s.view(n,1),l=Yn({layers:r.layers,camera:i,moment:n,anchor:c,canvas:o},e,
-t),{marks:h}=r.layers[0].scene;if(l){let m={place:[e,t],position:l.point.position,height:s.root.clientHeight};l.point.mark=
-h.at(m,i,s.settings,n)}return l}};var Ot=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=mn();lifetime=new nt;player;held=new rt(
+this.shown=c:(s.length||t.request(),n&&r.isMade(n.slice(0,2))?n:null)}program(e,t=this.isClose(e),r=!this.view.player.playing){
+let{vertex:n,fragment:s}=e.shaders,i=kn(e,this.view.settings,t,r);return this.view.graphics.programs.get(n,s,...i)}isClose(e){
+let{view:t}=this;if(!t.camera)return!1;let r=t.view([0,0,0],t.ratio),n=this.tiles?.layers.slice(1).map(({scene:s})=>s.header)??
+[];return(n.length?n:[e]).some(s=>at(s,t.settings,r))}frame(e,t){let{view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||
+!s.gl||!r.isVisible||!i||!n||r.canvas.width<2)return;this.next=[],r.advance(e);let o=this.available(t);r.camera||r.place();
+let c=this.program(i);if(n.prepare(),!o||!r.camera)return;if(c.error)return r.panel.fail("The shader does not compile wi\
+th this graphics driver.",c.error);if(!c.ready||!n.isReady(r.settings))return r.request();let l=!r.sharp&&this.renderer.
+draw(c,o,t);l&&(n.pickers,i.slices.critical&&this.program(i,!0),r.player.varies&&this.program(i,this.isClose(i),!1)),r.painted(
+l)}get canPick(){let{scene:e,view:t}=this,{graphics:r}=t;return!!e&&!r.isLost&&!!r.gl&&e.pickers.every(({ready:n})=>n)}find(e,t){
+let{tiles:r,shown:n,view:s}=this,{camera:i,canvas:o}=s;if(!r?.layers.length||!i||!n)return null;let{anchor:c}=s.view(n,1),
+l=Yn({layers:r.layers,camera:i,moment:n,anchor:c,canvas:o},e,t),{marks:h}=r.layers[0].scene;if(l){let m={place:[e,t],position:l.
+point.position,height:s.root.clientHeight};l.point.mark=h.at(m,i,s.settings,n)}return l}};var Ot=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=mn();lifetime=new nt;player;held=new rt(
 this.graphics);parts=this.held.all;isClear=!0;isVisible=!0;panel;requests;options;header;settings;painter;camera=null;sharp=!1;ratio=1;host;isNew=!0;constructor(e,{
 header:t,settings:r,player:n,source:s,isComing:i}){this.host=e,this.header=t,this.settings=r,this.player=n,this.options=
 {source:s,isComing:i},this.panel={wait:()=>{},showKinds:()=>{},fail:(o,c)=>e.failed(o,c)},this.requests=new ht(s,this),this.
@@ -944,8 +944,8 @@ n));if(o>=s){s>0&&r.push(P(n,T(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r
 {slices:i,paper:o,speed:c}=n.header,l=po(a),h=!fe(n.header),m=l(0),u=[m[0],m[1],m[2]],p=bo(a),f=O(u,mo*(o?1/o.size[0]:i.
 cell)/(L(u)||1)),d=L(u)>Is?T(p(f)??s,s):u,g=O(V(d),l(2)[3]*c.typical),y=[],b=e.two_sided||!h?i.sides:1;for(let S=0;S<b&&
 L(u)>Is;S+=1){let k=o?1:m[3]*i.unit,I=go(l,i.lags,S*i.lags.length,S?1:-1,k).map(p),H=I.findIndex(W=>W===null);y.push(I.slice(
-0,H<0?void 0:H))}let v=Number(e.samples),x=st(n.header,e)?2*v-1:v,w=b===2?Math.floor(x/2):x-1,M=Number(e.spacing)*vo(a,e,
-t,r),A=S=>{let[k=[],_=[]]=y.map(I=>xo(s,I,S));return[...k.reverse(),s,..._]};return{path:A(co*Math.max(w,lo)*M),sampled:A(
+0,H<0?void 0:H))}let v=Number(e.samples),x=st(n.header,e,!0)?2*v-1:v,w=b===2?Math.floor(x/2):x-1,M=Number(e.spacing)*vo(
+a,e,t,r),A=S=>{let[k=[],_=[]]=y.map(I=>xo(s,I,S));return[...k.reverse(),s,..._]};return{path:A(co*Math.max(w,lo)*M),sampled:A(
 w*M),directed:h,velocity:g}}var Ut=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
 n;for(let s of t){let[{name:i,digest:o},c]=s,l=de(i)?.[0];l?this.tiles.set(l,[...this.tiles.get(l)??[],s]):this.parts.push(
 s),l&&c&&n.set(o,c)}}load=(e,t)=>{let r=((e&&this.tiles.get(B(e)))??[]).filter(([{name:n}])=>{let s=de(n)?.[1]??"",i=K(s),

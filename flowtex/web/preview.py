@@ -98,7 +98,7 @@ def _drawn(
         _few_samples(view.scene.settings),
         Camera.from_dict(camera),
         (max(size[0], 1), max(size[1], 1)),
-        view=ViewState(between=between),
+        view=ViewState(between=between, still=True),
         steps=steps,
     )
     ground = scene.colours.background or WHITE

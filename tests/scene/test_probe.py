@@ -112,7 +112,7 @@ def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Gener
     if not field.steady:
         view.time = 0.5
     before, after, between = view.moment
-    state = ViewState(between=between, clock=clock)
+    state = ViewState(between=between, still=True, clock=clock)
     picture = render(view.textures, view.settings, shot, SIZE, view=state, steps=(before, after))
     for y, x in rng.permutation(np.argwhere(picture.covered))[:4]:
         at = locate(field, picture.position[y, x])

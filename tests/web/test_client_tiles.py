@@ -106,6 +106,7 @@ def drawn_by_vtk(
     plotter.window_size = list(SIZE)
     plotter.set_background(GROUND)
     handle = plotter.flowtex.add(make(), **{**LOOK, **options})
+    handle.still = True
     if time is not None:
         handle.time = time
     apply_camera(camera, plotter.camera)

@@ -251,7 +251,7 @@ def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: 
             settings,
             camera,
             SIZE,
-            view=ViewState(between=between, time=time),
+            view=ViewState(between=between, time=time, still=True),
             steps=steps,
         )
         root, share, _ = difference(

@@ -266,6 +266,7 @@ class MovieJob(Job):
         self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
 
     async def _make(self, viewport: Viewport) -> None:
+        viewport.set_still(still=False)
         if viewport.field.steady:
             motion = _moving(viewport.handle.settings, viewport.field).motion
             for pane in viewport.panes:

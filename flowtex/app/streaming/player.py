@@ -32,6 +32,7 @@ class Player:
     @playing.setter
     def playing(self, playing: bool) -> None:
         self._stream.playing = bool(playing)
+        self._viewport.set_still(still=not playing)
         if playing and self._viewport.field.steady:
             for pane in self._viewport.panes:
                 if pane.handle.settings.motion == "off":

@@ -91,6 +91,7 @@ class Viewport:
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
         #: The views side by side, one or two.
+        self._still = True
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
         self.resize(*self._size)
@@ -145,6 +146,7 @@ class Viewport:
     def _pane(self, scene: Scene) -> Pane:
         """Add a pane."""
         handle = self._component.add_scene(scene, reset_camera=False)
+        handle.still = self._still
         if self._tile_ready is not None:
             handle.load_in_background(self._tile_ready)
         return Pane(handle, self)
@@ -249,6 +251,12 @@ class Viewport:
         self.window.set_background(colour)
 
     # --- time --------------------------------------------------------------------------------
+
+    def set_still(self, *, still: bool) -> None:
+        """Let the grains of a field that varies stand still, as while no time goes by."""
+        self._still = still
+        for pane in self.panes:
+            pane.handle.still = still
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""

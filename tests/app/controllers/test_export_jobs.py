@@ -191,6 +191,7 @@ def test_a_movie_of_a_series_shows_all_times(series: Viewport, tmp_path: Path) -
     pictures = shown(job.path)
     assert len(pictures) == 4 and job.frames.times == pytest.approx((0, 1, 2, 3))
     assert series.handle.time == 1.0
+    series.set_still(still=False)
     for n in (0, 3):
         series.set_time(float(n))
         off = [difference(picture, series.draw(120, 80)) for picture in pictures]
