@@ -43,7 +43,7 @@ const [NULLCLINE_HALVINGS, LEFT] = [12, 0.25];
  */
 const [ZERO_SHARE, SINGULAR, SAME_CELLS] = [1e-7, 1e-7, 1e-3];
 /** Growth of a spiral, as a share of its rotation, up to which it is a centre. */
-const CENTRE_SHARE = 0.05;
+const CENTRE_SHARE = 0.01;
 /** Steps along the diagonal, and those of a line at most; the first one and the last one to a point, in steps. */
 const [STEPS, MOST_STEPS, BEGIN, END] = [800, 2400, 0.02, 1.5];
 /** Steps of a turn at least; distances of two turns at which a line is closed, and winds up, in steps. */
@@ -248,13 +248,24 @@ export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Clos
           else high = middle;
         }
         const path = turn(low, way);
-        const isNew = path && !found.some((other) => other.path.some((at) => distance(at, path[0]) < 2 * step));
+        // Where the ray meets another fixed point, lines turn around that one.
+        const isNew = path && windsAround(path, [x, y]) && !found.some((other) => other.path.some((at) => distance(at, path[0]) < 2 * step));
         if (path && isNew && distance(path[0], path[path.length - 1]) < CLOSED * step) found.push({ path, isStable: way > 0 });
       }
       last = Number.isNaN(out) ? null : { place, out };
     }
   }
   return found;
+}
+
+/** Whether a line turns around a place. */
+function windsAround(path: Pair[], [x, y]: Pair): boolean {
+  let turned = 0;
+  for (let n = 1; n < path.length; n += 1) {
+    const [[a, b], [c, d]] = [path[n - 1], path[n]].map((at) => difference(at, [x, y]));
+    turned += Math.atan2(a * d - b * c, a * c + b * d);
+  }
+  return Math.abs(turned) > Math.PI;
 }
 
 /** The line from the last of some points on, of so long steps, to a fixed point, a border, or where it is to end. */

@@ -78,6 +78,16 @@ test("closed orbits are found where no separatrix ends", () => {
   for (const rate of none) assert.deepEqual(orbitsOf(rate), []);
 });
 
+test("a damped pendulum has no closed orbit, and its points at rest are no centres", () => {
+  for (const damping of [0.05, 0.1, 0.2, 0.5]) {
+    const rate: Rate = (x, y) => [y, -Math.sin(x) - damping * y];
+    const ends: Ends = [[-7, 7], [-4, 4]];
+    const points = fixedPoints(rate, ends);
+    assert.deepEqual(closedOrbits(rate, ends, points), []);
+    assert.deepEqual([...new Set(points.map(({ kind }) => kind))].sort(), ["saddle", "spiral sink"]);
+  }
+});
+
 test("no separatrix of a flow without divergence ends on a closed orbit", () => {
   const box: Ends = [[0, 6.28], [0, 6.28]];
   const waves = [[2, -1, 0.7, 0.9], [1, 3, 2.1, -0.6], [-3, 2, 4.4, 0.5], [1, 1, 5.2, 0.8]];

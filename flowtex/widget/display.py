@@ -22,7 +22,7 @@ import anywidget
 import ipywidgets
 
 #: Most seconds that cells wait for small pictures, and seconds of waiting regained per second.
-MAX_WAIT_S, WAIT_REGAINED = 2.0, 0.2
+MAX_WAIT_S, WAIT_REGAINED = 6.0, 0.2
 #: Stills of one cell: of more than fifty outputs JupyterLab hides the rest.
 MOST_STILLS = 20
 VIEW = "application/vnd.jupyter.widget-view+json"
@@ -153,7 +153,7 @@ def _pictures(shown: Any) -> str:
         return f'<div style="{style}">{"".join(map(_pictures, shown.children))}</div>'
     picture = shown._encoded_picture() if isinstance(shown, Displayed) else None
     if picture is None:
-        return ""
+        return f"<p>{html.escape(repr(shown))}: run this notebook in a browser to see the flow.</p>"
     source = f"data:{picture[0]};base64,{picture[1]}"
     return (
         f'<img alt="{html.escape(repr(shown))}" style="max-width:100%;min-width:0" src="{source}">'

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink")
 #: Growth of a spiral, as a share of its rotation, up to which it is a centre.
-CENTRE_SHARE = 0.05
+CENTRE_SHARE = 0.01
 #: Points closer than this, in cells, that have the same index are one.
 SAME_POINT_CELLS = 1e-3
 #: Speed as a share of the largest at which a node is at rest.
