@@ -1324,7 +1324,7 @@ camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(co
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
 follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],NULLCLINE_CELLS=256,[NULLCLINE_HALVINGS,LEFT]=[12,.25],[ZERO_SHARE2,SINGULAR,
-SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.05,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[
+SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.01,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[
 8,.08,2],[MOST_AROUND,RATIO,APART]=[8,1.2,.03],[MOVED,HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
 a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
 let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
@@ -1375,21 +1375,23 @@ before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,las
 Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;
 if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){let way=Math.sign(last.out),[low,high]=[
 last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let path=turn(
-low,way),isNew=path&&!found.some(other=>other.path.some(at=>distance(at,path[0])<2*step));path&&isNew&&distance(path[0],
-path[path.length-1])<CLOSED*step&&found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:{place,out}}}}return found}
-function followed(rate,ends2,points,path,step,isEnd=()=>!1){let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[
-u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),
-two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(
-k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.
-map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/
-(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1||isEnd(path))return path;let end=points.
-find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(point.
-at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.
-map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.
-get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=
-path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);
-if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;
-places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
+low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(other=>other.path.some(at=>distance(at,path[0])<2*step));path&&
+isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:
+{place,out}}}}return found}function windsAround(path,[x,y]){let turned=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[
+path[n-1],path[n]].map(at=>difference(at,[x,y]));turned+=Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
+MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
+2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
+Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:
+NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),
+share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[
+...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
+let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
+length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
+1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(
+path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/
+Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??
+[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
 entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
