@@ -1,4 +1,4 @@
-"""Show a flow where the user is: :func:`show` takes a notebook, a window or a page."""
+"""Display of a flow in a notebook, in a window or on a page: :func:`show`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 #: Width and height of a window, in pixels.
 WINDOW_SIZE = (1024, 768)
-#: Arguments that say something to VTK alone.
+#: Arguments that apply only to VTK.
 VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
 
 

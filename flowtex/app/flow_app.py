@@ -1,4 +1,4 @@
-"""The application behind a page, and its server."""
+"""The application of a page, and its server."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from trame.app import get_server
 
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.context import Context
+from flowtex.app.controllers.context import Context, State
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
@@ -106,7 +106,7 @@ class FlowApp(NotebookPage):
         """Show another flow, as :meth:`flowtex.app.FlowArea.show` does."""
         self.context.show(field, keep_view=keep_view, keep_range=keep_range)
 
-    def restore(self, state: Mapping[str, Any]) -> None:
+    def restore(self, state: State) -> None:
         """Show the state of a link."""
         data = self.controllers.data
         choice = Choice(*(str(state.get(name, "")) for name in CHOICE_ARGUMENTS))
@@ -115,7 +115,7 @@ class FlowApp(NotebookPage):
         else:
             data.open(str(state.get("file", data.name)), choice, lambda: self._restore(state))
 
-    def _restore(self, state: Mapping[str, Any]) -> None:
+    def _restore(self, state: State) -> None:
         try:
             for controller in self.context.controllers:
                 controller.restore(state)
@@ -135,9 +135,9 @@ class FlowApp(NotebookPage):
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
-    """Return what is shown first: the name of a flow, and what the options choose of it.
+    """Return the first flow to show: its name, and the part that the options choose.
 
-    Raises a FieldError when none can be opened; it tells of the first one.
+    Raises the FieldError of the first flow when none can be opened.
     """
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
@@ -146,7 +146,7 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     try:
         return name, _first_of(library, name, partial_choice, sure=not others)
     except (FieldError, OSError):
-        # In a folder lies this and that: what cannot be drawn does not hide the rest.
+        # Other files of a folder can be shown even if the first one cannot.
         for other in others:
             with suppress(FieldError, OSError):
                 return other, _first_of(library, other, partial_choice)
@@ -154,7 +154,7 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
 
 
 def _first_of(library: Library, name: str, chosen: Choice, *, sure: bool = False) -> Choice:
-    """Return what is chosen of a flow in full, after making sure that it can be drawn."""
+    """Return a complete choice, after a check that it can be drawn unless that is ``sure``."""
     choice = library.complete(name, chosen)
     if not sure:
         library.field(name, choice)
@@ -235,7 +235,7 @@ def serve(
 
 
 def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
-    """Return what makes an application for each page."""
+    """Return a function that makes an application for each page."""
     if callable(field):
         names = [*options, *(["folder"] if folder is not None else [])]
         if names:
@@ -246,7 +246,7 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
             raise FieldError(msg)
         make_app: MakeApp = field
         return make_app
-    # One library for all: files that are open and flows that are traced are shared.
-    making = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
-    library = Library.of(field, folder=folder, **making)
+    # All pages share one library, with its open files and traces.
+    reading = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
+    library = Library.of(field, folder=folder, **reading)
     return lambda server: FlowApp(library, server=server, **options)

@@ -1,7 +1,7 @@
 """PyVista's Jupyter backend ``"flowtex"``: a plotter with its flow, drawn by the browser.
 
-PyVista finds :func:`show_plotter` through its entry point. A backend that is found so may be
-taken for the default where no other is installed; this one then stands back.
+PyVista finds :func:`show_plotter` through its entry point. It may use a backend found this way as
+the default if no other is installed; this one then falls back to what PyVista does without it.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     """Show a plotter with a flow texture in the notebook, from the plotter's own camera.
 
     Called by ``plotter.show``; the options, its ``jupyter_kwargs``, are further arguments of the
-    :class:`flowtex.FlowWidget` that is returned. What the browser does not draw is warned of.
+    :class:`flowtex.FlowWidget` that is returned. A warning lists what the browser does not draw.
     """
-    if not _asked_for():
-        return _instead(plotter, screenshot, options)
+    if not _is_requested():
+        return _show_otherwise(plotter, screenshot, options)
     if screenshot:
         plotter.screenshot(screenshot)
     from flowtex.widget import FlowWidget
@@ -28,11 +28,11 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     return FlowWidget(plotter, **{"size": (int(width), int(height)), **options})
 
 
-def _asked_for() -> bool:
+def _is_requested() -> bool:
     """Return whether the user has named this backend.
 
     PyVista does not say whether a backend was named or is merely the first that was found, so the
-    caller's argument is inspected; where that has another form, being called counts.
+    caller's argument is inspected; without that, the answer is yes.
     """
     frame = sys._getframe(1)
     while (caller := frame.f_back) is not None:
@@ -43,8 +43,8 @@ def _asked_for() -> bool:
     return True
 
 
-def _instead(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Any:
-    """Do what PyVista would do if this backend were not installed."""
+def _show_otherwise(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Any:
+    """Show a plotter as PyVista does without this backend."""
     import pyvista as pv
     from pyvista.jupyter.notebook import show_static_image
 

@@ -212,7 +212,7 @@ def laid(app: FlowApp, file: dict[str, Any]) -> str:
     async def story() -> None:
         app.state.set(image_file=file, problem="")
         app.controllers.appearance.take_image()
-        if laying := app.controllers.appearance._laying:
+        if laying := app.controllers.appearance._image_task:
             await laying
 
     asyncio.run(story())
@@ -262,7 +262,7 @@ async def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
         await until(lambda: app.area.settings.noise == "image")
         app.state.set(image_file=picture)
         app.controllers.appearance.take_image()
-        laying = app.controllers.appearance._laying
+        laying = app.controllers.appearance._image_task
         app.close()
         assert laying is not None
         await until(laying.done)

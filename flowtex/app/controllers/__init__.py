@@ -1,19 +1,18 @@
-"""What the controls of a page do."""
+"""Controllers of a page: the actions of its controls."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 from flowtex.app.controllers.appearance import Appearance
-from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.sharing import Sharing
 from flowtex.app.server.validation import name_among
 
-#: Directions from which a surface can be looked at, and what is up then.
+#: Directions of view onto a surface, and their directions up.
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "from +x": ((1, 0, 0), (0, 0, 1)),
     "from -x": ((-1, 0, 0), (0, 0, 1)),
@@ -34,22 +33,22 @@ class Viewpoint(Controller):
 
     @property
     def views(self) -> list[str]:
-        """Directions that make sense: all of them for a surface that is not flat."""
+        """Names of the directions of view; none for a flat surface."""
         return [] if self.viewport.flat else list(VIEWS)
 
-    def look_from(self, name: Any) -> None:
+    def look_from(self, name: object) -> None:
         """Look at the whole of a curved surface from a side."""
         if name_among(name, VIEWS):
             toward, up = VIEWS[name]
             self.viewport.home(toward=toward, up=up)
             self.area.moved()
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> State:
         """Return the camera, and the time where it makes a difference."""
         time = {} if self.viewport.field.steady else {"time": self.area.player.time}
         return {"camera": self.viewport.camera.to_dict(), **time}
 
-    def restore(self, saved: Mapping[str, Any]) -> None:
+    def restore(self, saved: State) -> None:
         """Look from a saved camera, at a saved time."""
         if saved.get("camera"):
             self.area.look(saved["camera"])
@@ -71,7 +70,7 @@ class Controllers:
         context: Context,
         name: str,
         choice: Choice,
-        restore_state: Callable[[Mapping[str, Any]], None],
+        restore_state: Callable[[State], None],
     ) -> None:
         self.context = context
         self.data = Data(context, name, choice)
@@ -81,6 +80,6 @@ class Controllers:
         self.sharing = Sharing(context, self.data, self.beside, restore_state)
 
     def cancel_opening(self) -> None:
-        """Stop what is being opened, in either pane."""
+        """Stop opening files, in either pane."""
         self.data.cancel()
         self.beside.cancel()

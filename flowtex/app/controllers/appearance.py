@@ -1,14 +1,13 @@
-"""How the flow is drawn: settings, colours, what is behind, and a second pane."""
+"""Appearance of the flow: settings, colours, background, and a second pane."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import CMAPS
-from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.server.page import start_task
 from flowtex.app.server.validation import decode_picture, name_among, number, sent_picture
@@ -21,13 +20,13 @@ from flowtex.settings import SettingsError, named_values
 
 #: The choice of no colours.
 PLAIN = "none"
-#: Lines of a map, where the field has a projection; and all of how a surface looks that the page
-#: has under the name of the argument.
+#: Lines of a map, if the field has a projection; and all fields of the appearance that the page
+#: has under their names.
 MAP_LINES = ("coastlines", "graticule")
 LOOK = ("cmap", "clim", "log_scale", "opacity", *MAP_LINES)
-#: What lies behind the surface.
+#: Backgrounds.
 BACKGROUNDS = ("theme", "black", "white", "gray")
-#: What a second pane shows, by what it is called.
+#: Differences of a second pane, by label.
 COMPARISONS: dict[str, dict[str, Any]] = {
     "nothing": {},
     **{
@@ -43,16 +42,16 @@ COMPARISONS: dict[str, dict[str, Any]] = {
         )
     },
 }
-#: The same for what is not a setting: another time, another file, and another scalar by its name.
+#: Labels of other differences: another time, another file, and another scalar by its name.
 ANOTHER_TIME, ANOTHER_FILE, COLOUR_BY = "Another time", "Another file", "Colour by: "
 #: Stops of the slider of another time between two steps of the field.
 STOPS_PER_STEP = 8
 
 
 def comparison(name: str, time: float) -> dict[str, Any]:
-    """Return what differs in a second pane of a name, at ``time`` for another time.
+    """Return the differences of a second pane by its label; ``time`` is that of another time.
 
-    It is nothing for another file, which has to be opened first.
+    They are empty for another file, which has to be opened first.
     """
     if name == ANOTHER_TIME:
         return {"time": time}
@@ -64,22 +63,22 @@ def comparison(name: str, time: float) -> dict[str, Any]:
 
 
 def look_shown(look: Look) -> dict[str, Any]:
-    """Return how a surface looks as the page shows it, where nothing is left to choose later."""
+    """Return the appearance of a surface as the page shows it, with all values explicit."""
     shown = {name: getattr(look, name) for name in LOOK}
     shown |= {name: shown[name] is not False for name in MAP_LINES}
-    # A map that has no name here is shown as the first one.
+    # A colour map without a name is shown as the first one.
     return {**shown, "cmap": look.cmap if isinstance(look.cmap, str) else CMAPS[0]}
 
 
 class Appearance(Controller):
-    """How the flow is drawn, and in a second pane with ``beside`` that of another file."""
+    """Appearance of the flow, and of the flow of another file ``beside`` it."""
 
     def __init__(self, context: Context, beside: FileBeside) -> None:
         super().__init__(context)
         self.beside = beside
-        #: What was chosen last of what the page may choose: a page may send anything.
+        #: The last valid choices of the page, which may send anything.
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
-        self._laying: asyncio.Task[None] | None = None
+        self._image_task: asyncio.Task[None] | None = None
         self.state.set(
             theme=self.theme,
             background=self.background,
@@ -103,7 +102,7 @@ class Appearance(Controller):
         self.take_background()
 
     def show_field(self) -> None:
-        """Let the page show what may stand beside the flow that is shown."""
+        """Show the possible comparisons with the flow on the page."""
         times, comparisons = self.viewport.field.times, self._comparisons()
         first, last = float(times[0]), float(times[-1])
         tick = (last - first) / max((len(times) - 1) * STOPS_PER_STEP, 1)
@@ -112,7 +111,7 @@ class Appearance(Controller):
             self.end_comparison()
 
     def take_painter(self) -> None:
-        """Let draw whom the page asks for; the camera stays the same."""
+        """Draw by the painter that the page requests; the camera stays the same."""
         painter, element = self.state.get("painter"), self.area.element
         if painter != element.painter and name_among(painter, PAINTERS):
             element.draw_by(painter)
@@ -127,7 +126,7 @@ class Appearance(Controller):
             self.context.complain(error)
 
     def take_background(self) -> None:
-        """Take the colour behind the surface that the page asks for."""
+        """Set the background that the page requests."""
         theme, choice = self.state.get("theme"), self.state.get("background")
         self.theme = theme if name_among(theme, THEMES) else self.theme
         self.background = choice if name_among(choice, BACKGROUNDS) else self.background
@@ -137,7 +136,7 @@ class Appearance(Controller):
         self.area.changed()
 
     def take_comparison(self) -> None:
-        """Show a second pane, or one again."""
+        """Show or remove the second pane, as the page requests."""
         choice = self.state.get("compare")
         if not name_among(choice, self._comparisons()):
             self.state.set(compare=self.compared)
@@ -171,13 +170,13 @@ class Appearance(Controller):
         self.take_comparison()
 
     def take_image(self) -> None:
-        """Lay a picture of the person's own on the surface."""
+        """Show an uploaded image on the surface."""
         upload = self.state.get("image_file")
         if upload is None:
             return
         self.state.set(image_file=None)
         upload = upload[0] if isinstance(upload, list) and upload else upload
-        if not upload:  # a choice that was taken back
+        if not upload:  # the choice was cleared
             return
         try:
             picture = sent_picture(upload)
@@ -185,11 +184,11 @@ class Appearance(Controller):
             self.context.complain(error)
             return
         self.close()  # the latest picture counts
-        self._laying = start_task(
-            self._lay(*picture), "an image could not be applied to the surface"
+        self._image_task = start_task(
+            self._set_image(*picture), "an image could not be applied to the surface"
         )
 
-    async def _lay(self, content: bytes, name: str) -> None:
+    async def _set_image(self, content: bytes, name: str) -> None:
         try:
             self.viewport.lay_image(await asyncio.to_thread(decode_picture, content, name))
         except SettingsError as error:
@@ -199,11 +198,11 @@ class Appearance(Controller):
         self.area.changed()
 
     def close(self) -> None:
-        """Wait for no picture any more."""
-        if self._laying is not None:
-            self._laying.cancel()
+        """Cancel the image that is being decoded."""
+        if self._image_task is not None:
+            self._image_task.cancel()
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> State:
         """Return settings, colours, background and comparison."""
         return {
             "settings": dict(self.settings),
@@ -216,12 +215,12 @@ class Appearance(Controller):
             "time_beside": self.viewport.time_beside if self.compared == ANOTHER_TIME else None,
         }
 
-    def restore(self, saved: Mapping[str, Any]) -> None:
-        """Take over saved settings, colours, background and comparison."""
+    def restore(self, saved: State) -> None:
+        """Restore saved settings, colours, background and comparison."""
         settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
         self.settings.update(**settings)
         names = {"split": "compare", "theme": "theme", "background": "background"}
-        self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
+        self.state.set(**{names[name]: saved[name] for name in names if name in saved})
         look = {name: saved[name] for name in LOOK if name in saved}
         if not name_among(look.get("cmap"), CMAPS):
             look.pop("cmap", None)
@@ -239,7 +238,7 @@ class Appearance(Controller):
         return float(self.viewport.field.times[0])
 
     def _comparisons(self) -> list[str]:
-        """Return what a second pane can show of the present flow."""
+        """Return the labels of second panes that the present flow allows."""
         others = [] if self.viewport.field.steady else [ANOTHER_TIME]
         others += [ANOTHER_FILE] if self.beside.possible else []
         return [*COMPARISONS, *others, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]

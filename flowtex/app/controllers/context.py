@@ -1,9 +1,9 @@
-"""What the controllers of a page share: the view, the state, and the signals between them."""
+"""Context of the controllers of a page: the view, the state, and signals between them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 from flowtex.app.controllers.library import Library
 from flowtex.app.server.files import Routes
@@ -14,21 +14,24 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
 from flowtex.settings import Settings
 
+#: The state of a page by name, as in :mod:`.serialization`.
+State: TypeAlias = Mapping[str, Any]
+
 
 class Context:
-    """What the controllers of a page share."""
+    """Objects that the controllers of a page share."""
 
     def __init__(self, state: PageState, area: FlowArea, library: Library) -> None:
-        #: What the page knows, the view, and the flows the page may open.
+        #: The state of the page, the view, and the flows that the page may open.
         self.state, self.area, self.library = state, area, library
         self.routes = Routes.of(state.server)  #: The files that the page may fetch.
         self.controllers: list[Controller] = []  #: All, in the order in which they were made.
-        #: Signals after another flow is shown, and after that of another file came or went.
+        #: Signals after another flow is shown, and after a change of the file beside it.
         self.field_changed, self.beside_changed = Signal(), Signal()
         area.element.failed.connect(self.complain)
 
     def complain(self, problem: object) -> None:
-        """Let the page say what is wrong."""
+        """Show an error on the page."""
         self.state.send(problem=shortened(str(problem)))
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
@@ -40,7 +43,7 @@ class Context:
 
 
 class Controller:
-    """Base of what acts on one group of controls: sets their state, and follows it."""
+    """Base of the controllers of one group of controls: sets their state, and follows it."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -49,7 +52,7 @@ class Controller:
 
     @property
     def viewport(self) -> Viewport:
-        """What is drawn."""
+        """The view that is drawn."""
         return self.area.viewport
 
     @property
@@ -57,12 +60,12 @@ class Controller:
         """Every setting, live."""
         return self.area.settings
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> State:
         """Return a part of the page's state, named as in :mod:`.serialization`."""
         return {}
 
-    def restore(self, saved: Mapping[str, Any]) -> None:
+    def restore(self, saved: State) -> None:
         """Take over the part of a saved state that belongs to this controller."""
 
     def close(self) -> None:
-        """End what is running."""
+        """End running tasks."""

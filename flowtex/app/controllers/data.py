@@ -1,8 +1,7 @@
-"""Which flow is shown: files, arrays, and planes of a mesh of three dimensions.
+"""Choice of the flow: files, arrays, and planes of a mesh of three dimensions.
 
 Reading and tracing continue in a thread. A new request cancels the one before; a large flow is
-first shown with few of its nodes, and the view on the page stays until there is another to put in
-its place.
+first shown with few of its nodes, and the view on the page stays until another one can replace it.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.library import Choice, TracedFlow
 from flowtex.app.controllers.loading import LoadRequest, announced, without_folder
 from flowtex.app.server.uploads import Uploads
@@ -36,7 +35,7 @@ PART_PREVIEW = 5_000, 2_500
 
 @dataclass(frozen=True, eq=False)
 class LoadedFlow:
-    """What was read, and what of it is shown: all its nodes, or few."""
+    """A flow that was read, and its form that is shown, with all nodes or few."""
 
     name: str
     choice: Choice
@@ -52,14 +51,14 @@ class LoadedFlow:
 
 
 class Data(Controller):
-    """Which flow is shown; ``name`` and ``choice`` at first."""
+    """Choice of the flow, initially by ``name`` and ``choice``."""
 
-    names: tuple[str, ...]  #: Of what may be opened, when they were last listed.
+    names: tuple[str, ...]  #: Names of the flows that may be opened, when last listed.
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
         self.library = context.library
-        # It holds the source: the library may drop it, and reading it again takes a while.
+        # This keeps the source, which the library may drop and which is slow to read again.
         source, field = self.library.source(name), self.viewport.field
         self._current = LoadedFlow(name, choice, source, field, field)
         self._goal = (name, choice)
@@ -82,19 +81,19 @@ class Data(Controller):
 
     @property
     def choice(self) -> Choice:
-        """What is shown of it."""
+        """The part of the file that is shown."""
         return self._current.choice
 
     @property
     def python(self) -> str | None:
-        """Expression that makes what is shown, unless that comes from a file."""
+        """Expression that makes the flow, unless that comes from a file."""
         return self.library.python(self.name)
 
     def take_file(self) -> None:
         """Open another file."""
         name = self.state.get("file")
         if name == self.name:
-            if self._goal[0] != self.name:  # the person has come back
+            if self._goal[0] != self.name:  # back to the present file
                 self.cancel()
         elif not isinstance(name, str):
             self._show_choice()
@@ -116,7 +115,7 @@ class Data(Controller):
         elif self._goal == (self.name, choice) or self._goal[0] != self.name:
             self.state.set(**self._options())
         elif self._current.whole:
-            self.cancel()  # the slider has come back to what is shown
+            self.cancel()  # the slider is back at the present plane
         else:
             self.open(self.name, choice)
 
@@ -133,17 +132,17 @@ class Data(Controller):
         self.open(name, Choice())
 
     def reload(self) -> None:
-        """Show what is shown as its file is now."""
+        """Read the present file again."""
         self.open(self.name, self.choice)
 
     def cancel(self) -> None:
-        """Stop what is being opened; the old view stands."""
+        """Stop opening; the old view stays."""
         self._request.cancelled = True
         self._goal = (self.name, self.choice)
         self._show_choice()
 
     def open(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
-        """Open something, in place of what is being opened, and call ``then`` once it is shown."""
+        """Open a flow instead of the one being opened, and call ``then`` once it is shown."""
         both_typed = is_line(name) and is_line(self._request.name)
         if (name == self._request.name or both_typed) and then is None:
             self._request.superseded = True
@@ -163,18 +162,18 @@ class Data(Controller):
                 request.then()
 
     def _fail(self) -> None:
-        """Let the old view stand."""
+        """Return to the old view."""
         self._goal = (self.name, self.choice)
         self._show_choice()
-        if not self._current.whole:  # only a quick look at it was there, on the way
+        if not self._current.whole:  # the old view is a preview
             self.open(self.name, self.choice)
 
     def _preview(self, request: LoadRequest) -> LoadedFlow:
-        """Read a flow, and trace what there is time for."""
+        """Read a flow, and trace it with as many nodes as there is time for."""
         name, choice = request.name, self.library.complete(request.name, request.choice)
         source, field = self._read(name, choice)
-        most, few = FILE_PREVIEW if name != self.name else PART_PREVIEW
-        shown = coarsened_field(field, few) if field.valid.size > most else field
+        limit, nodes = FILE_PREVIEW if name != self.name else PART_PREVIEW
+        shown = coarsened_field(field, nodes) if field.valid.size > limit else field
         flow = LoadedFlow(name, choice, source, field, shown)
         return replace(flow, traced=self._trace(flow))
 
@@ -189,20 +188,20 @@ class Data(Controller):
     def _trace(self, flow: LoadedFlow) -> TracedFlow:
         name, times = flow.name if flow.whole else "", flow.shown.times
         traced = self.library.trace(name, flow.choice, flow.shown, self.settings)
-        # The time that is shown stays where another part of the same data is.
+        # Another part of the same data is shown at the same time.
         if np.array_equal(times, self.viewport.field.times):
             for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
                 traced.store.at(step)
         return traced
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
-        """Replace the flow shown by another one; where that fails, it stands."""
+        """Replace the flow by another one; if that fails, it stays."""
         before = self._current, self._goal
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
         same |= _are_of_one_formula(flow.field, self._current.field)
         keep = same and _axis(new.plane) == _axis(old.plane)
-        # Of a file that has changed the values are others.
+        # A file that has changed has other values.
         same = same and flow.source.identity == self._current.source.identity
         self._current = flow
         if not request.superseded:
@@ -218,33 +217,37 @@ class Data(Controller):
             raise
 
     def _complain(self, error: Exception) -> None:
-        """Let the page say what is wrong with the data that are shown."""
+        """Show an error of the present data on the page."""
         self.context.complain(without_folder(str(error), self.name))
 
     def _show_choice(self) -> None:
-        """Let the page show what is chosen; not while it does something else."""
+        """Show the present choice on the page, unless another one is being opened."""
         values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
             values = {name: values[name] for name in ("name", "about")}
         self.state.send(busy="", **values)
 
     def _requested(self) -> Choice:
-        """Return what the page asks for; where it asks for nothing that is there, what is shown."""
+        """Return the choice that the page requests; invalid parts are those of the present one."""
         options = self._options()
         block, vectors, axis = (
-            self.state.get(one) if name_among(self.state.get(one), options[all_]) else options[one]
-            for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
+            self.state.get(n) if name_among(self.state.get(n), options[choices]) else options[n]
+            for n, choices in (
+                ("block", "blocks"),
+                ("vectors", "vectors_choices"),
+                ("axis", "axes"),
+            )
         )
-        if block != options["block"]:  # its planes, and its arrays, are others
+        if block != options["block"]:  # which has other planes and arrays
             arrays = self._current.source.block_vectors[block]
             return Choice(vectors if vectors in arrays else "", "", block)
         plane = ""
         if axis:
             last = self._part.planes[axis] - 1
-            at = int(clipped(self.state.get("index"), options["index"], 0, last))
-            plane = self._part.plane_at(axis, at if axis == options["axis"] else (last + 1) // 2)
+            index = int(clipped(self.state.get("index"), options["index"], 0, last))
+            plane = self._part.plane_at(axis, index if axis == options["axis"] else (last + 1) // 2)
             # A plane between the places of the slider stays until that is moved.
-            if axis == options["axis"] and at == options["index"]:
+            if axis == options["axis"] and index == options["index"]:
                 plane = self.choice.plane
         return Choice(vectors, plane, block)
 
@@ -254,7 +257,7 @@ class Data(Controller):
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:
-        """Return what there is to choose from in the present file, and what is chosen."""
+        """Return the choices of the present file, and the chosen ones."""
         source, part = self._current.source, self._part
         axis = _axis(self.choice.plane) if part.planes else ""
         count = part.planes.get(axis, 0)
@@ -275,12 +278,12 @@ class Data(Controller):
             "planes": max(count - 1, 0),
         }
 
-    def describe(self) -> dict[str, Any]:
-        """Return which flow it is."""
+    def describe(self) -> State:
+        """Return the choice of the flow."""
         return {k: v for k, v in {"file": self.name, **asdict(self.choice)}.items() if v}
 
     def close(self) -> None:
-        """End what is running."""
+        """End running tasks."""
         self._request.cancelled = True
         self.uploads.close()
         if self._opening is not None:
@@ -293,7 +296,7 @@ def _axis(plane: str) -> str:
 
 
 def about(field: FlowField) -> str:
-    """Say in a few words what a field is."""
+    """Return a short description of a field."""
     words = [field.short_size]
     words.append("steady" if field.steady else f"{len(field.times)} times")
     closed = [axis for axis, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
@@ -302,8 +305,7 @@ def about(field: FlowField) -> str:
     return " · ".join(words)
 
 
-def _are_of_one_formula(one: FlowField, other: FlowField) -> bool:
-    """Whether two flows differ in the values of parameters alone."""
-    if one.formula is None or other.formula is None:
-        return False
-    return (one.formula.texts, one.formula.ranges) == (other.formula.texts, other.formula.ranges)
+def _are_of_one_formula(first: FlowField, second: FlowField) -> bool:
+    """Return whether two flows differ only in the values of parameters."""
+    a, b = first.formula, second.formula
+    return a is not None and b is not None and (a.texts, a.ranges) == (b.texts, b.ranges)

@@ -1,4 +1,4 @@
-"""Pictures and movies of what a page shows, made beside it.
+"""Pictures and movies of a page's view, made in the background.
 
 A job draws a copy of the viewport a tile at a time, and lets the event loop continue between two
 tiles. Tracing and writing files is done in a thread::
@@ -54,7 +54,7 @@ TILE_S, LARGEST_TILE_PX = 0.05, 512
 
 
 class ExportError(FieldError):
-    """A picture or a movie cannot be made so; the text says why and what to do."""
+    """A picture or a movie cannot be made; the text gives the reason and the remedy."""
 
 
 class TiledPicture:
@@ -82,9 +82,9 @@ class TiledPicture:
         done = 0
         for number, pane in enumerate(panes):
             first = number * (wide + self._gap)
-            here = wide if number < len(panes) - 1 else width - first
-            self._viewport.window.size = here * times, height * times
-            for tile in self._tiles(pane, here, height):
+            pane_width = wide if number < len(panes) - 1 else width - first
+            self._viewport.window.size = pane_width * times, height * times
+            for tile in self._tiles(pane, pane_width, height):
                 left, top, across, down = tile
                 started = time.perf_counter()
                 part = (times * left, times * top, times * across, times * down)
@@ -97,7 +97,7 @@ class TiledPicture:
                 yield canvas, done / (width * height)
 
     def _tiles(self, pane: Pane, width: int, height: int) -> Iterator[Rect]:
-        """Rows of tiles that are as large as the time allows by then."""
+        """Yield rows of tiles, as large as the time allows."""
         top = 0
         while top < height:
             side = min(self._cost.tile(pane.handle.settings.samples, TILE_S), LARGEST_TILE_PX)
@@ -123,13 +123,12 @@ class TiledPicture:
 
 
 class Job:
-    """Something that is drawn and written while a page continues; nothing of the view is changed.
+    """Base of exports, which draw and write while a page continues, without changing its view.
 
     ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
     and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
-    many pixels, as fine screens and print want it. While the view needs the time more, which
-    ``busy`` tells, nothing is drawn. Raises an ExportError or a MovieError when it cannot be made
-    so.
+    many pixels, for high-resolution screens and print. While ``busy`` returns True, nothing is
+    drawn. Raises an ExportError or a MovieError for invalid arguments.
     """
 
     def __init__(
@@ -153,14 +152,14 @@ class Job:
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
     def cancel(self) -> None:
-        """Make no more of it; :meth:`run` ends with ``Stopped`` and no file is left."""
+        """Cancel the job; :meth:`run` ends with ``Stopped`` and no file is left."""
         self.cancelled = not self.done
 
     def _unwanted(self) -> bool:
         return self.cancelled or self.done
 
     async def run(self) -> Path:
-        """Draw it, write it and return the file; ``Stopped`` when it was cancelled."""
+        """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
         viewport = self._viewport.copy()
         try:
             await self._make(viewport)
@@ -178,11 +177,11 @@ class Job:
         return TiledPicture(viewport, self._size, self._density, self._supersampling)
 
     async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
-        """Draw one picture, which is ``share`` of the whole work, after what was ``before``."""
+        """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
         picture: Bytes | None = None
         for canvas, drawn in tiled.draw():
             picture, self.progress = canvas, before + share * drawn
-            # Whatever waits for the event loop has its turn.
+            # Other tasks of the event loop have their turn.
             await asyncio.sleep(0)
             while self._busy() and not self.cancelled:
                 await asyncio.sleep(BUSY_INTERVAL_S)
@@ -196,7 +195,7 @@ class Job:
         return picture
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Do something in the job's thread, where tracing can be stopped."""
+        """Call a function in the job's thread, where tracing can be stopped."""
 
         def stopping() -> T:
             with stoppable(self._unwanted):
@@ -222,7 +221,7 @@ class PictureJob(Job):
 
 
 class _StoppableFile:
-    """A file that takes no more once it is not wanted any more."""
+    """A file that raises ``Stopped`` once it is unwanted."""
 
     def __init__(self, file: IO[bytes], unwanted: Callable[[], bool]) -> None:
         self._file, self._unwanted = file, unwanted
@@ -286,15 +285,15 @@ class MovieJob(Job):
                     await writing
                 # The next frame is drawn while this one is writing.
                 writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
-                # Nobody waits for it where the drawing ends in an error.
+                # Its error is read even if an error ends the drawing.
                 writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
             if writing is not None:
                 await writing
             await self._in_thread(writer.finish, self._unwanted)
         finally:
-            # In the thread, after whatever it is busy with.
+            # In the thread, after its present work.
             self.done = True
-            await asyncio.wait([opening])  # who cancels this may do so while it is being opened
+            await asyncio.wait([opening])  # this may be cancelled while the file is being opened
             if not opening.cancelled() and opening.exception() is None:
                 await asyncio.wrap_future(self._pool.submit(opening.result().abandon))
 

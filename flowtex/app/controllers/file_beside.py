@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, astuple
 from typing import Any
 
-from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.library import Choice, TracedFlow
 from flowtex.app.controllers.loading import LoadRequest, announced
@@ -19,7 +18,7 @@ from flowtex.field.interpolation import steps_around
 class FileBeside(Controller):
     """The flow of another file than ``data`` shows, in a second pane.
 
-    Of the file that is chosen it is what the first pane shows of its own, as far as there is that.
+    It shows the same part of its file as the first pane does, as far as that exists.
     """
 
     def __init__(self, context: Context, data: Data) -> None:
@@ -43,12 +42,12 @@ class FileBeside(Controller):
 
     @property
     def possible(self) -> bool:
-        """Whether there is another file."""
+        """Whether another file exists."""
         return len(self._data.names) > 1
 
     @property
     def python(self) -> str | None:
-        """Expression that makes what is shown, unless that comes from a file."""
+        """Expression that makes the flow, unless that comes from a file."""
         return self.context.library.python(self.name) if self.name else None
 
     def begin(self) -> None:
@@ -57,18 +56,18 @@ class FileBeside(Controller):
         self.open(self._chosen() or self._next())
 
     def end(self) -> None:
-        """Show no file any more, once another second pane or none is shown in its place."""
+        """Forget the file, after another second pane or none has replaced it."""
         self._active = False
         self._forget()
         self.context.beside_changed.emit()
 
     def cancel(self) -> None:
-        """Stop what is being opened; there is one pane until a file is chosen."""
+        """Stop opening; one pane is shown until a file is chosen."""
         if self._opening is not None and not self._opening.done():
             self._fail()
 
     def take_file(self) -> None:
-        """Show the file that the page asks for."""
+        """Show the file that the page requests."""
         name, goal = self._chosen(), self._goal
         if not name:
             self.state.set(file_beside=goal)
@@ -76,7 +75,7 @@ class FileBeside(Controller):
             self.open(name)
 
     def open(self, name: str) -> None:
-        """Open a file in place of what is being opened for the second pane."""
+        """Open a file for the second pane, instead of the one being opened."""
         if self._request is not None and name == self._request.name:
             self._request.superseded = True
         elif self._request is not None:
@@ -94,18 +93,18 @@ class FileBeside(Controller):
         self.show_names()
 
     def show_names(self) -> None:
-        """Let the page name the two files."""
+        """Show the names of the two files on the page."""
         self.area.element.names = self._names() if self.name else ()
         self.area.element.follow()
 
     def _names(self) -> tuple[str, ...]:
-        """Names of the two files, of the second with what is another part of it."""
-        aside = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
-        other = [own for own, first in aside if own != first]
-        return (self._data.name, " · ".join([self._name, *filter(None, other)]))
+        """Return the names of the two files; that of the second with its differing parts."""
+        pairs = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
+        differing = [part for part, first in pairs if part != first]
+        return (self._data.name, " · ".join([self._name, *filter(None, differing)]))
 
-    def describe(self) -> dict[str, Any]:
-        """Return which file it is, and what is shown of it."""
+    def describe(self) -> State:
+        """Return the file, and the part of it that is shown."""
         if not self.name:
             return {"beside_file": self._goal} if self._goal else {}
         handle = self.viewport.panes[1].handle
@@ -116,14 +115,14 @@ class FileBeside(Controller):
             beside["scalars"] = handle.scene.scalar_name
         return {"beside_file": self.name, "beside": beside}
 
-    def restore(self, saved: Mapping[str, Any]) -> None:
+    def restore(self, saved: State) -> None:
         """Choose the file of a saved state."""
         if saved.get("beside_file"):
             self.state.set(file_beside=saved["beside_file"])
             self.take_file()
 
     def close(self) -> None:
-        """End what is running."""
+        """End running tasks."""
         self._forget()
         if self._opening is not None:
             self._opening.cancel()
@@ -131,19 +130,19 @@ class FileBeside(Controller):
 
     @property
     def _goal(self) -> str:
-        """Name of what is to be shown."""
+        """Name of the requested file."""
         return "" if self._request is None else self._request.name
 
     def _chosen(self) -> str:
-        """Return what the page asks for, which need not be there; empty for what is of no use."""
+        """Return the requested name, which may not exist; empty for an invalid one."""
         name = self.state.get("file_beside")
         return name if isinstance(name, str) and name != self._data.name else ""
 
     def _next(self) -> str:
-        """Return the name behind that of the first pane, round and round."""
+        """Return the name after that of the first pane, cyclically."""
         names = self._data.names
-        at = names.index(self._data.name) if self._data.name in names else -1
-        return names[(at + 1) % len(names)]
+        position = names.index(self._data.name) if self._data.name in names else -1
+        return names[(position + 1) % len(names)]
 
     async def _open(self, request: LoadRequest) -> None:
         async with announced(self.context, request, self._fail):
@@ -153,7 +152,7 @@ class FileBeside(Controller):
             self._show(request, choice, flow)
 
     def _read(self, request: LoadRequest) -> tuple[Choice, TracedFlow]:
-        """Read a flow, and trace what the first picture of it needs."""
+        """Read a flow, and make the traces for its first picture."""
         library, name = self.context.library, request.name
         choice = library.nearest(name, request.choice)
         field = library.field(name, choice)
@@ -163,7 +162,7 @@ class FileBeside(Controller):
         return choice, flow
 
     def _show(self, request: LoadRequest, choice: Choice, flow: TracedFlow) -> None:
-        """Put a flow into the second pane."""
+        """Show a flow in the second pane."""
         units = [field.length_unit for field in (self.viewport.field, flow.field)]
         if all(units) and units[0] != units[1]:
             msg = (

@@ -1,10 +1,9 @@
-"""What a page may open: the files it was given, by name.
+"""Library of the flows that a page may open, by name.
 
-From the page comes a name, never a path. Names are looked up among those of the files that were
-found when the library was made or looked through again, so nothing outside them can be opened.
-Files that are open, and the flows made from them, are shared by all pages of a server. Each is open
-in a separate process, which may crash; one that has changed since is opened again when it is
-requested.
+A page sends names, never paths. They are looked up among the files that were found when the library
+was made or listed again, so no other file can be opened. Open files and their flows are shared by
+all pages of a server. Each file is open in a separate process, which may crash; a file that has
+changed is opened again on request.
 """
 
 from __future__ import annotations
@@ -47,11 +46,11 @@ SUFFIXES = frozenset(
         *EARTH_SUFFIXES,
     ]
 )
-#: Endings that are listed though nothing of them is drawn, and why.
+#: Endings that are listed although they cannot be drawn, with the reasons.
 UNSHOWN = dict.fromkeys(
     (".pkl", ".pickle", ".joblib"), "a pickle can run any program, so it is refused"
 )
-#: Folders below the one that was given that are searched, and files that are listed, at most.
+#: Depth to which a folder is searched, and most files that are listed.
 FOLDER_DEPTH, MOST_FILES = 4, 500
 #: Files, and flows, that stay open at most, and bytes of each of the two together.
 MOST_SOURCES, MOST_FLOWS = 4, 12
@@ -60,7 +59,7 @@ SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 P = ParamSpec("P")
 T = TypeVar("T")
 Opener = Callable[[], Source]
-#: How far in, and on what point of the mesh.
+#: Zoom, and the point of the mesh to look at.
 Look = tuple[float, tuple[float, ...] | None]
 
 
@@ -82,7 +81,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class TracedFlow:
-    """A flow, and what stays for it: its traces, its tiles, and the state of its files."""
+    """A flow with its traces, its tiles, and the state of its files."""
 
     field: FlowField
     store: SliceStore
@@ -91,14 +90,14 @@ class TracedFlow:
 
     @property
     def nbytes(self) -> int:
-        """Bytes that are in memory for it."""
+        """Size in memory, in bytes."""
         return self.field.nbytes + self.store.nbytes
 
 
 def _at_home(
     method: Callable[Concatenate[Library, str, P], T],
 ) -> Callable[Concatenate[Library, str, P], T]:
-    """Have a method called on the library that the flow of a name belongs to."""
+    """Call a method on the library to which the flow of a name belongs."""
 
     @wraps(method)
     def called(library: Library, name: str, /, *arguments: P.args, **options: P.kwargs) -> T:
@@ -162,7 +161,7 @@ class Library:
         self._flows: ByteCache[tuple[str, Choice], TracedFlow] = ByteCache(
             FLOW_BYTES, max_count=MOST_FLOWS
         )
-        #: From which state of its files each field was made.
+        #: The state of the files from which each field was made.
         self._identities: WeakKeyDictionary[FlowField, Identity] = WeakKeyDictionary()
         self._opening: dict[str, threading.Lock] = {}
         self._making: dict[str, threading.Lock] = {}
@@ -261,7 +260,7 @@ class Library:
 
     @_at_home
     def is_file(self, name: str) -> bool:
-        """Whether a name belongs to a file."""
+        """Return whether a name belongs to a file."""
         return not self._is_line(name) and isinstance(self._named.get(name, _Files(())), _Files)
 
     @_at_home
@@ -320,7 +319,7 @@ class Library:
 
     @_at_home
     def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
-        """Trace what the first picture of a flow needs, and keep the flow open.
+        """Make the traces for the first picture of a flow, and keep the flow open.
 
         Raises
         ------
@@ -341,7 +340,7 @@ def _is_folder(path: str | Path) -> bool:
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> Source:
-    """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
+    """Return a source of a flow, or of the field that options select from a mesh."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:
         return DatasetSource(flow)
@@ -355,22 +354,22 @@ def _constant(source: Source) -> Opener:
 
 
 def _paths(flow: Any) -> tuple[Path, ...]:
-    """Return the paths that a flow is given by; none of a mesh, a field or a dataset."""
-    several = flow if isinstance(flow, (list, tuple)) else (flow,)
-    are_paths = bool(several) and all(isinstance(one, (str, Path)) for one in several)
-    return tuple(Path(one) for one in several) if are_paths else ()
+    """Return the paths of a flow that is given as files; empty for meshes, fields and datasets."""
+    items = flow if isinstance(flow, (list, tuple)) else (flow,)
+    are_paths = all(isinstance(item, (str, Path)) for item in items)
+    return tuple(Path(item) for item in items) if are_paths else ()
 
 
 @dataclass(frozen=True)
 class _Files:
-    """What opens a file, or several that belong together, in a separate process."""
+    """Opener of a file, or of several that belong together, in a separate process."""
 
     paths: tuple[Path, ...]
 
     def __call__(self) -> Source:
         if not self._is_store:
             return open_remote(self.paths)
-        # Of a pyramid no more is read than what is drawn, and that is checked.
+        # Only the parts of a pyramid that are drawn are read, with checks.
         identity = self.identity
         source = FlowSource(open_store(self.paths[0]), name=self.paths[0].stem)
         source.identity = identity
@@ -391,7 +390,7 @@ def _identity(opener: Opener) -> Identity:
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
-    """Return a name that is not taken yet."""
+    """Return a name that is not taken, by adding a number."""
     free, number = name, 1
     while free in taken:
         number += 1
@@ -400,16 +399,16 @@ def _free(name: str, taken: Iterable[str]) -> str:
 
 
 def find_files(folder: Path) -> list[tuple[str, Path]]:
-    """Find files below a folder; what a link leads to outside of it is left out."""
+    """Find files below a folder, except those outside of it to which links lead."""
     files: list[tuple[str, Path]] = []
     waiting = [(folder, 0)]
     while waiting and len(files) < MOST_FILES:
-        here, depth = waiting.pop(0)
+        parent, depth = waiting.pop(0)
         try:
-            inside = sorted(here.iterdir())
+            paths = sorted(parent.iterdir())
         except OSError:
             continue
-        for path in inside:
+        for path in paths:
             if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
                 continue
             if path.is_dir() and not path.is_symlink() and is_dataset_file(path):
@@ -424,7 +423,7 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
 
 
 def _reason(path: Path) -> str:
-    """Return why nothing of a file is drawn, by its ending; empty where something may be."""
+    """Return the reason why a file cannot be drawn, by its ending; empty if it may be."""
     beside = path.with_suffix(".npy")
     if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
         return f"it has no vectors, and {beside.name} does not exist"
@@ -432,7 +431,7 @@ def _reason(path: Path) -> str:
 
 
 def _is_solution(path: Path) -> bool:
-    """Whether this is the part of a PLOT3D pair that is opened along with its grid."""
+    """Return whether a file is the solution of a PLOT3D pair, opened along with its grid."""
     from flowtex.field.io import plot3d
 
     return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

@@ -1,4 +1,4 @@
-"""Opening flows in a thread: requests, and what the page hears of them."""
+"""Opening flows in a thread: requests, and their progress on the page."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ NAME_LENGTH = 80
 
 @dataclass(eq=False)
 class LoadRequest:
-    """Something that is to be opened, after which ``then`` is called."""
+    """Request to open a flow, after which ``then`` is called."""
 
     name: str
     choice: Choice
     then: Callable[[], None] | None = None
-    cancelled: bool = False  #: Whether nothing of it is to be shown any more.
-    #: Whether something else was requested since. While a slider moves that is always so: what is
-    #: quick to load is shown all the same, or nothing would be seen on the way.
+    cancelled: bool = False  #: Whether its result is not to be shown.
+    #: Whether another flow was requested since, as always while a slider moves. Results of quick
+    #: work are shown nevertheless, or nothing would be seen on the way.
     superseded: bool = False
 
     @property
@@ -45,9 +45,9 @@ class LoadRequest:
         return self.cancelled or self.superseded
 
     async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
-        """Do some work for it off the event loop; ``Stopped`` if the result is no longer wanted.
+        """Do work for it in a thread; raises ``Stopped`` if the result is no longer wanted.
 
-        Quick work is finished, once it has begun, though something else was requested.
+        Quick work that has begun is finished even if another flow was requested.
         """
 
         def unwanted() -> bool:
@@ -69,7 +69,7 @@ class LoadRequest:
 async def announced(
     context: Context, request: LoadRequest, fail: Callable[[], None]
 ) -> AsyncIterator[None]:
-    """Show progress on the page, and any reason why opening fails; then call ``fail``."""
+    """Show progress on the page; if opening fails, show the reason and call ``fail``."""
     announcement = asyncio.create_task(_show_busy(context, request))
     name, problem = shortened(request.name, NAME_LENGTH), ""
     try:
@@ -91,18 +91,18 @@ async def announced(
 
 
 async def _show_busy(context: Context, request: LoadRequest) -> None:
-    """Show on the page what is in progress, after a short delay."""
+    """Show the name of the flow being opened, after a short delay."""
     await asyncio.sleep(BUSY_DELAY_S)
     if not request.over:
         context.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")
 
 
 def without_folder(problem: str, name: str) -> str:
-    """Leave out where the file lies: that is the server's own affair."""
+    """Return a message without the folder of the file, which is private to the server."""
     last = name.rsplit("/", 1)[-1]
-    at = problem.find(f"/{last}:")
-    if at >= 0 and ":" not in problem[:at]:
-        return problem[at + 1 :]
-    # Of several files that are opened together the first is named.
+    start = problem.find(f"/{last}:")
+    if start >= 0 and ":" not in problem[:start]:
+        return problem[start + 1 :]
+    # Messages about several files name the first.
     path, colon, rest = problem.partition(": ")
     return f"{Path(path).name}{colon}{rest}" if Path(path).is_absolute() else problem

@@ -1,6 +1,6 @@
 """The state of a page as text: as a link, and back, and as the lines of Python that draw it.
 
-What a page shows is a mapping with the names below, each of which may be missing::
+The state is a mapping with the names below, each of which may be missing::
 
     file vectors plane block   which flow: names as a library has them; k=20 or x=0.5
     time clock                 the field's own time; seconds of the streaming
@@ -10,7 +10,7 @@ What a page shows is a mapping with the names below, each of which may be missin
     settings                   a mapping of settings by name
     camera                     as :meth:`flowtex.rendering.camera.Camera.to_dict` has it
     theme background split     as the page names them
-    time_beside beside_file    what the second view shows, by what split says
+    time_beside beside_file    contents of the second view, depending on split
     beside                     of another file: vectors, plane, block, time and scalars; no link
                                has it, for it follows from the rest
 
@@ -21,7 +21,6 @@ exactly. A link may come from anybody: what is unknown or out of range is left o
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
@@ -38,12 +37,13 @@ from flowtex.app.controllers.appearance import (
     comparison,
     look_shown,
 )
+from flowtex.app.controllers.context import State
 from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.field.datasets.files import is_dataset_file
 from flowtex.field.source import OUTER
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.scene.options import Appearance as Look
 from flowtex.scene.options import option_form
 from flowtex.settings import TABLE, SettingsError
@@ -59,14 +59,14 @@ DEFAULTS: dict[str, Any] = {
 }
 #: Characters and values of a link, and characters of a name and of a fault, at most.
 LINK_LENGTH, MOST_VALUES, NAME_LENGTH, FAULT_LENGTH = 8_000, 100, 400, 250
-#: What is the page's own and no part of its state.
+#: Names in a link that are no part of the state.
 IGNORED = ("secret",)
 
 #: Longest line of Python.
 LINE_LENGTH = 88
 #: Arguments of ``FlowField.from_file``.
 FILE_ARGUMENTS = ("vectors", "plane", "block")
-#: What they are called for data of the Earth.
+#: Their names for data of the Earth.
 OF_DATASETS = {"block": "projection"}
 PLANE, CMAP = (
     re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII),
@@ -74,7 +74,7 @@ PLANE, CMAP = (
 )
 
 
-def to_link(state: Mapping[str, Any]) -> str:
+def to_link(state: State) -> str:
     """Return a state as the text of a link.
 
     Values that are ``None`` or defaults are left out. The text is a query such as
@@ -101,8 +101,8 @@ def to_link(state: Mapping[str, Any]) -> str:
 def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
     """Return the state that a link holds, or the part of it behind the ``?`` or the ``#``.
 
-    Every value is checked, but not whether there are files and arrays of these names. Defaults
-    are not filled in. ``faults`` takes a sentence for each part that is of no use and left out.
+    Every value is checked, but not whether files and arrays of these names exist. Defaults are not
+    filled in. A sentence for each invalid part, which is left out, is added to ``faults``.
     """
     messages: list[str] = [] if faults is None else faults
     state: dict[str, Any] = {}
@@ -122,7 +122,7 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
 
 
 def _pairs(text: str, faults: list[str]) -> list[tuple[str, str]]:
-    """Take a link apart."""
+    """Return the names and values of a link."""
     query = re.split(r"[?#]", text)[-1]
     if len(query) > LINK_LENGTH:
         faults.append(f"the link has {len(query):,} characters; expected {LINK_LENGTH:,} at most")
@@ -190,7 +190,7 @@ _FORMS: dict[str, Form] = {
 
 
 def to_python(
-    state: Mapping[str, Any],
+    state: State,
     *,
     source: str | None = None,
     source_beside: str | None = None,
@@ -204,20 +204,20 @@ def to_python(
     ``"flowtex.examples.cylinder_field()"``.
     """
     fields = {"field": source or _from_file(state)}
-    panes: list[Mapping[str, Any]] = [{}]
+    panes: list[State] = [{}]
     if (split := state.get("split") or "nothing") == ANOTHER_FILE:
         if name := state.get("beside_file"):
             beside = {"time": None, **(state.get("beside") or {})}
             fields["field_beside"] = source_beside or _from_file({**beside, "file": name})
-            own = {n: beside[n] for n in ("time", "scalars") if n in beside}
-            panes.append({**own, "field": "field_beside"})
+            differences = {n: beside[n] for n in ("time", "scalars") if n in beside}
+            panes.append({**differences, "field": "field_beside"})
     elif split != "nothing":
         panes.append(comparison(split, state.get("time_beside") or 0.0))
     window = [f"window_size={list(size)!r}"]
     window += ["off_screen=True"] if picture is not None else []
     window += ["shape=(1, 2)", "border=False"] if len(panes) > 1 else []
     lines = ["import pyvista as pv", "", "import flowtex", ""]
-    lines += [f"{name} = {made}" for name, made in fields.items()]
+    lines += [f"{name} = {expression}" for name, expression in fields.items()]
     lines += [_call("pl = pv.Plotter", window)]
     for column, different in enumerate(panes):
         lines += [f"pl.subplot(0, {column})"] if len(panes) > 1 else []
@@ -231,7 +231,7 @@ def to_python(
     return "\n".join(lines) + "\n"
 
 
-def _from_file(state: Mapping[str, Any]) -> str:
+def _from_file(state: State) -> str:
     if not state.get("file"):
         msg = "the state has no file; pass the expression that makes its field as source"
         raise FieldError(msg)
@@ -248,8 +248,8 @@ def _from_file(state: Mapping[str, Any]) -> str:
     return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
 
 
-def _literal(value: Any) -> str:
-    """Return a value as people write it: with double quotes."""
+def _literal(value: object) -> str:
+    """Return a value as a literal with double quotes."""
     text = repr(value)
     plain = isinstance(value, str) and text[0] == "'" and '"' not in text and "\\" not in text
     return f'"{text[1:-1]}"' if plain else text
@@ -263,8 +263,8 @@ def _call(function: str, arguments: list[str]) -> str:
     return "\n".join([f"{function}(", *(f"    {argument}," for argument in arguments), ")"])
 
 
-def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[str]:
-    """Add the flow to a view, with the settings that are not as by default."""
+def _add_lines(state: State, different: State) -> list[str]:
+    """Return the lines that add the flow to a view, with settings other than the defaults."""
     colour = state.get("colour", DEFAULTS["colour"])
     appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
@@ -278,7 +278,7 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     state = {**state, "time": settings.pop("time", state.get("time"))}
     settings.pop("scalars", None)
     field = settings.pop("field", "field")
-    if settings.get("noise") == "image":  # which is a person's own, and not in the state
+    if settings.get("noise") == "image":  # the image is not in the state
         del settings["noise"]
     changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
     arguments = [f"{name}={_literal(value)}" for name, value in {**appearance, **changed}.items()]
@@ -288,13 +288,13 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     return lines + [f"handle.{name} = {value!r}" for name, value in changes]
 
 
-def _background(state: Mapping[str, Any]) -> str:
+def _background(state: State) -> str:
     background = str(state.get("background", DEFAULTS["background"]))
     theme = str(state.get("theme", DEFAULTS["theme"]))
     return THEMES[theme] if background == DEFAULTS["background"] else background
 
 
-def _camera_lines(camera: Mapping[str, Any] | None) -> list[str]:
+def _camera_lines(camera: CameraValues | None) -> list[str]:
     if not camera:
         return []
     lines = [f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}"]

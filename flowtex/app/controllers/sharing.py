@@ -1,17 +1,17 @@
-"""What leaves the page: pictures, movies, a link to the present state, and the lines of Python."""
+"""Exports of a page: pictures, movies, a link to the state, and lines of Python."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from flowtex._util.progress import Stopped
-from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.controllers.file_beside import FileBeside
@@ -20,13 +20,13 @@ from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number
 from flowtex.errors import FieldError
 
-#: What can be saved.
+#: Formats of files to save.
 FORMATS = ("PNG", "MP4", "GIF")
 #: Seconds between two reports of how far a job is.
 PROGRESS_INTERVAL_S = 0.15
 #: Characters of a link that are read.
 LINK_LENGTH = 10_000
-#: What numbers of the page are called when they are of no use.
+#: Names of numbers of the page in messages.
 LABELS = {
     "out_width": "the width",
     "out_height": "the height",
@@ -39,14 +39,14 @@ _log = logging.getLogger(__name__)
 
 
 class Sharing(Controller):
-    """What leaves the page; ``restore_state`` is called with the state that a link holds."""
+    """Exports of a page; ``restore_state`` is called with the state of a link."""
 
     def __init__(
         self,
         context: Context,
         data: Data,
         beside: FileBeside,
-        restore_state: Callable[[Mapping[str, Any]], None],
+        restore_state: Callable[[State], None],
     ) -> None:
         super().__init__(context)
         self.downloads = Downloads(context.routes)
@@ -70,7 +70,7 @@ class Sharing(Controller):
         context.field_changed.connect(self.cancel)
 
     def start(self) -> None:
-        """Make what the page asks for."""
+        """Start the export that the page requests."""
         self.cancel()
         try:
             job = self._new_job()
@@ -82,7 +82,7 @@ class Sharing(Controller):
         self._task = asyncio.create_task(self._run(job, self._task))
 
     def cancel(self) -> None:
-        """Make no more of it."""
+        """Cancel the export."""
         if self._job is not None:
             self._job.cancel()
         self._job = None
@@ -123,12 +123,12 @@ class Sharing(Controller):
         return checked
 
     def _busy(self) -> bool:
-        """Whether the view needs the time more."""
+        """Return whether the view is being drawn, which has priority."""
         return self.stream.moving and not self.stream.paused
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
         if before is not None:
-            # It was cancelled, and its window goes before there is another one.
+            # It was cancelled, and its window is closed before another one is opened.
             await asyncio.wait([before])
         if job.cancelled:
             _remove_folder(job.path)
@@ -168,7 +168,7 @@ class Sharing(Controller):
         return state
 
     def show_state(self) -> None:
-        """Let the page show the link and the lines of Python."""
+        """Show the link and the lines of Python on the page."""
         state = self.present_state()
         self.state.set(
             link="#" + to_link(state),
@@ -180,8 +180,8 @@ class Sharing(Controller):
             ),
         )
 
-    def take_link(self, text: Any) -> None:
-        """Show the state that the page's address holds."""
+    def take_link(self, text: object) -> None:
+        """Show the state in the page's address."""
         faults: list[str] = []
         state = from_link(str(text)[:LINK_LENGTH], faults)
         if faults:
@@ -190,7 +190,7 @@ class Sharing(Controller):
             self._restore_state(state)
 
     def close(self) -> None:
-        """End what is running."""
+        """End running tasks."""
         if self._job is not None:
             self._job.cancel()
         if self._task is not None:
@@ -199,6 +199,6 @@ class Sharing(Controller):
 
 
 def _remove_folder(path: Path) -> None:
-    """Remove the folder that was made for a file that is not there."""
+    """Remove the folder of a file that was not written."""
     with suppress(OSError):
         shutil.rmtree(path.parent)

@@ -14,12 +14,12 @@ from aiohttp.http_exceptions import HttpProcessingError
 MOST_RECORDS, WINDOW_S = 5, 60.0
 #: Characters of a message, and of a traceback with it.
 MESSAGE_LENGTH, TRACEBACK_LENGTH = 2_000, 8_000
-#: Faults of who asks, for which no code of ours need be looked at.
+#: Errors caused by clients, whose tracebacks are not logged.
 OTHERS_FAULTS = HttpProcessingError, web.RequestPayloadError
 
 
 class RepeatFilter(logging.Filter):
-    """Drops what was written several times already, and cuts what is long; a clock in seconds."""
+    """Drops repeated records, and shortens long ones; ``clock`` is in seconds."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()
@@ -57,7 +57,7 @@ def _cut(text: str, most: int) -> str:
 
 @contextmanager
 def bounded_log() -> Iterator[None]:
-    """Filter what this process logs, its libraries as well."""
+    """Filter the log of this process, including that of libraries."""
     handlers = logging.getLogger().handlers or [logging.lastResort or logging.NullHandler()]
     repeats = RepeatFilter()
     for handler in handlers:

@@ -1,10 +1,10 @@
-"""The connections of a web server: how many, for how long, and which one gives way.
+"""Limits of the connections of a web server: their number, their duration, and their priority.
 
 The head of a request has to arrive within :data:`HEAD_S`, also the next one of a connection that
-is kept, and an answer has to be found within :data:`ANSWER_S`. When there are as many connections
-as there may be, a newcomer takes the place of another one: of the address that has most of them,
-the oldest that waits for a request, or else the oldest that is being answered. Those of pages last,
-and are not closed for others. So connections that were opened to keep others out end each other.
+is kept, and the answer within :data:`ANSWER_S`. At the maximum number of connections, a new one
+replaces another: of the address that has most of them, the oldest that waits for a request, or else
+the oldest that is being answered. Those of pages are never replaced. So connections that were
+opened to keep others out replace each other.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import asyncio
 import socket as sockets
 from collections import Counter
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
@@ -24,7 +25,9 @@ CONNECTIONS, BACKLOG = 512, 64
 #: Seconds in which the rest of a request that was answered may come, and connections end.
 LINGER_S, SHUTDOWN_S = 2.0, 2.0
 
-#: What is being answered: the time that each connection has for it.
+#: Answers a request.
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+#: The time limit of each connection that is being answered.
 ANSWERING = web.AppKey("answering", dict[web.RequestHandler, asyncio.Timeout])
 
 
@@ -33,11 +36,10 @@ def limit_time(application: web.Application) -> None:
     answering = application[ANSWERING] = {}
 
     @web.middleware
-    async def in_time(request: web.Request, handler: Any) -> web.StreamResponse:
+    async def in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
         try:
             async with asyncio.timeout(ANSWER_S) as answering[request.protocol]:
-                answer: web.StreamResponse = await handler(request)
-                return answer
+                return await handler(request)
         except TimeoutError:
             raise web.HTTPRequestTimeout from None
         finally:
@@ -47,7 +49,7 @@ def limit_time(application: web.Application) -> None:
 
 
 def keep(request: web.Request) -> None:
-    """Let the connection of a request last as long as it likes."""
+    """Lift the time limit of a request's connection."""
     request.app[ANSWERING][request.protocol].reschedule(None)
 
 
@@ -63,7 +65,7 @@ class LimitedServer:
     ) -> None:
         self._answering = application[ANSWERING]
         self._most = usual_most() if most is None else most
-        # What ends the program is handled by the program, and not by the web server.
+        # The program handles signals, not the web server.
         self._runner = web.AppRunner(
             application,
             handle_signals=False,
@@ -75,14 +77,14 @@ class LimitedServer:
         )
         self._server: asyncio.Server | None = None
 
-    async def start(self, where: sockets.socket | tuple[str, int]) -> int:
+    async def start(self, endpoint: sockets.socket | tuple[str, int]) -> int:
         """Listen at a host and port, or on a socket that listens; return the port."""
         await self._runner.setup()
         create = asyncio.get_running_loop().create_server
-        if isinstance(where, tuple):
-            self._server = await create(self._admit, *where, backlog=BACKLOG)
+        if isinstance(endpoint, tuple):
+            self._server = await create(self._admit, *endpoint, backlog=BACKLOG)
         else:
-            self._server = await create(self._admit, sock=where, backlog=BACKLOG)
+            self._server = await create(self._admit, sock=endpoint, backlog=BACKLOG)
         port: int = self._server.sockets[0].getsockname()[1]
         return port
 
@@ -93,15 +95,15 @@ class LimitedServer:
             for listener in self._server.sockets:
                 with suppress(NotImplementedError):  # on Windows
                     loop.remove_reader(listener.fileno())
-            # What was accepted gets its protocol first: of a closed server asyncio would leave it
-            # open and unanswered.
+            # Accepted connections get their protocol first: asyncio would leave those of a closed
+            # server open and unanswered.
             await asyncio.sleep(0)
             self._server.close()
             self._server = None
         await self._runner.cleanup()
 
     def _admit(self) -> asyncio.Protocol:
-        """Return what talks to a newcomer, for whom another connection may have to end."""
+        """Return the protocol of a new connection, for which another one may have to end."""
         server = self._runner.server
         if server is None or self._server is None:  # accepted just before the server stopped
             return _Refusal()
@@ -118,7 +120,7 @@ class LimitedServer:
         return server()
 
     def _loser(self, present: list[web.RequestHandler]) -> web.RequestHandler | None:
-        """Return the connection that gives way; they come in the order of their arrival."""
+        """Return the connection to be replaced; ``present`` is in the order of arrival."""
         times = self._answering
         waiting = [connection for connection in present if connection not in times]
         others = [c for c in present if c in times and times[c].when() is not None]
@@ -142,7 +144,7 @@ def _address(connection: web.RequestHandler) -> object:
 
 
 def usual_most() -> int:
-    """Return how many connections this process has room for."""
+    """Return the maximum number of connections of this process."""
     with suppress(ImportError, OSError):  # on Windows
         import resource
 

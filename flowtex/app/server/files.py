@@ -1,9 +1,9 @@
 """Files that one session serves over HTTP: downloads, and parts for the browser's client.
 
 A file's address is ``flowtex/<token>/<name>``, below the page. The token cannot be guessed and
-belongs to one session, so the address alone gives access. What is served is looked up at each
-request. Downloads lie in a temporary folder that its owner alone can read; they are removed after a
-while, when they take too much room, and when the page closes.
+belongs to one session, so the address alone gives access. Content is looked up at each request.
+Downloads are in a temporary folder that only its owner can read; they are removed after a while,
+when they take too much room, and when the page closes.
 """
 
 from __future__ import annotations
@@ -27,29 +27,30 @@ from flowtex.errors import FieldError
 
 #: Seconds that a download waits to be fetched, and bytes of all of them together, at most.
 LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
-#: Bytes of a file that is sent which are written at once.
+#: Bytes of an upload that are written at once.
 CHUNK_BYTES = 1 << 18
-#: Bytes of a file's name, and of its ending, at most: file systems take 255, and what is written
-#: has a longer name until it is whole.
+#: Most bytes of a file's name, and of its ending: file systems allow 255, and an incomplete file
+#: has a longer name.
 NAME_BYTES, ENDING_BYTES = 180, 20
 #: Names of devices on Windows, whatever their endings are.
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)\s*(\.|$)", re.IGNORECASE)
 
-#: What a file is: its bytes, or where they lie; its media type; and the name that it is saved
-#: under, or ``None`` for what the page uses itself.
+#: Content of a file: its bytes or its path; its media type; and the name under which it is saved,
+#: or ``None`` for files that the page uses itself.
 Content = tuple[bytes | Path, str, str | None]
+#: Returns the content of a file.
 Give = Callable[[], Content | Awaitable[Content]]
-#: What takes a file: its name, which may be anything, and its bytes.
+#: Receives a file: its name, which may be any text, and its bytes.
 Take = Callable[[str, AsyncIterable[bytes]], Awaitable[None]]
 
 EXPIRED = "This download has expired. Save the picture or the movie again on the page."
 
-#: Where trame keeps a session's routes: in what only the server's side sees.
+#: Key of a session's routes in trame's context, which only the server sees.
 KEY = "flowtex_routes"
 
 
 class Routes:
-    """What one session serves, below a ``token`` that cannot be guessed."""
+    """Files that one session serves, below a ``token`` that cannot be guessed."""
 
     def __init__(self) -> None:
         self.token = new_secret()
@@ -77,12 +78,12 @@ class Routes:
             add_route(application, {self.token: self}.get)
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Answer a request for a file, or one that brings a file."""
-        brings = request.method == "POST"
-        return await (self.receive(name, request) if brings else self.answer(name))
+        """Answer a request for a file, or an upload."""
+        is_upload = request.method == "POST"
+        return await (self.receive(name, request) if is_upload else self.answer(name))
 
     def give(self, name: str, content: Give) -> str:
-        """Hand out a file, in place of an earlier one of that name; return its address.
+        """Serve a file, in place of an earlier one of that name; return its address.
 
         The name has no slash; the content is called at each request, and may be a coroutine
         function.
@@ -94,9 +95,9 @@ class Routes:
         return f"flowtex/{self.token}/{quote(name)}"
 
     def give_each(self, stem: str, content: Callable[[str], Give]) -> str:
-        """Hand out files of many names; return the common part of their addresses.
+        """Serve files of many names; return the common part of their addresses.
 
-        ``content`` is called with that part of a name, and raises a ``LookupError`` or a
+        ``content`` is called with the rest of a name, and raises a ``LookupError`` or a
         ``ValueError`` where the file does not exist. The stem is as the name of :meth:`give`,
         without a full stop.
         """
@@ -104,7 +105,7 @@ class Routes:
         return f"flowtex/{self.token}/{quote(stem)}."
 
     def take(self, name: str, taker: Take) -> str:
-        """Take files that the page sends; return the address, which gets ``?name=`` as well.
+        """Receive files that the page sends; return the address, to which ``?name=`` is added.
 
         The taker raises a FieldError, which the page shows, for a file that cannot be used.
         """
@@ -112,25 +113,25 @@ class Routes:
         return f"flowtex/{self.token}/{quote(name)}"
 
     def withdraw(self, name: str) -> None:
-        """Hand a file, or those of a stem, out no more."""
+        """Stop serving a file, or those of a stem."""
         self._content.pop(name, None)
         self._families.pop(name, None)
 
     def close(self) -> None:
-        """Hand nothing out any more."""
+        """Stop serving and receiving files."""
         self._content.clear()
         self._families.clear()
         self._takers.clear()
 
     async def receive(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Take what is sent; ``HTTPNotFound`` where nothing is taken under that name."""
+        """Receive a file; raises ``HTTPNotFound`` if the name receives none."""
         taker = self._takers.get(name)
         if taker is None:
             raise web.HTTPNotFound
         try:
             await taker(request.query.get("name", ""), request.content.iter_chunked(CHUNK_BYTES))
         except FieldError as error:
-            # What is left of the body is not read.
+            # The rest of the body is not read.
             return web.Response(status=400, text=str(error), headers={"Connection": "close"})
         return web.Response(text="")
 
@@ -144,7 +145,7 @@ class Routes:
             return None
 
     async def answer(self, name: str) -> web.StreamResponse:
-        """Return what is requested; ``HTTPNotFound`` where there is nothing."""
+        """Return a file; raises ``HTTPNotFound`` if it does not exist."""
         give = self._find(name)
         if give is None:
             raise web.HTTPNotFound
@@ -172,12 +173,12 @@ class Routes:
 
 
 class Handler(Protocol):
-    """What answers requests for files, below a ``token`` that cannot be guessed."""
+    """Answers requests for files, below a ``token`` that cannot be guessed."""
 
     token: str
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Answer a request for a file, or one that brings a file."""
+        """Answer a request for a file, or an upload."""
 
 
 def add_route(application: web.Application, find: Callable[[str], Handler | None]) -> None:
@@ -215,11 +216,11 @@ class Downloads:
         return len(self._files)
 
     def reserve(self, name: str) -> Path:
-        """Return where a file of this name can be written, in its own folder."""
+        """Return the path of a new file of this name, in its own folder."""
         return self._folder.new_folder() / plain_name(name)
 
     def add(self, path: Path) -> str:
-        """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
+        """Serve a file from :meth:`reserve`; return its address, relative to the page."""
         if not path.resolve().is_relative_to(self.folder.resolve()):
             msg = f"{path} is outside {self.folder}; expected a file from reserve()"
             raise FieldError(msg)
@@ -238,9 +239,9 @@ class Downloads:
         return path
 
     def expire(self) -> None:
-        """Remove what has lain too long, and the oldest where all take too much room."""
+        """Remove expired files, and the oldest ones if all take too much room."""
         limit = self._clock() - self._lifetime
-        for token in [t for t, (_, asked) in self._files.items() if asked < limit]:
+        for token in [t for t, (_, requested) in self._files.items() if requested < limit]:
             self.remove(token)
         sizes = {token: _size(path) for token, (path, _) in self._files.items()}
         for token in sorted(sizes, key=lambda t: self._files[t][1])[:-1]:
@@ -273,7 +274,7 @@ def _size(path: Path) -> int:
 
 
 def plain_name(name: str) -> str:
-    """Return a name with which no folder can be left, and which every system takes."""
+    """Return a name that leads to no other folder and is valid on every system."""
     plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
     if DEVICE.match(plain):
         plain = f"_{plain}"
@@ -283,5 +284,5 @@ def plain_name(name: str) -> str:
 
 
 def _cut(text: str, most: int) -> str:
-    """Return the characters of a text that fit into this many bytes."""
+    """Return the beginning of a text that fits into this many bytes."""
     return text.encode()[:most].decode(errors="ignore")

@@ -40,10 +40,10 @@ NO_LOOP = "flowtex: no event loop is running, so nothing is shown; use flowtex.a
 
 
 def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 one question
-    """Return the path of jupyter-server-proxy, or ``None`` where the browser comes directly.
+    """Return the path of jupyter-server-proxy, or ``None`` for a direct connection.
 
-    It may be given, as in ``"/user/me/proxy"``, or as an address; ``True`` is the usual one,
-    ``False`` none. By default it is that of ``FLOWTEX_PROXY``, or of JupyterHub where its
+    ``proxy`` is a path such as ``"/user/me/proxy"``, or an address; ``True`` for the usual path,
+    ``False`` for none. By default it is that of ``FLOWTEX_PROXY``, or of JupyterHub if its
     environment is found.
     """
     hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
@@ -68,9 +68,9 @@ class NotebookPage:
         height
             Height of the frame, in CSS pixels.
         proxy
-            How the browser comes to the kernel: ``True`` for jupyter-server-proxy, its path such as
-            ``"/base/proxy"``, or ``False`` for directly. By default directly, and on JupyterHub
-            through jupyter-server-proxy.
+            Connection of the browser to the kernel: ``True`` for jupyter-server-proxy, its path
+            such as ``"/base/proxy"``, or ``False`` for a direct one. By default direct, and on
+            JupyterHub through jupyter-server-proxy.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class NotebookPage:
         return Frame(self._served.address(proxy_path(proxy)), height)
 
     def leave_cell(self) -> None:
-        """Serve no more; called when the application is closed."""
+        """Stop serving; called when the application is closed."""
         served, self._served = self._served, None
         if served is not None:
             served.end()
@@ -109,7 +109,7 @@ class Frame:
         self.height = height
 
     def __repr__(self) -> str:
-        # The address opens the page: a log is not a place for it.
+        # The address opens the page, so it must not be in a log.
         return f"<flowtex page, {self.height} pixels high>"
 
     def _repr_html_(self) -> str:
@@ -122,11 +122,11 @@ class _Served:
     def __init__(self, app: Any, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._secret = new_secret()
-        # It listens before anything is awaited: the frame's address holds the port, and a browser
-        # that comes while the cell still runs waits in line.
+        # It listens before anything is awaited: the frame's address has the port, and a browser
+        # that connects while the cell still runs waits.
         self._socket = socket.create_server(("127.0.0.1", 0), backlog=BACKLOG)
         self._socket.setblocking(False)
-        # Who made the application closes it.
+        # The owner of the application closes it.
         borrowed_app = SimpleNamespace(server=app.server, stream=app.stream, close=lambda: None)
         sessions = Sessions(
             lambda: LocalSession.open(borrowed_app, self._secret),
@@ -151,7 +151,7 @@ class _Served:
         return f"{place}/?secret={self._secret}"
 
     def end(self) -> None:
-        if not self._loop.is_running():  # the kernel has ended, and all goes with it
+        if not self._loop.is_running():  # the kernel has ended
             self._socket.close()
             return
         self._loop.call_soon_threadsafe(self._start_end)

@@ -1,4 +1,4 @@
-"""What all parts of a page use: its state and elements, signals between its parts, and tasks."""
+"""Common tools of a page: its state and elements, signals between its parts, and tasks."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ class Signal:
     """An event of the page, and the functions that it calls."""
 
     def __init__(self) -> None:
-        self._listeners: list[Callable[..., Any]] = []
+        self._listeners: list[Callable[..., object]] = []
 
-    def connect(self, listener: Callable[..., Any]) -> None:
+    def connect(self, listener: Callable[..., object]) -> None:
         """Call a function at each event, after those that were connected before."""
         self._listeners.append(listener)
 
-    def emit(self, *values: Any) -> None:
+    def emit(self, *values: object) -> None:
         """Call the connected functions with these values."""
         for listener in list(self._listeners):
             listener(*values)
 
 
 def running_loop() -> asyncio.AbstractEventLoop | None:
-    """Return the event loop that this runs in; a script may use an application as well."""
+    """Return the running event loop, or ``None`` in a script."""
     with suppress(RuntimeError):
         return asyncio.get_running_loop()
     return None
 
 
 def start_task(work: Coroutine[Any, Any, None], failure: str) -> asyncio.Task[None]:
-    """Start a task that nobody waits for; an error in it is logged after the text ``failure``."""
+    """Start a task in the background; an error is logged with the text ``failure``."""
     task = asyncio.get_running_loop().create_task(work)
 
     def log_error(ended: asyncio.Task[None]) -> None:
@@ -55,7 +55,7 @@ class PageElement(AbstractElement):
     """An element that ``client/src/app`` makes; its script and style come with it."""
 
     def __init__(
-        self, name: str, properties: Sequence[str], events: Sequence[Any] = (), **attributes: Any
+        self, name: str, properties: Sequence[str], events: Sequence[str] = (), **attributes: Any
     ) -> None:
         super().__init__(f"flowtex-{name}", **attributes)
         self._attr_names += properties
@@ -84,7 +84,7 @@ class PageState:
         self._state = server.state
 
     def key(self, name: str) -> str:
-        """Return the name that the page has for a value."""
+        """Return the name of a value on the page."""
         return f"{self.prefix}{name}"
 
     def get(self, name: str) -> Any:
@@ -101,10 +101,10 @@ class PageState:
         with self._state:
             self.set(**values)
 
-    def on(self, *names: str) -> Callable[[Callable[[], Any]], None]:
-        """Call a function without arguments after each change of some values."""
+    def on(self, *names: str) -> Callable[[Callable[[], object]], None]:
+        """Return a function that connects a listener without arguments to changes of values."""
 
-        def listen(call: Callable[[], Any]) -> None:
+        def listen(call: Callable[[], object]) -> None:
             self._state.change(*(self.key(name) for name in names))(lambda **_: call())
 
         return listen

@@ -1,13 +1,13 @@
-"""What keeps others out of the page.
+"""Protection of the page against others.
 
 trame admits everybody who knows the secret, but its default is a public constant, and it does not
 check the origin of a web page: any page open in the same browser could drive the program. So every
 start has its own secret, which only the printed address carries, and a connection from another
-site's page is refused. Who comes without the secret gets a page that says so (``door.html``). The
+site's page is refused. Without the secret, a browser gets a page that says so (``door.html``). The
 page itself may load nothing from elsewhere.
 
-A site whose name suddenly points to this machine (DNS rebinding) is the same site to a browser. So
-the server answers to addresses in numbers and to names that it knows, and no others.
+For a browser, a site whose name suddenly points to this machine (DNS rebinding) is still the same
+site. So the server answers only to numeric addresses and to names that it knows.
 """
 
 from __future__ import annotations
@@ -20,16 +20,15 @@ import os
 import platform
 import re
 import secrets
-from collections.abc import Awaitable, Callable, Container, Iterable
-from typing import Any
+from collections.abc import Container, Iterable
 from urllib.parse import SplitResult, urlsplit
 
 from aiohttp import web
 
-from flowtex.app.server.connections import limit_time
+from flowtex.app.server.connections import Handler, limit_time
 from flowtex.errors import FieldError
 
-#: Names of this machine that only it can use.
+#: Names of this machine that only itself can use.
 LOCAL = frozenset({"localhost"})
 #: Stands for every name.
 ANY = "*"
@@ -45,8 +44,6 @@ HEADERS = {
 }
 
 FAULT = "The request failed. The server has printed the reason."
-
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 _log = logging.getLogger(__name__)
 
@@ -64,11 +61,11 @@ def is_same(text: object, secret: str) -> bool:
 
 
 def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
-    """Return the names that a server which listens on ``host`` is known by.
+    """Return the names of a server that listens on ``host``.
 
-    On JupyterHub, and behind another proxy of Jupyter's, that is any: the proxy passes on a name
-    that is not known here, and Jupyter's own token guards it. Raises a FieldError when what is
-    allowed is not a name.
+    On JupyterHub, and behind another proxy of Jupyter, any name is valid: the proxy passes on an
+    unknown name, and Jupyter's own token guards it. Raises a FieldError when an item of ``allowed``
+    is not a name.
     """
     names = [*LOCAL, host]
     if host in ("0.0.0.0", "::", ""):
@@ -89,11 +86,10 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
 def guard(
     application: web.Application, *, hosts: Container[str] = LOCAL, framed: bool = False
 ) -> None:
-    """Limit times, refuse other sites' pages and unknown names, and keep faults to the log.
+    """Limit times, refuse other sites' pages and unknown names, and write errors only to the log.
 
-    The headers above go with each answer. ``hosts`` are names that it answers to, in small letters,
-    besides addresses in numbers; ``framed`` lets pages of other sites hold it in a frame, as a
-    notebook does.
+    Each answer has :data:`HEADERS`. ``hosts`` are valid host names in lower case, besides numeric
+    addresses; with ``framed`` pages of other sites may show it in a frame, as a notebook does.
     """
     policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 
@@ -124,14 +120,14 @@ def guard(
                 raise web.HTTPBadRequest from None
             if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
                 raise web.HTTPNotFound from None
-            # An address holds secrets, so that its pattern is written.
+            # An address contains secrets, so only its pattern is written.
             resource = request.match_info.route.resource
-            where = f"{request.method} {resource.canonical if resource else ''}"
+            target = f"{request.method} {resource.canonical if resource else ''}"
             expected = isinstance(error, (OSError, FieldError))
-            _log.error("%s: %s: %s", where, type(error).__name__, error, exc_info=not expected)
+            _log.error("%s: %s: %s", target, type(error).__name__, error, exc_info=not expected)
             raise web.HTTPInternalServerError(text=FAULT) from None
 
-    async def add_headers(request: Any, response: web.StreamResponse) -> None:
+    async def add_headers(request: web.Request, response: web.StreamResponse) -> None:
         del request
         response.headers.update({**HEADERS, "Content-Security-Policy": policy})
 
@@ -147,7 +143,7 @@ def _host_name(request: web.Request) -> str:
 
 
 def _split(address: str) -> SplitResult:
-    """Take an address apart; a malformed one has nothing."""
+    """Split an address; the parts of a malformed one are empty."""
     try:
         return urlsplit(address)
     except ValueError:
@@ -164,11 +160,11 @@ def _is_address(name: str) -> bool:
 
 
 def _own_hosts(request: web.Request) -> set[str]:
-    """Hosts that the page is known by.
+    """Return the host names of the page in a request.
 
-    A proxy keeps the name that the browser used as ``Host``, or hands it on as
-    ``X-Forwarded-Host``. A page of another site can set neither: not for a websocket, and for
-    anything else the browser asks first, which is refused.
+    A proxy keeps the name that the browser used as ``Host``, or passes it on as
+    ``X-Forwarded-Host``. A page of another site can set neither: not for a websocket, and otherwise
+    the browser asks for permission first, which is refused.
     """
-    handed_on = request.headers.get("X-Forwarded-Host", "").split(",")[0].strip()
-    return {request.headers.get("Host", ""), handed_on} - {""}
+    forwarded = request.headers.get("X-Forwarded-Host", "").split(",")[0].strip()
+    return {request.headers.get("Host", ""), forwarded} - {""}

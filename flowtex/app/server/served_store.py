@@ -1,4 +1,4 @@
-"""A store as it is passed on: its objects by their names, and nothing else."""
+"""A store as it is served: its objects by their names, and nothing else."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ServedStore:
 
     def __init__(self, place: str | Path) -> None:
         levels = Levels(place)
-        self.run = secrets.token_hex(4)  #: A word that no other run has.
+        self.run = secrets.token_hex(4)  #: A word that is unique to this run.
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
         zarr = import_extra("zarr", "store")
@@ -52,7 +52,7 @@ class ServedStore:
         return await self._read(name)
 
     def _check(self, name: str) -> None:
-        """Raise a LookupError for what is not an object of an array; names lead nowhere else."""
+        """Raise a LookupError if a name is not that of an object of an array."""
         array, _, rest = name.partition("/c/")
         words, counts = rest.split("/"), self._counts.get(array, ())
         if len(words) != len(counts) or not all(map(_NUMBER.fullmatch, words)):

@@ -6,7 +6,7 @@
     POST /flowtex/session          secret and token for a token: of one's own session, or a new one
     GET  /page/<token>/index.html  trame's page with ?secret=..., without it the door
     GET  /page/<token>/ws          the connection of a session
-    GET  /flowtex/<token>/<name>   what a session serves
+    GET  /flowtex/<token>/<name>   files of a session
     GET  /...                      scripts and styles, the same for all pages
 
 trame's client looks for its connection beside its page. It accepts another address, but writes it
@@ -26,7 +26,6 @@ import webbrowser
 from collections.abc import Awaitable, Callable, Container, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from aiohttp import web
 
@@ -49,7 +48,7 @@ from flowtex.rendering.diagnostics import has_display
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 #: Minutes for which a session waits for its page.
 IDLE_MINUTES = 15.0
-#: Bytes of what the door sends, at most.
+#: Most bytes of a request of the door.
 REQUEST_BYTES = 4096
 
 WRONG = "This page opens only with the complete address that flowtex printed, including the secret."
@@ -100,16 +99,16 @@ class Site:
         application = self._application(await self.sessions.prepare())
         self._server = LimitedServer(application)
 
-    async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
-        """Let pages in, after :meth:`prepare`, at a host and port, or on a socket that listens."""
+    async def listen(self, endpoint: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
+        """Admit pages, after :meth:`prepare`, at a host and port, or on a listening socket."""
         if self._server is None:
             msg = "the site is not prepared; call prepare() first"
             raise RuntimeError(msg)
-        self.port = await self._server.start(where)
+        self.port = await self._server.start(endpoint)
         self._sweep = asyncio.create_task(self.sessions.sweep())
 
     async def stop(self) -> None:
-        """End all sessions, and listen no more."""
+        """End all sessions, and stop listening."""
         if self._sweep is not None:
             self._sweep.cancel()
             with suppress(asyncio.CancelledError):
@@ -118,7 +117,7 @@ class Site:
         if self._server is not None:
             await self._server.stop()
 
-    def _application(self, static: dict[str, Any]) -> web.Application:
+    def _application(self, static: dict[str, str]) -> web.Application:
         application = web.Application(client_max_size=REQUEST_BYTES)
         guard(application, hosts=self._hosts, framed=self._framed)
         router = application.router
@@ -129,9 +128,9 @@ class Site:
         router.add_post("/flowtex/session", self._session)
         add_route(application, self.sessions.routes)
         index = (Path(static["/"]) / "index.html").read_text(encoding="utf-8")
-        # Everything but the connection lies two folders above; the first base counts.
+        # Everything but the connection is two folders above; the first base has precedence.
         self._index = index.replace("<head>", '<head><base href="../../" />', 1)
-        # The longest first: the last one is the root, which would take all.
+        # The longest first: the last one is the root, which matches everything.
         for route in sorted(static, reverse=True):
             router.add_static(f"/{route.strip('/')}", static[route])
         return application
@@ -156,7 +155,7 @@ class Site:
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
         try:
-            secret, token = _asked(await request.read())
+            secret, token = _secret_and_token(await request.read())
         except ValueError:
             return _answer(400, words=MALFORMED)
         if not is_same(secret, self._secret):
@@ -177,17 +176,17 @@ class Site:
         return _answer(200, session=session.token)
 
 
-def _asked(body: bytes) -> tuple[str, str | None]:
+def _secret_and_token(body: bytes) -> tuple[str, str | None]:
     """Return the secret and the token that a door sends.
 
-    Raises a ValueError when they are not texts that can be sent, or missing.
+    Raises a ValueError when they are missing or not valid texts.
     """
     try:
-        asked = json.loads(body)
+        request = json.loads(body)
     except RecursionError:
-        asked = None
+        request = None
     secret, token = (
-        map(asked.get, ("secret", "session")) if isinstance(asked, dict) else (None,) * 2
+        map(request.get, ("secret", "session")) if isinstance(request, dict) else (None,) * 2
     )
     if not isinstance(secret, str) or not isinstance(token, str | None):
         raise ValueError(MALFORMED)
@@ -244,16 +243,16 @@ def serve_sessions(
 async def serve_until_ended(
     listen: Callable[[], Awaitable[int]],
     stop: Callable[[], Awaitable[None]],
-    where: tuple[str, int, str],
+    endpoint: tuple[str, int, str],
     *,
     announce: Callable[[str], None],
     open_browser: bool,
 ) -> None:
     """Serve until the task is cancelled, or a signal raises :class:`Ended`.
 
-    ``listen`` returns the port; ``where`` is host, port and the rest of the address.
+    ``listen`` returns the port; ``endpoint`` is host, port and the rest of the address.
     """
-    host, port, rest = where
+    host, port, rest = endpoint
     main, loop = asyncio.current_task(), asyncio.get_running_loop()
     received: list[int] = []
 
@@ -289,7 +288,7 @@ async def serve_until_ended(
 
 
 def _host_name(host: str) -> str:
-    """Name of this machine in an address."""
+    """Return the name of this machine in an address."""
     if host in ("0.0.0.0", "::", ""):
         return os.uname().nodename if hasattr(os, "uname") else "localhost"
     return f"[{host}]" if ":" in host else host

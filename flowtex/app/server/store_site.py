@@ -1,4 +1,4 @@
-"""A pyramid on a page: the page, and the objects of its store that it streams.
+"""Server of a pyramid: a page, and the objects of its store that it streams.
 
 ::
 
@@ -6,8 +6,8 @@
     GET  /<token>/store/<run>/<name>   an object of the store
 
 All addresses in the page are relative, so that it works behind any proxy. Names are those of a
-pyramid's arrays and numbers of their chunks, and nothing else is looked for. Objects of another
-run, which a browser may still have, lie elsewhere.
+pyramid's arrays and numbers of their chunks, and nothing else is served. Objects of another run,
+which a browser may still have, have other addresses.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ def store_application(
 
     async def to_page(request: web.Request) -> web.Response:
         check(request)
-        address = f"{token}/"  # relative: a proxy may have put something before it
+        address = f"{token}/"  # relative: a proxy may have added a prefix
         raise web.HTTPFound(address)
 
     router = application.router
     router.add_get(f"/{{token}}/store/{served.run}/{{name:.+}}", store_handler)
     router.add_get("/{token}/", page_handler)
-    router.add_get("/", page_handler)  # which is closed without the token
+    router.add_get("/", page_handler)  # refused without the token
     router.add_get("/{token}", to_page)
     return application
 
@@ -76,7 +76,7 @@ def _headers(name: str) -> dict[str, str]:
 async def run_store(
     served: ServedStore,
     page: str,
-    where: tuple[str, int],
+    endpoint: tuple[str, int],
     *,
     token: str,
     hosts: Container[str],
@@ -86,9 +86,9 @@ async def run_store(
     """Serve a page and its store until the task is cancelled."""
     server = LimitedServer(store_application(served, page, token, hosts), handler_cancellation=True)
     await serve_until_ended(
-        lambda: server.start(where),
+        lambda: server.start(endpoint),
         server.stop,
-        (*where, f"{token}/"),
+        (*endpoint, f"{token}/"),
         announce=announce,
         open_browser=open_browser,
     )

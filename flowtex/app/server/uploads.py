@@ -1,7 +1,7 @@
-"""Files that a page sends, to be opened by itself alone.
+"""Files that a page uploads, for itself alone.
 
-Only formats are taken that lie in one file: others name further files, and would open any that the
-server can read. A name serves to be shown, and for its ending; where the file lies is decided here.
+Only formats of a single file are accepted: others refer to further files, and could open any that
+the server can read. The name is used for display and for its ending; the path is chosen here.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from flowtex.app.server.files import Routes, plain_name
 from flowtex.errors import FieldError
 from flowtex.field.remote import prepare_readers
 
-#: Endings of files that are taken.
+#: Endings of files that are accepted.
 UPLOAD_SUFFIXES = (
     *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp"),
     *(".nc", ".grib", ".grb", ".json"),
@@ -26,7 +26,7 @@ UPLOAD_BYTES, MOST_UPLOADS = 200_000_000, 8
 
 
 class Uploads:
-    """The files that one page has sent, in a folder that goes with it.
+    """The files that one page has uploaded, in a folder that is removed with it.
 
     ``arrived`` is called with the name and the path of each.
     """
@@ -40,7 +40,7 @@ class Uploads:
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
         """Write a file, and report it.
 
-        Raises a FieldError when it is not of a format that is taken, too large, or one too many.
+        Raises a FieldError when its format is not accepted, it is too large, or there are too many.
         """
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
@@ -55,14 +55,14 @@ class Uploads:
             raise FieldError(msg)
         prepare_readers()
         try:
-            path = await self._written(name, content)
+            path = await self._write(name, content)
         except OSError as error:
             msg = f"{name}: cannot be stored on the server ({error.strerror or error})"
             raise FieldError(msg) from error
         self._arrived(name, path)
 
-    async def _written(self, name: str, content: AsyncIterable[bytes]) -> Path:
-        """Write a file into its own folder, which does not stay after an error."""
+    async def _write(self, name: str, content: AsyncIterable[bytes]) -> Path:
+        """Write a file into its own folder, which is removed after an error."""
         path = self._folder.new_folder() / name
         size = 0
         try:

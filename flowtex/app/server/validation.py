@@ -1,7 +1,7 @@
-"""Checks of what a page sends: numbers, names and pictures.
+"""Checks of values that a page sends: numbers, names and pictures.
 
-A page may send anything instead of a number or a name. What does not fit is dropped or
-clipped here, so that no handler has to check again; pictures take no more room than they may.
+A page may send anything instead of a number or a name. Invalid values are dropped or clipped here,
+so that no handler has to check again; the size of pictures is limited.
 """
 
 from __future__ import annotations
@@ -12,26 +12,29 @@ import threading
 import warnings
 from collections.abc import Container, Mapping
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from flowtex._util.array_types import AnyArray
 from flowtex.settings import SettingsError
 from flowtex.textures.images import pixels_of
 
+if TYPE_CHECKING:
+    from PIL import Image
+
 #: Characters of a message to a page, at most.
 MESSAGE_LENGTH = 400
 #: Bytes of a picture that is sent, and pixels in it, at most.
 PICTURE_BYTES, PICTURE_PIXELS = 8_000_000, 50_000_000
-#: Pixels along a side of what is laid on the surface, at most; a larger picture is averaged.
+#: Most pixels along a side of an image on the surface; a larger picture is averaged.
 PICTURE_SIDE = 2048
-#: Formats that are read: some others of Pillow's start programs, or are seldom tried.
+#: Formats that are read: some others of Pillow start programs, or are rarely tested.
 PICTURE_FORMATS = ("PNG", "JPEG", "WEBP")
 
 #: Held while a picture is decoded, so that the pixels of many are not in memory at once.
 _decoding = threading.Lock()
 
 
-def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float | None:
+def number(value: object, low: float = -math.inf, high: float = math.inf) -> float | None:
     """Return a finite number within limits; ``None`` for anything else, a boolean too."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
@@ -41,32 +44,32 @@ def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float 
     return None
 
 
-def clipped(value: Any, default: float, low: float, high: float) -> float:
-    """Return a number, moved to the nearest limit; the default for what is not a number."""
+def clipped(value: object, default: float, low: float, high: float) -> float:
+    """Return a number clipped to limits; the default if the value is not a number."""
     checked = number(value)
     return default if checked is None else min(max(checked, low), high)
 
 
-def name_among(value: Any, names: Container[str]) -> bool:
-    """Return whether something is one of a few names; a list or a mapping is not."""
+def name_among(value: object, names: Container[str]) -> TypeGuard[str]:
+    """Return whether a value is one of some names."""
     return isinstance(value, str) and value in names
 
 
-def mapping(value: Any) -> Mapping[str, Any]:
+def mapping(value: object) -> Mapping[str, Any]:
     """Return a mapping, an empty one for anything else."""
     return value if isinstance(value, Mapping) else {}
 
 
 def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
-    """Return a text, its end left out where it is long."""
+    """Return a text, cut at its end if it is long."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def sent_picture(sent: Any) -> tuple[bytes, str]:
+def sent_picture(sent: object) -> tuple[bytes, str]:
     """Return the bytes and the name of a picture that a page has sent.
 
     It is a mapping with ``content``, bytes or a list of them, and ``name``. Raises a SettingsError
-    when it is too large, or not there.
+    when it is too large or missing.
     """
     content = sent.get("content") if isinstance(sent, Mapping) else None
     if isinstance(content, list):
@@ -96,7 +99,7 @@ def _read(content: bytes, name: str) -> AnyArray:
 
     try:
         with warnings.catch_warnings():
-            # Its size is looked at below, before there is a pixel of it.
+            # The size is checked below, before any pixel is decoded.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             picture = Image.open(io.BytesIO(content), formats=PICTURE_FORMATS)
         with picture:
@@ -104,9 +107,8 @@ def _read(content: bytes, name: str) -> AnyArray:
             if width * height > PICTURE_PIXELS:
                 msg = f"{name}: has {width} x {height} pixels; expected {PICTURE_PIXELS:,} at most"
                 raise SettingsError(msg)
-            picture.draft(
-                None, (PICTURE_SIDE, PICTURE_SIDE)
-            )  # a JPEG is read at a fraction of its size
+            # A JPEG is read at a fraction of its size.
+            picture.draft(None, (PICTURE_SIDE, PICTURE_SIDE))
             times = -(-max(picture.size) // PICTURE_SIDE)
             small = picture if times == 1 else _averaged(picture, times)
             return pixels_of(ImageOps.exif_transpose(small))
@@ -120,7 +122,7 @@ def _read(content: bytes, name: str) -> AnyArray:
         raise SettingsError(msg) from error
 
 
-def _averaged(picture: Any, times: int) -> Any:
-    """Average blocks of pixels; those of a palette are not colours yet."""
+def _averaged(picture: Image.Image, times: int) -> Image.Image:
+    """Average blocks of pixels; those of a palette are converted to colours first."""
     plain = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGBA")
     return plain.reduce(times)

@@ -17,6 +17,7 @@ or of the appearance, such as ``area.cmap = "magma"``, is drawn at once.
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import Any
 
 import trame_rca.module
@@ -76,7 +77,7 @@ class FlowArea(AppearanceAttributes):
 
     def __init__(
         self,
-        flow: FlowField | Any,
+        flow: Any,
         *,
         server: Any,
         state: PageState | None = None,
@@ -121,18 +122,18 @@ class FlowArea(AppearanceAttributes):
         """Add the view to the open layout; ``attributes`` are those of the element."""
         element, server = self.element, self.server
         server.enable_module(trame_rca.module)
-        told = ("camera", "time", "clock", "playing", "setting", "colours")
+        events = ("camera", "time", "clock", "playing", "setting", "colours")
         attributes["style"] = "width: 100%; height: 100%; " + attributes.get("style", "")
         return PageElement(
             "client",
             ["begin", "read"],
-            told,
+            events,
             ref=element.ref,
             begin=server.trigger_name(element.begin),
             read=server.trigger_name(self.points.read),
             **{
                 name: (getattr(element, f"take_{name}"), "[$event.value, $event.page]")
-                for name in told
+                for name in events
             },
             **attributes,
         )
@@ -152,7 +153,7 @@ class FlowArea(AppearanceAttributes):
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
         self.changed()
 
-    def compare(self, changes: dict[str, Any] | None) -> None:
+    def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane with the given differences, or a single pane for ``None``.
 
         Parameters
@@ -166,7 +167,7 @@ class FlowArea(AppearanceAttributes):
             self.viewport.refit()
         self.changed()
 
-    def look(self, camera: Any) -> None:
+    def look(self, camera: object) -> None:
         """Set the camera, unless it sees nothing."""
         if self.element.take_camera(camera):
             self.element.repeat()
@@ -208,8 +209,8 @@ class FlowArea(AppearanceAttributes):
         if not self.stream.painter.drafting:
             self.changed()
 
-    def _on_ready(self, **_: Any) -> None:
-        if self._tasks:  # a page can have trame say this once more
+    def _on_ready(self, **_: object) -> None:
+        if self._tasks:  # a page can trigger this again
             return
         self.server.controller.rc_area_register(self.stream)
         self._tasks.append(start_task(self.stream.run(), "the page has stopped drawing"))

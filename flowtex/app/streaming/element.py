@@ -2,8 +2,8 @@
 
 The page asks for files of parts: of the whole surface, and of tiles, at some times;
 :mod:`flowtex.web.source` says what is in them. The page says which of two painters draws: the
-browser with WebGL2, or VTK here, whose pictures a stream sends. Then of the parts it has only those
-of which controls and legend are made.
+browser with WebGL2, or VTK here, whose pictures a stream sends. With VTK it has only the parts for
+controls and legend.
 """
 
 from __future__ import annotations
@@ -42,19 +42,18 @@ from flowtex.web.view import WebView
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)
 
-#: Who may draw.
+#: Painters.
 PAINTERS = ("server", "browser")
-#: What a page calls the whole surface in place of a tile.
+#: Name of the whole surface in place of a tile.
 WHOLE = "whole"
-#: Parts of it that pages ask for by one name: what controls and legend need, and what other colours
-#: change.
-SOME = {
+#: Groups of its parts that pages request by name: for controls and legend, and for other colours.
+PART_GROUPS = {
     "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
     "colours": ("cmap", "maps"),
 }
 #: Directions whose farthest nodes represent the whole surface.
 DIRECTIONS = 400
-#: Names of what a page may choose of the appearance, and the kinds of their values.
+#: Fields of the appearance that a page may choose, and the types of their values.
 CHOICES: dict[str, tuple[type, ...]] = {
     "scalars": (str, bool),
     "cmap": (str,),
@@ -67,16 +66,16 @@ CHOICES: dict[str, tuple[type, ...]] = {
 
 
 class HandedScene:
-    """A scene as the page has it: its header, and files of its parts at its own address."""
+    """A scene for the page: its header, and files of its parts at its own address."""
 
     def __init__(self, routes: Routes) -> None:
         self._routes = routes
         self._source: TileSource | None = None
-        self._told: set[TileKey | None] = set()
+        self._reported: set[TileKey | None] = set()
         self._generation, self._stem, self._address = 0, "", ""
 
-    def update(self, pane: Pane, background: Any) -> None:
-        """Hand over what a pane shows in place of what was before, or that in other colours."""
+    def update(self, pane: Pane, background: object) -> None:
+        """Replace the scene by that of a pane, or by the same in other colours."""
         data = WebView(pane.handle.scene, background=background).data()
         colours = replace(data.colours, bar=True)  # VTK draws none into its pictures
         source = self._source
@@ -90,8 +89,8 @@ class HandedScene:
         self._stem = f"parts-{next(_numbers)}"
         self._address = self._routes.give_each(self._stem, lambda name: self._give(source, name))
 
-    def told(self, pane: Pane, **own: Any) -> dict[str, Any]:
-        """Return the header, with what is this pane's own, and the address of the parts."""
+    def message(self, pane: Pane, **values: object) -> Header:
+        """Return the header, with further values of the pane, and the address of the parts."""
         header: Header = {}
         if self._source is not None:
             handle = pane.handle
@@ -99,17 +98,17 @@ class HandedScene:
                 handle.settings, time=handle.time, clock=handle.clock
             )
         return {
-            "header": {**header, "generation": self._generation, **own},
+            "header": {**header, "generation": self._generation, **values},
             "parts": self._address,
         }
 
     def _give(self, source: TileSource, name: str) -> Give:
-        """Return how the parts become a file of a tile, or of the whole, and of its time steps."""
+        """Return a function that makes the file of a tile, or of the whole, at time steps."""
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
         key = None
         mark = place if place in MARK_PARTS.values() else ""
-        if place != WHOLE and place not in SOME and not mark:
+        if place != WHOLE and place not in PART_GROUPS and not mark:
             level, row, column = map(int, place.split(","))
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
@@ -118,14 +117,14 @@ class HandedScene:
         async def content() -> Content:
             loop = asyncio.get_running_loop()
             try:
-                if place in SOME:
+                if place in PART_GROUPS:
                     parts = await loop.run_in_executor(None, some_parts, source.scene, place)
                 else:
                     parts = await asyncio.wrap_future(source.ask(key, steps, kind=mark))
-            except Stopped:  # of a scene that is not shown any more
+            except Stopped:  # the scene is no longer shown
                 parts = {}
             except Exception as error:
-                self._tell(key, error)
+                self._log_error(key, error)
                 raise FileNotFoundError(name) from error
             # Packing takes a while, and the loop has other pages to serve.
             body = await loop.run_in_executor(None, parts_file, parts)
@@ -133,24 +132,24 @@ class HandedScene:
 
         return content
 
-    def _tell(self, key: TileKey | None, error: Exception) -> None:
-        """Log, once each, what could not be made; coarser tiles replace others."""
-        if key not in self._told:
-            self._told.add(key)
-            what = "the surface" if key is None else f"tile {tuple(key)}"
-            _log.warning("%s could not be made: %s", what, error)
+    def _log_error(self, key: TileKey | None, error: Exception) -> None:
+        """Log the error of a tile once; coarser tiles replace it."""
+        if key not in self._reported:
+            self._reported.add(key)
+            part = "the surface" if key is None else f"tile {tuple(key)}"
+            _log.warning("%s could not be made: %s", part, error)
 
     def close(self) -> None:
-        """Hand nothing over any more."""
+        """Stop serving the parts."""
         self._routes.withdraw(self._stem)
-        self._told.clear()
+        self._reported.clear()
         if self._source is not None:
             self._source.close()
         self._source = None
 
 
 class Element:
-    """What a page shows of a viewport, and what is done there."""
+    """The view of a viewport on a page, and the user's actions there."""
 
     def __init__(
         self,
@@ -160,11 +159,10 @@ class Element:
         player: Player,
         axes: str | None = None,
     ) -> None:
-        self.painter = ""  #: Who draws, ``"server"`` or ``"browser"``; empty before a page says.
-        #: What the panes are called, where that is not the name of their field.
+        self.painter = ""  #: ``"server"`` or ``"browser"``; empty before a page begins.
+        #: Names of the panes, where they differ from those of their fields.
         self.names: tuple[str, ...] = ()
-        #: Signal with what is wrong with something that a person did, and one after another painter
-        #: draws.
+        #: Signals with the error of a user's action, and after a change of the painter.
         self.failed, self.painter_changed = Signal(), Signal()
         self.parameter_asked = Signal()
         self.ref = state.key("element")
@@ -175,65 +173,65 @@ class Element:
             "client.js", lambda: (client_module().encode(), "text/javascript", None)
         )
         self._scenes: list[HandedScene] = []
-        self._shown: tuple[Any, ...] = ()
-        self._told: dict[str, Any] = {}
+        self._shown: tuple[object, ...] = ()
+        self._sent: Header = {}
         self._due: asyncio.Handle | None = None
-        #: Name of the page that says something just now.
+        #: Name of the page whose message is being handled.
         self._by = ""
         player.time_changed.connect(self._follow_time)
         player.playing_changed.connect(self.follow)
 
-    # --- what the page receives ------------------------------------------------------------------
+    # --- messages to the page ------------------------------------------------------------------
 
-    def begin(self, painter: Any) -> dict[str, Any]:
-        """Return all that a page needs that has come, or that another painter draws in now."""
+    def begin(self, painter: object) -> Header:
+        """Return all values that a new page needs, or a page with another painter."""
         self.painter = painter if name_among(painter, PAINTERS) else PAINTERS[0]
         self._stream.paused, self._stream.fits = self.painter == "browser", False
         self.painter_changed.emit()
         self._stream.changed()
-        self._told = self._present()
+        self._sent = self._present()
         area = self._stream.area_name
-        return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._told}
+        return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._sent}
 
     def draw_by(self, painter: str) -> None:
-        """Let another painter draw; the page begins again with it."""
+        """Change the painter; the page begins again with it."""
         self._call("paint", painter)
 
     def follow(self) -> None:
-        """Send changes on this side to the page; other scenes once all else has been done."""
+        """Send changes to the page; other scenes after all pending changes."""
         if not self.painter or self._due is not None:
             return
         loop = running_loop()
         if loop is not None and self._shown != self._appearances():
-            self._due = loop.call_soon(self._tell)
+            self._due = loop.call_soon(self._send_changes)
         else:
-            self._tell()
+            self._send_changes()
 
     def _follow_time(self) -> None:
-        with self._said_by(self._player.page):
+        with self._changed_by(self._player.page):
             self.follow()
 
-    def _tell(self) -> None:
+    def _send_changes(self) -> None:
         self._due = None
-        changes: dict[str, Any] = {}
+        changes: Header = {}
         if self._shown != self._appearances():
             changes["scenes"] = self._hand_over()
         present = self._present()
-        changes |= {k: v for k, v in present.items() if v != self._told.get(k)}
-        self._told = present
+        changes |= {k: v for k, v in present.items() if v != self._sent.get(k)}
+        self._sent = present
         if changes:
             self._call("take", {**changes, "by": self._by})
 
     def repeat(self) -> None:
         """Send the current values to the page again, to replace invalid ones."""
-        self._shown, self._told = (), {}
+        self._shown, self._sent = (), {}
         self.follow()
 
-    def _call(self, method: str, *values: Any) -> None:
+    def _call(self, method: str, *values: object) -> None:
         self._server.js_call(self.ref, method, *values)
 
-    def _present(self) -> dict[str, Any]:
-        """Return what may change from one moment to the next."""
+    def _present(self) -> Header:
+        """Return the values that may change at any moment."""
         viewport = self._viewport
         return {
             "settings": dict(viewport.settings),
@@ -244,16 +242,16 @@ class Element:
             "playing": self._player.playing,
         }
 
-    def _appearances(self) -> tuple[Any, ...]:
-        """Return all that the client cannot follow by itself."""
+    def _appearances(self) -> tuple[object, ...]:
+        """Return all values for which the client needs other scenes."""
         return (
             self._viewport.background,
             self.names,
             *(_appearance(pane) for pane in self._viewport.panes),
         )
 
-    def _hand_over(self) -> list[dict[str, Any]]:
-        """Hand over what the panes show in place of what was sent before."""
+    def _hand_over(self) -> list[Header]:
+        """Replace the scenes of the page by those of the panes; return their messages."""
         viewport, present = self._viewport, self._present()
         panes, changes = viewport.panes, viewport.differences
         for scene in self._scenes[len(panes) :]:
@@ -264,20 +262,20 @@ class Element:
         result = []
         for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
             scene.update(pane, viewport.background)
-            own = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
+            values = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
             if n:
-                own |= {"own": settings, "timeShift": viewport.time_shift}
+                values |= {"own": settings, "timeShift": viewport.time_shift}
             if n < len(self.names):
-                own["name"] = self.names[n]
-            result.append(scene.told(pane, **own))
+                values["name"] = self.names[n]
+            result.append(scene.message(pane, **values))
         self._shown = self._appearances()
         return result
 
-    # --- what a person does ---------------------------------------------------------------------
+    # --- messages from the page ------------------------------------------------------------------
 
     @contextmanager
-    def _said_by(self, page: Any) -> Iterator[None]:
-        """Send a change by one page to all others."""
+    def _changed_by(self, page: object) -> Iterator[None]:
+        """Send changes by one page to all others."""
         self._by = page if isinstance(page, str) else ""
         try:
             yield
@@ -288,8 +286,8 @@ class Element:
         finally:
             self._by = ""
 
-    def take_camera(self, values: Any, page: Any = "") -> bool:
-        """Set a camera sent by a page; tells whether it sees something."""
+    def take_camera(self, values: Any, page: object = "") -> bool:
+        """Set a camera sent by a page; return whether it is valid."""
         viewport = self._viewport
         try:
             camera = Camera.from_dict(values, viewport.camera)
@@ -297,46 +295,46 @@ class Element:
             return False
         near = camera.is_near(viewport.field.surface)
         if near:
-            with self._said_by(page):
+            with self._changed_by(page):
                 viewport.camera = camera
                 self.follow()
             self._stream.moved()
         return near
 
-    def take_time(self, time: Any, page: Any = "") -> None:
+    def take_time(self, time: object, page: object = "") -> None:
         """Show a time of the field."""
         checked = number(time, *map(float, self._viewport.field.times[[0, -1]]))
         if checked is not None:
             self._player.go_to(checked, page if isinstance(page, str) else "")
 
-    def take_clock(self, clock: Any, page: Any = "") -> None:
+    def take_clock(self, clock: object, page: object = "") -> None:
         """Show a moment of the streaming of a steady flow."""
         checked = number(clock, 0, 1e9)
         if checked is not None:
-            with self._said_by(page):
+            with self._changed_by(page):
                 self._viewport.clock = checked
                 self.follow()
             self._stream.changed()
 
-    def take_playing(self, playing: Any, page: Any = "") -> None:
-        """Follow whether time goes by on the page."""
-        with self._said_by(page):
+    def take_playing(self, playing: object, page: object = "") -> None:
+        """Start or stop the animation, as on the page."""
+        with self._changed_by(page):
             self._player.playing = bool(playing)
 
-    def take_setting(self, pair: Any, page: Any = "") -> None:
-        """Set what the page requests, and report what is not possible."""
+    def take_setting(self, pair: object, page: object = "") -> None:
+        """Set the setting that the page requests, or report an error."""
         if not (isinstance(pair, list) and len(pair) == 2):
             return
         name, value = pair[0], number(pair[1], -1e300, 1e300)
         if isinstance(name, str) and name.startswith(PREFIX) and value is not None:
             self.parameter_asked.emit(name.removeprefix(PREFIX), value)
         elif name_among(pair[0], TABLE):
-            with self._said_by(page):
+            with self._changed_by(page):
                 self._viewport.settings.update(**{pair[0]: pair[1]})
 
-    def take_colours(self, choice: Any, page: Any = "") -> None:
-        """Colour by what the page requests, or report why that is not possible."""
-        del page  # it gets the colours as well
+    def take_colours(self, choice: object, page: object = "") -> None:
+        """Set the colours that the page requests, or report an error."""
+        del page  # which receives the colours as well
         changes: dict[str, Any] = {
             name: value
             for name, value in mapping(choice).items()
@@ -351,11 +349,11 @@ class Element:
         if "cmap" in changes and not name_among(changes["cmap"], CMAPS):
             return
         scene = self._viewport.scene
-        with self._said_by(""):
+        with self._changed_by(""):
             scene.appearance = replace(scene.appearance, **changes)
 
     def close(self) -> None:
-        """Hand nothing over any more."""
+        """Stop serving the parts."""
         self.painter = ""
         if self._due is not None:
             self._due.cancel()
@@ -363,8 +361,8 @@ class Element:
             scene.close()
 
 
-def _appearance(pane: Pane) -> tuple[Any, ...]:
-    """Return what of a pane its textures, its colours and its words are made of."""
+def _appearance(pane: Pane) -> tuple[object, ...]:
+    """Return the values of a pane that determine its textures, its colours and its texts."""
     scene = pane.handle.scene
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
@@ -373,8 +371,8 @@ def _appearance(pane: Pane) -> tuple[Any, ...]:
 
 
 def some_parts(scene: ClientData, place: str) -> Parts:
-    """Return parts of the whole surface; of its nodes, controls need those that are farthest."""
-    parts = {name: part for name, part in scene.surface().items() if name in SOME[place]}
+    """Return a group of parts of the whole surface; controls need only its farthest nodes."""
+    parts = {name: part for name, part in scene.surface().items() if name in PART_GROUPS[place]}
     if place != "controls":
         return parts
     nodes = scene.textures.geometry.position.reshape(-1, 3)
@@ -382,7 +380,7 @@ def some_parts(scene: ClientData, place: str) -> Parts:
     turns = np.arange(DIRECTIONS) * np.pi * (3 - 5**0.5)
     z = 1 - (2 * np.arange(DIRECTIONS) + 1) / DIRECTIONS
     r = np.sqrt(1 - z * z)
-    around = np.stack([r * np.cos(turns), r * np.sin(turns), z], axis=1)
-    ways = np.concatenate([around, np.eye(3), -np.eye(3)])
-    farthest = {int((nodes @ way).argmax()) for way in ways} if len(nodes) else set()
+    sphere = np.stack([r * np.cos(turns), r * np.sin(turns), z], axis=1)
+    directions = np.concatenate([sphere, np.eye(3), -np.eye(3)])
+    farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
     return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}

@@ -1,10 +1,10 @@
 """Pictures of a viewport as good as the time allows: quick ones in motion, the full one at rest.
 
 A texture costs time for each pixel and each sample. :class:`Cost` learns that price from the
-pictures that were drawn, so a graphics card draws everything at its best at once. Where that is
-too slow, as on a processor, the quick picture is the last full one moved to its new place when
-only the camera moved over a flat surface, and else a draft of fewer pixels and samples; the full
-picture is drawn over it a tile at a time.
+drawn pictures, so a graphics card draws everything at full quality at once. Where that is too slow,
+as on a processor, the quick picture is the last full one moved to its new place when only the
+camera moved over a flat surface, and else a draft of fewer pixels and samples; the full picture is
+drawn over it a tile at a time.
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ from flowtex.app.streaming.window import Rect
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1
-#: Seconds that a picture takes however small it is, and what a pixel costs beside its samples,
-#: in samples.
+#: Seconds that any picture takes, and the cost of a pixel in addition to its samples, in samples.
 FIXED_S, BASE_SAMPLES = 0.006, 8
 #: Seconds for one sample of one pixel: a guess until the first picture.
 FIRST_PRICE_S = 4e-8
@@ -41,11 +40,10 @@ DRAFT_SAMPLES = 9
 COARSEST_DRAFT = 0.2
 #: A tile is never smaller than this, in pixels along a side.
 SMALLEST_TILE_PX = 64
-#: A picture that was drawn serves a moved view while its pixels grow less, or shrink less, than
-#: this; beyond it a draft shows more.
+#: Limits of the magnification at which a drawn picture is used for a moved view; beyond them a
+#: draft shows more.
 MOST_STRETCH, LEAST_STRETCH = 4.0, 0.3
-#: A draft that lies beneath a moved picture shows this many times its width, so that it serves
-#: for some way.
+#: Width of a draft beneath a moved picture over that of the view, so that it lasts for some time.
 DRAFT_MARGIN = 1.7
 #: Grey of the line between two panes.
 LINE_GREY = 128
@@ -66,14 +64,13 @@ class Cost:
         self._price = FIRST_PRICE_S
 
     def learn(self, seconds: float, pixels: int, samples: int) -> None:
-        """Take account of a picture that took ``seconds``."""
+        """Update the price from a picture that took ``seconds``."""
         price = max(seconds - FIXED_S, 1e-5) / max(pixels * (samples + BASE_SAMPLES), 1)
-        # A slower measurement counts at once, a faster one gradually: a picture that is late is
-        # felt.
+        # A slower measurement counts at once, a faster one gradually: users notice a late picture.
         self._price += (price - self._price) * (0.7 if price > self._price else 0.3)
 
     def seconds(self, pixels: float, samples: int) -> float:
-        """Time that a picture will take."""
+        """Return the time that a picture will take."""
         return FIXED_S + self._price * pixels * (samples + BASE_SAMPLES)
 
     def choose(self, pixels: int, samples: int, budget: float) -> Quality:
@@ -86,14 +83,14 @@ class Cost:
         return Quality(min(max(scale, COARSEST_DRAFT), 1.0), fewer)
 
     def tile(self, samples: int, budget: float = TILE_S) -> int:
-        """Side of a square tile, in pixels, that takes no longer than ``budget`` seconds."""
+        """Return the side in pixels of a square tile that takes ``budget`` seconds at most."""
         side = math.sqrt((budget - FIXED_S) / (self._price * (samples + BASE_SAMPLES)))
         # An even number keeps the 2 x 2 blocks in which derivatives are taken.
         return max(int(side) // 2 * 2, SMALLEST_TILE_PX)
 
 
 def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
-    """Width and height in pixels of a view of this many CSS pixels ``w``, ``h`` times ``p``."""
+    """Return the size in pixels of a view of CSS pixels ``w``, ``h`` times ``p``."""
     ratio = clipped(size.get("p"), 1.0, *PIXEL_RATIOS)
     width, height = (
         min(max(clipped(size.get(side), SIDES_PX[0], *SIDES_PX) * ratio, SIDES_PX[0]), SIDES_PX[1])
@@ -108,7 +105,7 @@ class PanePainter:
 
     def __init__(self, pane: Pane, cost: Cost | None = None) -> None:
         self.pane = pane
-        self.cost = cost or Cost()  #: What pictures cost here, which is learnt from them.
+        self.cost = cost or Cost()  #: Price of pictures, learnt from them.
         self.complete = False  #: Whether the last picture that was drawn is at full quality.
         self.drafting = False  #: Whether a setting is changed for the moment, for a draft.
         self._snapshot: Snapshot | None = None
@@ -117,7 +114,7 @@ class PanePainter:
         self._state = 0
 
     def forget(self) -> None:
-        """Draw again: what was drawn does not show the present state any more."""
+        """Discard the drawn pictures, which no longer show the present state."""
         self._snapshot = self._under = None
         self.complete = False
         self._state += 1
@@ -148,20 +145,20 @@ class PanePainter:
         return self._draft(quality)
 
     def _beneath(self, view: Floats, quality: Quality) -> Snapshot:
-        """Return a draft that covers the view and what lies around it."""
+        """Return a draft that covers the view and a margin around it."""
         if self._under is not None:
             share, stretch = coverage(self._under, view)
             if share >= 1.0 and stretch < MOST_STRETCH / quality.scale:
                 return self._under
         width, height = self.pane.size
-        around = (round(width * (1 - DRAFT_MARGIN) / 2), round(height * (1 - DRAFT_MARGIN) / 2))
-        part = (*around, width - 2 * around[0], height - 2 * around[1])
+        margins = (round(width * (1 - DRAFT_MARGIN) / 2), round(height * (1 - DRAFT_MARGIN) / 2))
+        part = (*margins, width - 2 * margins[0], height - 2 * margins[1])
         wider = np.diag([width / part[2], height / part[3], 1.0]) @ view
         self._under = Snapshot(self._draft(quality, part), wider)
         return self._under
 
     def full(self) -> Generator[Bytes, None, None]:
-        """Draw the full picture over the quick one; yield it so far after each tile.
+        """Draw the full picture over the quick one; yield the picture after each tile.
 
         The array is the same one each time. Drawing may be cancelled between two tiles.
         """
@@ -183,16 +180,16 @@ class PanePainter:
             if not drawn:
                 yield canvas
             self.complete = complete = state == self._state
-            # All tiles together: one at the rim of the surface may be empty and cost nothing.
+            # For all tiles together, as one beside the surface is empty and costs nothing.
             if reused is None:
                 self.cost.learn(spent, drawn, self._samples)
         finally:
-            # Half of a full picture serves a moved view better than none, but not than a sharp one.
+            # Half of a full picture is better for a moved view than none, but not than a sharp one.
             if view is not None and state == self._state and (complete or reused is None):
                 self._snapshot = Snapshot(canvas.copy(), view, sharp=complete)
 
     def _reuse(self, canvas: Bytes, view: Floats | None) -> Rect | None:
-        """Put what is sharp already in its new place; return the rectangle that it fills.
+        """Copy the sharp picture to its new place; return the rectangle that it fills.
 
         A drag over a flat surface shifts the picture by whole pixels, and most of it stays.
         """
@@ -200,20 +197,20 @@ class PanePainter:
             return None
         if (
             self._snapshot.pixels.shape != canvas.shape
-            or (by := whole_shift(self._snapshot, view)) is None
+            or (shift := whole_shift(self._snapshot, view)) is None
         ):
             return None
         height, width = canvas.shape[:2]
-        left, top = max(by[0], 0), max(by[1], 0)
-        wide, high = width - abs(by[0]), height - abs(by[1])
-        x, y = max(-by[0], 0), max(-by[1], 0)
+        left, top = max(shift[0], 0), max(shift[1], 0)
+        wide, high = width - abs(shift[0]), height - abs(shift[1])
+        x, y = max(-shift[0], 0), max(-shift[1], 0)
         canvas[top : top + high, left : left + wide] = self._snapshot.pixels[
             y : y + high, x : x + wide
         ]
         return left, top, wide, high
 
     def _tiles(self, areas: list[Rect], width: int, height: int) -> list[Rect]:
-        """Tiles of about the same size, from the middle of the view outwards."""
+        """Return tiles of about the same size, from the middle of the view outwards."""
         side = self.cost.tile(self._samples)
         tiles = []
         for left, top, wide, high in areas:
@@ -224,11 +221,11 @@ class PanePainter:
                 for x, right in pairwise(xs)
             ]
 
-        def far(tile: Rect) -> float:
+        def distance(tile: Rect) -> float:
             left, top, wide, high = tile
             return math.hypot(left + wide / 2 - width / 2, top + high / 2 - height / 2)
 
-        return sorted(tiles, key=far)
+        return sorted(tiles, key=distance)
 
     def _draft(self, quality: Quality, part: Rect | None = None) -> Bytes:
         width, height = self.pane.size
@@ -260,7 +257,7 @@ def _resized(pixels: Bytes, width: int, height: int) -> Bytes:
 
 
 def _around(reused: Rect, width: int, height: int) -> list[Rect]:
-    """Rectangles that a picture has besides one that reaches to two of its borders."""
+    """Return the rest of a picture around a rectangle that touches two of its borders."""
     left, top, wide, high = reused
     above = (0, 0, width, top) if top else (0, high, width, height - high)
     beside = (0, top, left, high) if left else (wide, top, width - wide, high)
@@ -268,7 +265,7 @@ def _around(reused: Rect, width: int, height: int) -> list[Rect]:
 
 
 def _cuts(start: int, length: int, side: int) -> list[int]:
-    """Places at which to cut a length into parts of about one size; even distances but the last.
+    """Return the ends of parts of about equal length, even numbers except the last.
 
     Derivatives are taken in blocks of 2 x 2 pixels.
     """
@@ -295,7 +292,7 @@ class ViewPainter:
         return any(painter.drafting for painter in self.painters)
 
     def forget(self) -> None:
-        """Draw again: what was drawn does not show the present state any more."""
+        """Discard the drawn pictures, which no longer show the present state."""
         for painter in self._follow():
             painter.forget()
 
@@ -326,7 +323,7 @@ class ViewPainter:
                 tiles.close()
 
     def _follow(self) -> list[PanePainter]:
-        """Painters of the panes that there are; what one has learnt of its price stays."""
+        """Return the painters of the present panes; the price that was learnt stays."""
         panes = self._viewport.panes
         if [painter.pane for painter in self.painters] != panes:
             painters = {id(painter.pane): painter for painter in self.painters}

@@ -1,4 +1,4 @@
-"""The time that is shown, and whether time goes by, which the page sees to."""
+"""The time shown, and the state of the animation, which runs on the page."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ class Player:
     """The time of a viewport."""
 
     def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
-        #: Signals after a change of the time that is shown, and of whether time goes by.
+        #: Signals after a change of the time shown, and after the animation starts or stops.
         self.time_changed, self.playing_changed = Signal(), Signal()
-        #: Name of the page that requested the time that is shown; empty where it comes from here.
+        #: Name of the page that requested the time shown; empty for a request of the server.
         self.page = ""
         self._viewport = viewport
         self._stream = stream
-        self._wanted: float | None = None
+        self._requested: float | None = None
         self._reading: asyncio.Task[None] | None = None
 
     @property
     def playing(self) -> bool:
-        """Whether time goes by."""
+        """Whether the animation runs."""
         return self._stream.playing
 
     @playing.setter
@@ -42,14 +42,13 @@ class Player:
 
     @property
     def time(self) -> float:
-        """The time that is shown, or that will be once it is read."""
-        return self._viewport.handle.time if self._wanted is None else self._wanted
+        """The time shown, or the requested one that is being read."""
+        return self._viewport.handle.time if self._requested is None else self._requested
 
     def go_to(self, time: float, page: str = "") -> None:
-        """Show a time, or the nearest there is; time stands where that cannot be read.
+        """Show a time, or the nearest one; the animation stops if that cannot be read.
 
-        Steps that are read when they are requested are read beside the event loop: until then the
-        time that is shown stays.
+        Lazy steps are read in a thread: until then the time shown stays.
         """
         times = self._viewport.field.times
         nearest = min(max(float(time), float(times[0])), float(times[-1]))
@@ -59,23 +58,23 @@ class Player:
         if running_loop() is None or not self._viewport.reads_late:
             self._show(nearest)
             return
-        self._wanted = nearest
+        self._requested = nearest
         if self._reading is None or self._reading.done():
             self._reading = start_task(self._read(), "a time step cannot be read")
 
     async def _read(self) -> None:
-        """Read the time that is wanted, the latest only, and show it."""
-        while (wanted := self._wanted) is not None:
+        """Read the latest requested time, and show it."""
+        while (time := self._requested) is not None:
             fault, field = None, self._viewport.field
             try:
-                await asyncio.to_thread(self._viewport.trace, wanted)
+                await asyncio.to_thread(self._viewport.trace, time)
             except FieldError as error:
                 fault = error
             if field is not self._viewport.field:
-                self._wanted = None
-            elif wanted == self._wanted:
-                self._wanted = None
-                self._stand(fault) if fault else self._show(wanted)
+                self._requested = None
+            elif time == self._requested:
+                self._requested = None
+                self._stop(fault) if fault else self._show(time)
 
     def _show(self, time: float) -> None:
         before = self._viewport.handle.time
@@ -84,19 +83,19 @@ class Player:
         except FieldError as error:
             with suppress(FieldError):
                 self._viewport.set_time(before)
-            self._stand(error)
+            self._stop(error)
             return
         self.time_changed.emit()
         self._stream.changed()
 
-    def _stand(self, error: FieldError) -> None:
-        """Stay at the time that is shown, as another one cannot be read."""
+    def _stop(self, error: FieldError) -> None:
+        """Stop at the time shown, as another one cannot be read."""
         self.playing, self.page = False, ""
         self._stream.data_failed.emit(error)
         self.time_changed.emit()
         self._stream.changed()
 
     def close(self) -> None:
-        """Show no time any more that is still being read."""
+        """Cancel the time that is being read."""
         if self._reading is not None:
             self._reading.cancel()

@@ -1,4 +1,4 @@
-"""Points of the surface as a page shows them: their values, and the paths through them.
+"""Points of the surface for a page: their values, and the paths through them.
 
 A path is read in a thread: with new textures it takes as long as a renderer takes to load them.
 """
@@ -16,18 +16,19 @@ from flowtex._util.array_types import Floats
 from flowtex.app.server.validation import mapping, number
 from flowtex.app.streaming.viewport import Pane, Viewport
 from flowtex.field import FlowField
+from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import SPEED
 from flowtex.scene.probe import PointValues, Probe, locate, probe, values_at
 
 #: Digits of a number.
 DIGITS = 4
-#: How many times as long as the part with samples the path is that is shown.
+#: Length of the displayed path over that of the part with samples.
 PATH_LENGTH = 4.0
-#: Samples on a side as which fewer count, so that there is something to see.
+#: Least number of samples on a side that determines this length, so that the path is visible.
 FEWEST_SAMPLES = 10
 #: Units longer than this are left out.
 UNIT_LENGTH = 12
-#: Pixels around a critical point that are still it.
+#: Distance from a critical point, in pixels, that counts as on it.
 MARK_REACH_PX = 9
 #: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
 CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
@@ -56,20 +57,20 @@ class PointReader:
         self._viewport = viewport
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex reading")
 
-    async def read(self, pane: Any, at: Any) -> dict[str, Any] | None:
-        """Return what is at a point of a pane; ``None`` outside the surface.
+    async def read(self, pane: object, at: object) -> Header | None:
+        """Return the values at a point of a pane; ``None`` outside the surface.
 
         ``at`` has the ``place`` in the view, (x, y) from -1 to 1, the ``index`` (i, j) on a
         grid, or the ``position`` on triangles; with ``path`` the path as well.
         """
         panes = self._viewport.panes
-        if type(pane) is not int or pane not in range(len(panes)):  # 0.0 is in a range too
+        if type(pane) is not int or pane not in range(len(panes)):  # 0.0 is in a range as well
             return None
-        shown, asked = panes[pane], mapping(at)
-        index = self._index(pane, asked)
+        shown, request = panes[pane], mapping(at)
+        index = self._index(pane, request)
         if index is None:
             return None
-        if not asked.get("path"):
+        if not request.get("path"):
             point = values_of(values_at(shown.handle.field, index, shown.handle.time), index)
             return {"point": point | self._mark(shown, point["position"])}
         # Two panes of one flow show its path in both, as the first one draws it.
@@ -98,29 +99,29 @@ class PointReader:
             return {}
         height = 2 * self._viewport.camera.height
         reach = MARK_REACH_PX * height / max(self._viewport.pane_size[1], 1)
-        near = [
+        marks = [
             (float(np.linalg.norm(point.position - position)), point.kind)
             for point in scene.structure.points(scene.step)[:count]
         ]
-        away, kind = min(near, default=(np.inf, ""))
-        return {"mark": kind} if away < reach else {}
+        distance, kind = min(marks, default=(np.inf, ""))
+        return {"mark": kind} if distance < reach else {}
 
-    def _index(self, number_: int, at: Mapping[str, Any]) -> tuple[float, float] | None:
+    def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
         """Return the place (j, i) on the surface."""
-        pane: Pane = self._viewport.panes[number_]
+        pane: Pane = self._viewport.panes[pane_number]
         field = pane.handle.field
-        place = _numbers(at.get("place"), 2)
+        place = _numbers(request.get("place"), 2)
         if place is not None:
             x, y = (min(max(v, -1.0), 1.0) for v in place)
-            point = self._viewport.surface_point(x, y, number_)
-            # A flat surface is met exactly: its border is where it is drawn.
+            point = self._viewport.surface_point(x, y, pane_number)
+            # Points on a flat surface are exact, so its border is as drawn.
             flat = pane.handle.scene.whole.surface.frame is not None
             tolerance = FLAT_TOLERANCE if flat else CURVED_TOLERANCE
             return None if point is None else locate(field, point, tolerance=tolerance)
         if field.triangles is not None:
-            position = _numbers(at.get("position"), 3)
+            position = _numbers(request.get("position"), 3)
             return None if position is None else locate(field, position, tolerance=np.inf)
-        index = _numbers(at.get("index"), 2)
+        index = _numbers(request.get("index"), 2)
         if index is None:
             return None
         last_j, last_i = field.surface.last_index
@@ -128,19 +129,19 @@ class PointReader:
         return (j, i) if 0 <= i <= last_i and 0 <= j <= last_j else None
 
     def close(self) -> None:
-        """Read nothing any more."""
+        """Stop reading."""
         self._worker.shutdown(wait=False, cancel_futures=True)
 
 
-def _numbers(value: Any, count: int) -> list[float] | None:
+def _numbers(value: object, count: int) -> list[float] | None:
     """Return this many finite numbers that a page has sent; ``None`` for anything else."""
-    found = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
-    known = [v for v in found if v is not None]
-    return known if len(known) == len(found) == count else None
+    items = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
+    numbers = [v for v in items if v is not None]
+    return numbers if len(numbers) == len(items) == count else None
 
 
-def values_of(point: PointValues, index: tuple[float, float]) -> dict[str, Any]:
-    """Return a point as the client has it."""
+def values_of(point: PointValues, index: tuple[float, float]) -> Header:
+    """Return a point for the client."""
     j, i = index
     values = {SPEED: point.speed, **point.scalars}
     return {
@@ -150,14 +151,14 @@ def values_of(point: PointValues, index: tuple[float, float]) -> dict[str, Any]:
     }
 
 
-def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> dict[str, Any]:
-    """Return the path through a point, its samples and words on them, as the client has them.
+def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Header:
+    """Return the path through a point, its samples and a description, for the client.
 
     ``path`` and ``sampled`` are points of the whole path and of the part with samples, downstream
     where the flow has a sign; ``samples`` are dicts of ``position``, ``weight``, 1 for the
     greatest, and ``colour``.
     """
-    # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
+    # Far beyond the samples the slices are too coarse to show, and no picture needs them.
     reach = float(np.fmax(np.abs(found.lags).max(), FEWEST_SAMPLES * abs(found.step)))
     near = np.abs(found.path_lags) <= PATH_LENGTH * reach
     path, path_lags = found.path[near], found.path_lags[near]
@@ -186,8 +187,8 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> dict[
 
 def _in_surface(found: Probe, field: FlowField) -> Floats:
     """Return the velocity in the surface, along the path where the flow leaves it."""
-    point, at = found.field_values, int(np.abs(found.path_lags).argmin())
-    ends = found.path[max(at - 1, 0)], found.path[min(at + 1, len(found.path) - 1)]
+    point, n = found.field_values, int(np.abs(found.path_lags).argmin())
+    ends = found.path[max(n - 1, 0)], found.path[min(n + 1, len(found.path) - 1)]
     along = ends[1] - ends[0]
     size = float(np.linalg.norm(along))
     if not (field.leaves_surface and np.isfinite(size) and size > 0):
@@ -197,7 +198,7 @@ def _in_surface(found: Probe, field: FlowField) -> Floats:
 
 
 def colours_of(found: Probe) -> list[str]:
-    """Colours of the samples: greys, or those of a picture over white."""
+    """Return the colours of the samples: greys, or those of a picture over white."""
     rgb = np.repeat(found.greys[:, None], 3, axis=1)
     if found.noise.ndim == 2:
         rgb = found.noise[:, :3] + 1.0 - found.noise[:, 3:]
@@ -206,7 +207,7 @@ def colours_of(found: Probe) -> list[str]:
 
 
 def words_of(found: Probe) -> list[tuple[str, str]]:
-    """Return words and numbers about the samples."""
+    """Return labels and values that describe the samples."""
     length = found.field_values.length_unit
     unit = length if found.parameter == "arclength" else found.field_values.time_unit
     pixels = f"{number_text(found.grain / found.pixel, 3)} pixels"
@@ -225,7 +226,7 @@ def words_of(found: Probe) -> list[tuple[str, str]]:
 
 
 def _samples(found: Probe) -> str:
-    """How many samples there are, and why not as many as the setting says."""
+    """Return the number of samples, and why it differs from the setting."""
     count = len(found.lags)
     reasons = []
     if found.asked > found.setting + 1:

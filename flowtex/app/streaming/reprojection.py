@@ -1,19 +1,22 @@
-"""A picture of a flat surface, seen again from another view.
+"""Reprojection of a picture of a flat surface to another view.
 
-Without perspective a plane is mapped to the view by an affine map, so what was drawn already can
-be moved to its new place exactly: a drag follows the pointer however long a new picture takes.
+Without perspective a plane is mapped to the view by an affine map, so a drawn picture can be moved
+to its new place exactly: a drag follows the pointer however long a new picture takes.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.field import Surface
 from flowtex.rendering.camera import Camera
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 #: Change of scale below which a picture only shifts.
 SCALE_TOLERANCE = 1e-3
@@ -32,7 +35,7 @@ class Snapshot:
 
 
 def plane_to_view(surface: Surface, camera: Camera, aspect: float) -> Floats | None:
-    """Affine map from a flat surface's plane to the view, (3, 3); ``None`` when it has none."""
+    """Return the affine map from a flat surface to the view, (3, 3); ``None`` for others."""
     if surface.frame is None or not camera.parallel:
         return None
     axes = camera.axes[:2]
@@ -58,10 +61,10 @@ def coverage(picture: Snapshot, view: Floats) -> tuple[float, float]:
 def whole_shift(picture: Snapshot, view: Floats) -> tuple[int, int] | None:
     """Return the shift of a picture in another view, right and down, if it is in whole pixels."""
     height, width = picture.pixels.shape[:2]
-    to = view @ np.linalg.inv(picture.view)
-    if np.abs(to[:2, :2] - np.eye(2)).max() * max(width, height) > SHIFT_TOLERANCE_PX:
+    change = view @ np.linalg.inv(picture.view)
+    if np.abs(change[:2, :2] - np.eye(2)).max() * max(width, height) > SHIFT_TOLERANCE_PX:
         return None
-    right, down = to[0, 2] * width / 2, -to[1, 2] * height / 2
+    right, down = change[0, 2] * width / 2, -change[1, 2] * height / 2
     whole = round(right), round(down)
     exact = max(abs(right - whole[0]), abs(down - whole[1])) < SHIFT_TOLERANCE_PX
     return whole if exact and abs(whole[0]) < width and abs(whole[1]) < height else None
@@ -70,10 +73,10 @@ def whole_shift(picture: Snapshot, view: Floats) -> tuple[int, int] | None:
 def reproject(
     picture: Snapshot, view: Floats, size: tuple[int, int], under: Snapshot | None = None
 ) -> Bytes:
-    """Show a picture from another view, with ``under`` or black where it does not reach.
+    """Return a picture moved to another view, with ``under`` or black where it does not reach.
 
-    Where the scale changes the result has half the size, in pixels: smooth interpolation takes
-    time, and there is nothing finer to show.
+    If the scale changes, the result has half the size, in pixels: smooth interpolation takes time,
+    and the picture has no finer details.
     """
     from PIL import Image
 
@@ -90,7 +93,7 @@ def reproject(
     return np.asarray(Image.composite(moved, beneath, mask))
 
 
-def _move(picture: Snapshot, view: Floats, size: tuple[int, int], *, smooth: bool) -> Any:
+def _move(picture: Snapshot, view: Floats, size: tuple[int, int], *, smooth: bool) -> Image.Image:
     from PIL import Image
 
     kind = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
@@ -101,12 +104,12 @@ def _move(picture: Snapshot, view: Floats, size: tuple[int, int], *, smooth: boo
 
 
 def _back(picture: Snapshot, view: Floats, size: tuple[int, int]) -> tuple[float, ...]:
-    """Map from pixels of the result to pixels of the picture, as Pillow wants it."""
+    """Return the map from pixels of the result to those of the picture, for Pillow."""
     height, width = picture.pixels.shape[:2]
     back = np.linalg.inv(_from_pixels(width, height)) @ picture.view @ np.linalg.inv(view)
     return tuple(float(v) for v in (back @ _from_pixels(*size))[:2].ravel())
 
 
 def _from_pixels(width: int, height: int) -> Floats:
-    """Map from pixels, y down, to the view's (x, y) from -1 to 1."""
+    """Return the map from pixels, y down, to the view's (x, y) from -1 to 1."""
     return np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1.0]])

@@ -1,8 +1,8 @@
 """The stream of pictures to the page: when to draw, and how well.
 
-One task draws. It sleeps until something asks for a picture, draws quick ones for as long as they
-are requested, and the full one once nothing has moved for a moment. Requests are not queued: the
-next picture shows the latest state. They go the way of a remote controlled area (trame-rca).
+One task draws. It sleeps until a picture is requested, draws quick ones for as long as they are
+requested, and the full one once nothing has moved for a moment. Requests are not queued: the next
+picture shows the latest state. Pictures are sent by a remote controlled area (trame-rca).
 
 The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
 OpenGL). It takes the still picture in one piece, where this one is cancelled between two tiles:
@@ -28,7 +28,7 @@ from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 
-#: Seconds in which a page that is opened is answered, before anything is drawn for it.
+#: Seconds to answer a new page before anything is drawn for it.
 ANSWER_S = 0.05
 #: Seconds without a change after which the full picture is drawn.
 REST_S = 0.12
@@ -38,7 +38,7 @@ MOST_RATE_HZ = 30.0
 PARTIAL_INTERVAL_S = 0.2
 #: Seconds between two pictures that show more and more tiles.
 TILE_INTERVAL_S = 1.0
-#: Seconds between two checks whether anyone looks.
+#: Seconds between two checks whether a page is connected.
 WATCH_INTERVAL_S = 0.1
 #: Seconds that a picture waits for earlier ones that are still on their way, at most.
 CONGESTION_S = 2.0
@@ -49,17 +49,17 @@ _log = logging.getLogger(__name__)
 
 
 class FrameStream:
-    """One view of the page, as trame-rca's areas are made."""
+    """One view of the page, as an area of trame-rca."""
 
     def __init__(self, name: str, viewport: Viewport) -> None:
         self.area_name = name
         self.streamer: Any = None
-        #: Whether pictures follow one another by themselves, whether the browser draws and none is
-        #: wanted, and whether the last one was in motion.
+        #: Whether the animation runs, whether the browser draws, so that no picture is needed, and
+        #: whether the last picture was in motion.
         self.playing = self.paused = self.moving = False
         #: Whether the surface is fitted to another size of the view, which a page does itself.
         self.fits = True
-        #: Tells whether anyone looks; without viewers nothing is drawn.
+        #: Returns whether a page is connected; otherwise nothing is drawn.
         self.watched: Callable[[], bool] = lambda: True
         #: Signal with a FieldError when a part of the data, such as a later step, cannot be read.
         self.data_failed = Signal()
@@ -72,10 +72,10 @@ class FrameStream:
         self._tiled = 0.0
 
     def set_streamer(self, streamer: Any) -> None:
-        """Take what sends pictures to the page."""
+        """Set the object that sends pictures to the page."""
         self.streamer = streamer
 
-    def update_size(self, origin: str, size: Any) -> None:
+    def update_size(self, origin: str, size: object) -> None:
         """Follow the size of the view in the page, in CSS pixels ``w``, ``h`` times ``p``."""
         del origin
         if self._closed:
@@ -90,41 +90,41 @@ class FrameStream:
         self._sized = True
         self.moved()
 
-    def on_interaction(self, origin: str, event: Any) -> None:
-        """Follow no event: the page moves the camera itself."""
+    def on_interaction(self, origin: str, event: object) -> None:
+        """Ignore events: the page moves the camera itself."""
         del origin, event
 
     def reset(self) -> None:
         """Begin again, as when the page is loaded again."""
         self.moved()
 
-    def video_codecs(self) -> list[dict[str, Any]]:
+    def video_codecs(self) -> list[dict[str, str]]:
         """Return the video formats that are offered: none."""
         return []
 
-    def negotiate_video(self, codecs: list[str]) -> dict[str, Any]:
+    def negotiate_video(self, codecs: list[str]) -> dict[str, str]:
         """Refuse video: it costs more than it saves on a picture that is all texture."""
         del codecs
         return {"error": "not-a-video-stream"}
 
     def close(self) -> None:
-        """Follow nothing any more."""
+        """Stop drawing."""
         self._closed = True
 
     def moved(self) -> None:
-        """Ask for a picture after a move of the camera."""
+        """Request a picture after a move of the camera."""
         if not self._closed:
             self._wake.set()
 
     def changed(self) -> None:
-        """Ask for a picture after a change of what is seen."""
+        """Request a picture after a change of the scene."""
         if self._closed:
             return
         self.painter.forget()
         self.moved()
 
     def _tile_ready(self) -> None:
-        """Ask for a picture when more of a large surface is there, now and then while it comes."""
+        """Request a picture when a tile is ready, now and then while more follow."""
         now = time.perf_counter()
         if not self._viewport.busy or now > self._tiled + TILE_INTERVAL_S:
             self._tiled = now
@@ -139,8 +139,8 @@ class FrameStream:
                 loop.call_soon_threadsafe(self._tile_ready)
 
         self._viewport.load_in_background(notify)
-        # The shader is built for the first picture: better now, while a browser starts, that has
-        # its answer first.
+        # The shader is built for the first picture: better now, while the browser starts, but after
+        # its answer.
         await asyncio.sleep(ANSWER_S)
         with self._log_faults():
             self._viewport.draw(16, 16)
@@ -159,14 +159,14 @@ class FrameStream:
 
     @contextmanager
     def _log_faults(self) -> Iterator[None]:
-        """Let a picture that fails be seen in the log; it must not be the last one.
+        """Log the error of a picture, so that drawing continues.
 
-        What is wrong with the data is for the page.
+        Errors of the data are sent to the page.
         """
         try:
             yield
         except Exception as error:
-            # While time goes by it may fail many times in a second.
+            # An animation may fail many times in a second.
             if repr(error) != self._fault:
                 self._fault = repr(error)
                 if isinstance(error, FieldError):

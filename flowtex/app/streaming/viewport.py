@@ -1,7 +1,7 @@
 """A flow, its camera and its colours, in one pane or in two side by side.
 
-Two panes are seen from the same camera. They show the same flow with other settings, or two flows
-with the same.
+Two panes have the same camera. They show the same flow with different settings, or two flows with
+the same settings.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Pane:
         return self._viewport.pane_size
 
     def plane_view(self) -> Floats | None:
-        """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
+        """Return the affine map from a flat surface to the view, (3, 3); ``None`` for others."""
         surface = self.handle.scene.whole.surface
         return plane_to_view(surface, self._viewport.camera, self._viewport.aspect)
 
@@ -65,7 +65,7 @@ class Pane:
 class Viewport:
     """A flow texture, its camera, and pictures of them.
 
-    Zoom and focus are those of the first look, options arguments and settings of
+    ``zoom`` and ``focus`` are those of the first view, ``options`` arguments and settings of
     ``plotter.flowtex.add``.
     """
 
@@ -87,7 +87,7 @@ class Viewport:
         self._size = self.window.size
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
-        self._stop_following: Callable[[], Any] = lambda: None
+        self._stop_following: Callable[[], None] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
         #: The views side by side, one or two.
@@ -99,7 +99,7 @@ class Viewport:
 
     @property
     def differences(self) -> Mapping[str, Any]:
-        """In what a second pane differs, as :meth:`compare` has it; nothing where there is one."""
+        """Differences of the second pane, as for :meth:`compare`; empty without one."""
         return self._beside
 
     @property
@@ -140,7 +140,7 @@ class Viewport:
 
     @property
     def scene(self) -> Scene:
-        """What the first pane shows; its appearance is that of all."""
+        """Scene of the first pane, whose appearance all panes share."""
         return self.handle.scene
 
     def _pane(self, scene: Scene) -> Pane:
@@ -159,7 +159,7 @@ class Viewport:
 
     @property
     def busy(self) -> bool:
-        """Whether more of a large surface is on its way."""
+        """Whether tiles of a large surface are still being made."""
         return any(pane.handle.busy for pane in self.panes)
 
     def close(self) -> None:
@@ -184,19 +184,19 @@ class Viewport:
         return other
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow with the same settings, and from the same camera if asked to.
+        """Show another flow with the same settings, and with the same camera for ``keep_view``.
 
-        With ``keep_range`` it is another part of the same data: the ends of the colour map that
-        somebody chose stay, and the time that is shown where the flow has the same times.
+        With ``keep_range``, for another part of the same data, a chosen range of colours stays, and
+        the time shown if the flow has the same times.
         """
         camera, flat, times, time = self.camera, self.flat, self.field.times, self.handle.time
-        own: dict[str, Any] = {} if keep_range else {"clim": None}
+        changes: dict[str, Any] = {} if keep_range else {"clim": None}
         flows = [field, self._beside.get("field", field)]
         scenes: list[Scene] = []
         try:
             for pane, flow in zip(self.panes, flows, strict=False):
                 scene = pane.handle.scene
-                scenes.append(_fitting(scene, partial(scene.showing, flow), own))
+                scenes.append(_fitting(scene, partial(scene.showing, flow), changes))
                 _ = scenes[-1].textures  # tracing may fail
         except BaseException:
             for scene in scenes:
@@ -213,15 +213,14 @@ class Viewport:
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None``.
 
-        ``changes`` are settings, and of ``scalars``, ``time`` and ``field``: what the second pane
-        is coloured by, the time that it shows, and another flow. The panes stay as they are when
-        these cannot be shown.
+        ``changes`` are settings, and ``scalars``, ``time`` and ``field`` of the second pane. If
+        these cannot be shown, the panes stay as they are.
         """
         panes, first, changes = self.panes[:1], self.scene, dict(changes or {})
         if changes:
-            own = {name: value for name, value in changes.items() if name not in ("time", "field")}
+            looks = {n: value for n, value in changes.items() if n not in ("time", "field")}
             beside = partial(first.beside, field=changes.get("field", first.field))
-            scene = _fitting(first, beside, own)
+            scene = _fitting(first, beside, looks)
             scene.time = _time_beside(first, changes)
             panes.append(self._pane(scene))
         self._stop_following()
@@ -230,8 +229,8 @@ class Viewport:
             pane.handle.remove(render=False)
         self.panes, self._beside = panes, changes
         if len(panes) > 1:
-            one, two = (pane.handle for pane in panes)
-            self._stop_following = follow(lambda: one.scene, lambda: two.scene, self._beside)
+            left, right = (pane.handle for pane in panes)
+            self._stop_following = follow(lambda: left.scene, lambda: right.scene, self._beside)
             self.clock = self.handle.clock
         self.resize(*self._size)
 
@@ -266,7 +265,7 @@ class Viewport:
 
     @property
     def time_beside(self) -> float:
-        """Time of the second pane: its own where that is what differs."""
+        """Time of the second pane, which may be its own."""
         return _time_beside(self.scene, self._beside)
 
     @time_beside.setter
@@ -276,7 +275,7 @@ class Viewport:
 
     @property
     def time_shift(self) -> float | None:
-        """What is added to the time for that of a second pane; ``None`` where that has its own."""
+        """Difference of the second pane's time; ``None`` if that is its own."""
         if "time" in self._beside:
             return None
         other = self._beside.get("field", self.field)
@@ -285,18 +284,18 @@ class Viewport:
         return 0.0
 
     def time_in(self, field: FlowField) -> float:
-        """Return the time of another flow that is now; its last where it has no such time."""
+        """Return the present time of another flow; its last one if it has no such time."""
         return _time_in(self.scene, field)
 
     @property
     def reads_late(self) -> bool:
-        """Whether steps of a flow are read when they are requested, which may take long."""
+        """Whether a flow has lazy steps, whose reading may take long."""
         return any(isinstance(p.handle.scene.field.velocity, LazySteps) for p in self.panes)
 
     def trace(self, time: float | None = None) -> None:
-        """Read and trace what a time needs, the one that is shown by default, in any thread.
+        """Read and trace the steps for a time, by default the one shown, in any thread.
 
-        Neither :meth:`set_time` nor drawing need then wait for it. Raises a FieldError when a step
+        Then neither :meth:`set_time` nor drawing wait for them. Raises a FieldError when a step
         cannot be read.
         """
         time = self.handle.time if time is None else time
@@ -308,7 +307,7 @@ class Viewport:
                 scene.store.at(step)
                 if name is not None:
                     values = steps_of(scene.field, name)
-                    _ = values[min(step, len(values) - 1)]  # which keeps it available
+                    _ = values[min(step, len(values) - 1)]  # which caches it
 
     @property
     def clock(self) -> float:
@@ -324,7 +323,7 @@ class Viewport:
 
     @property
     def camera(self) -> Camera:
-        """Where the flow is seen from."""
+        """The camera of all panes."""
         return self._camera
 
     @camera.setter
@@ -334,7 +333,7 @@ class Viewport:
 
     @property
     def zoom(self) -> float:
-        """How far in: 1 shows the whole surface."""
+        """Zoom: 1 shows the whole surface."""
         return self.whole.height / self.camera.height
 
     def resize(self, width: int, height: int) -> None:
@@ -352,12 +351,12 @@ class Viewport:
         self._look, self.camera = look, self._home
 
     def refit(self) -> None:
-        """Look again as :meth:`home` was asked to, in a view of another size."""
+        """Repeat :meth:`home` in a view of another size."""
         self.home(**self._look)
 
     @property
     def sees_all(self) -> bool:
-        """Whether the camera shows the whole surface, from no side that somebody chose."""
+        """Whether the camera shows the whole surface from the default direction."""
         return (
             self.at_home
             and not any(self._look.get(n) for n in ("focus", "toward"))
@@ -366,11 +365,11 @@ class Viewport:
 
     @property
     def at_home(self) -> bool:
-        """Whether the camera stands where :meth:`home` has put it."""
+        """Whether the camera is that of :meth:`home`."""
         return self.camera == self._home
 
     def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
-        """Point of a pane's surface at a place of it, from -1 to 1; ``None`` beside it.
+        """Return the point of a pane's surface at (x, y) from -1 to 1; ``None`` beside it.
 
         A flat surface has a point everywhere in its plane.
         """
@@ -380,7 +379,7 @@ class Viewport:
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             if isinstance(surface, TriangleSurface):
-                # The mesh that is drawn has those triangles only that lie in the last part drawn.
+                # The drawn mesh has only the triangles of the last part.
                 meshes = [_meshes.get("mesh", partial(_whole_mesh, surface), owner=surface)]
             else:
                 meshes = handle.meshes
@@ -406,7 +405,7 @@ _meshes: WeakCache[pv.PolyData] = WeakCache()
 
 
 def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
-    """Return all that is drawn of a surface."""
+    """Return the mesh of all drawn triangles of a surface."""
     triangles: Any = surface.triangles[surface.cells]
     return pv.PolyData.from_regular_faces(surface.points[0], triangles)
 
@@ -419,18 +418,20 @@ def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
 
 
 def _time_in(scene: Scene, field: FlowField) -> float:
-    """Time of a scene in another field; the last one where that has no such time."""
+    """Return the time of a scene in another field; the last one if that has no such time."""
     time, (first, last) = scene.time, map(float, field.times[[0, -1]])
     with suppress(TypeError, ValueError):  # no dates, or of two calendars
         time += (scene.field.start - field.start).total_seconds()
     return time if first <= time <= last and not scene.field.steady else last
 
 
-def _fitting(like: Scene, make: Callable[[dict[str, Any]], Scene], own: dict[str, Any]) -> Scene:
-    """Make a scene like another one of a field that may have values without a logarithm."""
+def _fitting(
+    first: Scene, make: Callable[[dict[str, Any]], Scene], changes: dict[str, Any]
+) -> Scene:
+    """Make a scene beside another one, without a logarithmic scale if its values have none."""
     try:
-        return make(own)
+        return make(changes)
     except ValueError:
-        if not like.appearance.log_scale:
+        if not first.appearance.log_scale:
             raise
-        return make({**own, "log_scale": False, "clim": None})
+        return make({**changes, "log_scale": False, "clim": None})

@@ -1,20 +1,23 @@
 """An off-screen window with a camera, drawn whole or a rectangle at a time.
 
 Pictures are drawn into the lower left corner of a window that keeps its size: a draft is the
-whole view in a small corner, a tile a part of the view at full size. Nothing is allocated between
-one and the next, and a tile has the same pixels as the whole picture has there. So the window may
-be smaller than the picture, of which it then draws no more than tiles.
+whole view in a small corner, a tile a part of the view at full size. Nothing is allocated from one
+to the next, and a tile has the same pixels as the whole picture at its place. So the window may be
+smaller than a picture that it draws in tiles.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkCamera
 
 Rect = tuple[int, int, int, int]
 #: Longest side of a window, in pixels.
@@ -39,7 +42,7 @@ class OffscreenWindow:
         return self.plotter.render_window
 
     def suppress_rendering(self) -> None:
-        """Draw only in :meth:`draw`: a texture asks for a picture at each change."""
+        """Draw only in :meth:`draw`: a texture requests a picture at each change."""
         self.plotter.suppress_rendering = True
 
     @property
@@ -61,13 +64,13 @@ class OffscreenWindow:
         apply_camera(camera, self.plotter.camera)
 
     def set_background(self, colour: Any) -> None:
-        """Take another colour behind what is drawn."""
+        """Set the background colour."""
         self.plotter.renderer.set_background(colour)
 
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Return a picture of what is visible, (height, width, 3), row 0 at the top.
 
-        It is as large as a whole one at most, and may show a part of that: left, top, width and
+        It is at most as large as a whole one, and may show a ``part`` of that: left, top, width and
         height in pixels.
         """
         camera, renderer = self.plotter.camera, self.plotter.renderer
@@ -82,7 +85,7 @@ class OffscreenWindow:
         camera.SetViewAngle(whole[2])
         return self._read(width, height)
 
-    def _narrow(self, camera: Any, part: Rect) -> None:
+    def _narrow(self, camera: vtkCamera, part: Rect) -> None:
         """Narrow the VTK camera to a part of the view."""
         left, top, width, height = part
         whole_width, whole_height = self.size

@@ -17,9 +17,9 @@ from flowtex.app.streaming.element import PAINTERS
 from flowtex.settings import TABLE
 
 TEMPLATE = Path(__file__).parent / "page.html"
-#: Where the template has the view.
+#: Mark of the view in the template.
 VIEW = "<!-- the view -->"
-#: What complains is dark in both.
+#: Error messages are dark in both themes.
 COMPLAINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
 THEMES = {
     "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **COMPLAINT}},

@@ -32,14 +32,14 @@ from flowtex.app.server.sessions.registry import OpenSession, Session
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
 MakeApp = Callable[[Any], Any]
 
-#: What the page shows when its session has ended.
+#: Page that is shown when a session has ended.
 ENDED = Path(__file__).parents[2] / "ui" / "static" / "ended.html"
 
 _count = itertools.count(1)
 
 
 def opener(make_app: MakeApp, secret: str) -> OpenSession:
-    """Return what opens sessions in this process; a connection has to know the secret."""
+    """Return a function that opens sessions in this process, for connections with the secret."""
 
     async def open_session() -> Session:
         server = get_server(f"flowtex-session-{next(_count)}")
@@ -120,7 +120,7 @@ class LocalSession(Session):
                     msg = "received text; expected bytes"
                     raise ValueError(msg)
         finally:
-            # wslink's endpoint forgets the connection, but not what it has gathered for it.
+            # wslink's endpoint forgets the connection, but not the data that it holds for it.
             await self._endpoint.onClose(link.client_id)
             self._endpoint.authentified_client_ids.discard(link.client_id)
             await link.close()
@@ -140,7 +140,7 @@ class LocalSession(Session):
         if self._task is not None:
             await self._task
         AVAILABLE_SERVERS.pop(server.name, None)
-        # Each library keeps the server that it used last.
+        # Both libraries keep a reference to the server that they used last.
         if CoreServer.server is server:
             CoreServer.server = None
             wslink.server.ws_server = None
@@ -150,10 +150,10 @@ class LocalSession(Session):
 
 @contextmanager
 def _quiet_trame() -> Iterator[None]:
-    """Keep trame from reading this program's arguments, and from printing on its own."""
-    ours = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
-    before = {name: os.environ.get(name) for name in ours}
-    os.environ.update(ours)
+    """Keep trame from reading this program's arguments and from printing."""
+    quiet = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
+    before = {name: os.environ.get(name) for name in quiet}
+    os.environ.update(quiet)
     try:
         yield
     finally:

@@ -1,9 +1,9 @@
-"""The messages of a page, before trame sees them, and the errors that it is answered.
+"""Checks of the messages of a page before trame receives them, and of its error messages.
 
 wslink reserves room for a whole message when its first piece announces a length of up to 4 GB, so
 messages are limited: nothing that the page sends is larger than a picture. trame keeps whatever a
 page puts into the state, prints the names of areas and triggers that it does not know, and
-answers a fault with its traceback; none of that passes here.
+answers an error with its traceback; all this is prevented here.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from wslink.chunking import UnChunker
 
 #: Bytes of a message, and messages that a page may begin before it ends one.
 MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
-#: What trame offers, and no page of ours asks for.
+#: Methods of trame that no page of ours calls.
 UNUSED = ("application.exit", "application.exit.later", "trame.rca.push", "trame.rca.drop")
-#: What happens to a page.
+#: Events of a page.
 EVENTS = ("client_connected", "client_mounted", "client_unmounted", "client_exited")
 
 #: Characters of the name of a trigger.
@@ -31,7 +31,7 @@ class LimitedMessages(UnChunker):
     """The messages of one connection, joined from their pieces, within limits.
 
     ``declared`` are the names of the state's values, to which a page cannot add others, and
-    ``areas`` those of the views that it may speak of.
+    ``areas`` the names of its views.
     """
 
     def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
@@ -39,13 +39,13 @@ class LimitedMessages(UnChunker):
         self._declared, self._areas = declared, areas
 
     def set_max_message_size(self, size: int) -> None:
-        """Allow messages of this many bytes, or as many as any may have."""
+        """Limit messages to this many bytes, and to the general limit."""
         super().set_max_message_size(min(size, MESSAGE_BYTES))
 
     def process_chunk(self, chunk: bytes) -> Any:
-        """Take a piece; return the message when it is the last one.
+        """Add a piece; return the message when it is the last one.
 
-        Raises a ValueError when a message is too long, malformed, or one too many.
+        Raises a ValueError when a message is too long or malformed, or too many are incomplete.
         """
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:
@@ -58,13 +58,13 @@ class LimitedMessages(UnChunker):
         return self._checked(message) if isinstance(message, dict) else message
 
     def _checked(self, message: dict[str, Any]) -> dict[str, Any] | None:
-        """Return a message with what has a meaning here; ``None`` where that is nothing."""
+        """Return the valid part of a message; ``None`` if there is none."""
         method, args = message.get("method"), message.get("args")
         first = args[0] if isinstance(args, list) and args else None
         if method == "trame.state.update":
             changes = [c for c in first if isinstance(c, dict)] if isinstance(first, list) else []
-            known = [c for c in changes if _is_one_of(c.get("key"), self._declared)]
-            return {**message, "args": [known], "kwargs": {}}
+            declared = [c for c in changes if _is_one_of(c.get("key"), self._declared)]
+            return {**message, "args": [declared], "kwargs": {}}
         if method == "trame.lifecycle.update":
             return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
         if method == "trame.trigger" and not _is_plain_name(first):
@@ -74,17 +74,17 @@ class LimitedMessages(UnChunker):
         return message
 
 
-def _is_one_of(name: Any, names: Container[str]) -> bool:
+def _is_one_of(name: object, names: Container[str]) -> bool:
     return isinstance(name, str) and name in names
 
 
-def _is_plain_name(name: Any) -> bool:
-    """Whether a name may stand in a log: trame writes those of triggers that it does not know."""
+def _is_plain_name(name: object) -> bool:
+    """Return whether a name is safe in a log, to which trame writes unknown triggers."""
     return isinstance(name, str) and len(name) <= NAME_LENGTH and name.isidentifier()
 
 
 def restrict(endpoint: Any) -> None:
-    """Take away what no page asks for from a wslink endpoint, and tracebacks from its errors."""
+    """Remove unused methods from a wslink endpoint, and tracebacks from its errors."""
     for name in UNUSED:
         endpoint.functionMap.pop(name, None)
     send = endpoint.sendWrappedError
@@ -97,5 +97,5 @@ def restrict(endpoint: Any) -> None:
         await send(rpcid, code, message, client_id=client_id)
 
     endpoint.sendWrappedError = send_error
-    # It writes the same in three pieces, and disable_logging leaves it as it is.
+    # It logs the same in three pieces, in spite of disable_logging.
     logging.getLogger("wslink.protocol").disabled = True

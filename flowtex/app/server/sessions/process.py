@@ -1,4 +1,4 @@
-"""A session in a separate process, as the server sees it and as it runs there.
+"""A session in a separate process: its proxy in the server, and its host in the process.
 
 The process is forked from one that has loaded the libraries, and listens on a socket without a
 file, at a name that the system chooses. The server in front keeps addresses, secrets and limits,
@@ -26,13 +26,13 @@ from flowtex.app.server.files import CHUNK_BYTES
 from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
 
-#: Seconds within which a session opens, and ends once it was asked to.
+#: Time limits in seconds to open a session, and to end it.
 OPENING_S, ENDING_S = 600.0, 30.0
-#: Seconds between two looks whether a session is to end.
+#: Seconds between two checks whether a session is to end.
 CHECK_S = 0.05
 #: Headers of a request, and of an answer, that are passed on.
-ASKED = ("Content-Type", "Content-Length", "Range", "If-Range")
-ANSWERED = (
+REQUEST_HEADERS = ("Content-Type", "Content-Length", "Range", "If-Range")
+ANSWER_HEADERS = (
     *("Content-Type", "Content-Length", "Content-Range", "Content-Disposition"),
     *("Accept-Ranges", "Cache-Control", "ETag", "Last-Modified", "Connection"),
 )
@@ -41,11 +41,11 @@ ANSWERED = (
 def process_opener(
     entry: str, preload: tuple[str, ...], request: dict[str, Any], opened: Callable[[Any], None]
 ) -> OpenSession:
-    """Return what opens sessions in separate processes.
+    """Return a function that opens sessions in separate processes.
 
     Entry and preload are those of :class:`flowtex._util.child.Child`; the entry makes a
-    :class:`HostedSession`, which is asked to open the request. ``opened`` is called with what is
-    said of each session.
+    :class:`HostedSession`, which is asked to open the request. ``opened`` is called with the
+    messages of each session.
     """
 
     async def open_session(*, again: bool = True) -> Session:
@@ -54,7 +54,7 @@ def process_opener(
             about, _ = await asyncio.to_thread(child.request, {"open": request}, timeout=OPENING_S)
         except ChildError as error:
             child.close()
-            if again and str(error) == ENDED:  # what it was to be forked from has died
+            if again and str(error) == ENDED:  # the process to fork from has died
                 return await open_session(again=False)
             raise _opening_error(error) from error
         opened(about["said"])
@@ -90,7 +90,7 @@ class ProcessSession(Session):
         threading.Thread(target=self._run, args=(loop,), name="session", daemon=True).start()
 
     def _run(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Have the other process run until it is to end, and hear of its end."""
+        """Run the other process until the session ends, and report its end."""
         with suppress(Stopped), stoppable(lambda: self._ending):
             try:
                 self._child.request({"run": True}, timeout=math.inf)
@@ -110,11 +110,11 @@ class ProcessSession(Session):
     async def carry(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a page and the process until one of them ends."""
         address = f"/page/{self.token}/ws"
-        async with self._http.ws_connect(address, max_msg_size=0, autoclose=False) as there:
+        async with self._http.ws_connect(address, max_msg_size=0, autoclose=False) as connection:
 
             async def answer() -> None:
                 with suppress(ConnectionError):
-                    async for message in there:
+                    async for message in connection:
                         await socket.send_bytes(message.data)
                 await socket.close(code=WSCloseCode.GOING_AWAY)
 
@@ -122,7 +122,7 @@ class ProcessSession(Session):
             try:
                 async for message in socket:
                     if message.type == WSMsgType.BINARY:
-                        await there.send_bytes(message.data)
+                        await connection.send_bytes(message.data)
                     elif message.type == WSMsgType.TEXT:
                         msg = "received text; expected bytes"
                         raise ValueError(msg)
@@ -149,15 +149,17 @@ class _Files:
         self.token, self._http = token, http
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Hand on a request for a file, or one that brings a file."""
+        """Pass on a request for a file, or an upload."""
         del name
         async with self._http.request(
             request.method,
             URL(request.raw_path, encoded=True),
-            headers={key: request.headers[key] for key in ASKED if key in request.headers},
+            headers={
+                key: request.headers[key] for key in REQUEST_HEADERS if key in request.headers
+            },
             data=request.content if request.body_exists else None,
         ) as answer:
-            headers = {key: answer.headers[key] for key in ANSWERED if key in answer.headers}
+            headers = {key: answer.headers[key] for key in ANSWER_HEADERS if key in answer.headers}
             response = web.StreamResponse(status=answer.status, headers=headers)
             await response.prepare(request)
             async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
@@ -167,9 +169,9 @@ class _Files:
 
 
 class HostedSession:
-    """A session as its own process has it: answers what :class:`ProcessSession` asks.
+    """A session in its own process, which answers the requests of :class:`ProcessSession`.
 
-    ``open_site`` takes a request, and returns a site with one session, and what is said of it.
+    ``open_site`` takes a request, and returns a site with one session, and its messages.
     """
 
     def __init__(self, open_site: Callable[[dict[str, Any]], tuple[Any, Any]]) -> None:

@@ -49,13 +49,13 @@ _log = logging.getLogger(__name__)
 
 
 class Session(ABC):
-    """What a page is connected to, the token that it is known by, and the page's connection."""
+    """A session, its token, and the connection of its page."""
 
     def __init__(self, routes: Handler, token: str = "") -> None:
         self.token = token or new_secret()  #: Known to the page alone.
-        self.routes = routes  #: What answers requests for files, below its own token.
-        self.static: dict[str, str] = {}  #: The folders that all pages want served, by route.
-        #: Called when it is lost, with a text that says how.
+        self.routes = routes  #: Answers requests for files, below its own token.
+        self.static: dict[str, str] = {}  #: Folders that all pages need, by route.
+        #: Called with the reason when the session is lost.
         self.lost: Callable[[str], None] = _log.error
         self._left = time.monotonic()
         self._loading = False
@@ -72,22 +72,22 @@ class Session(ABC):
         return 0.0 if self.connected else time.monotonic() - self._left
 
     def expect(self) -> None:
-        """Give a page time to load, and to connect."""
+        """Wait for a page that loads and connects."""
         self._left, self._loading = time.monotonic(), True
 
     def is_idle(self, limit: float) -> bool:
-        """Whether no page has been connected for ``limit`` seconds, and none is loading."""
+        """Return whether no page has been connected for ``limit`` seconds, and none is loading."""
         return self.away > max(limit, LOADING_S if self._loading else 0.0)
 
     @abstractmethod
     async def carry(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a page and its application until one of them ends.
 
-        What no page of ours sends raises an error.
+        Raises an error for a message that no page of ours sends.
         """
 
     async def connect(self, request: web.Request, *, shared: bool) -> web.StreamResponse:
-        """Connect a page, in place of another one but where pages share the session."""
+        """Connect a page, in place of another one unless pages share the session."""
         socket = web.WebSocketResponse(
             max_msg_size=MAX_MSG_SIZE + MESSAGE_OVERHEAD_BYTES,
             heartbeat=HEARTBEAT_S,
@@ -111,7 +111,7 @@ class Session(ABC):
         return socket
 
     async def is_free(self) -> bool:
-        """Wait a little until no page is connected, and return whether that is so."""
+        """Wait a little for the page to disconnect, and return whether it has."""
         end = time.monotonic() + RECONNECT_WAIT_S
         while self.connected and time.monotonic() < end:
             await asyncio.sleep(0.02)
@@ -125,7 +125,7 @@ class Session(ABC):
 
     @abstractmethod
     async def end(self) -> None:
-        """Close the connection, and leave nothing."""
+        """Close the connection and end the session."""
 
 
 #: Opens a session.
@@ -133,15 +133,15 @@ OpenSession = Callable[[], Awaitable[Session]]
 
 
 class FullError(Exception):
-    """There are as many sessions as may be."""
+    """The maximum number of sessions is reached."""
 
 
 class ClosedError(Exception):
-    """The server ends, and makes no more sessions."""
+    """The server ends, and opens no more sessions."""
 
 
 def usual_limit() -> int:
-    """Return how many sessions this machine, or this container, has room for."""
+    """Return the maximum number of sessions of this machine or container."""
     try:
         cores = len(os.sched_getaffinity(0))
     except AttributeError:  # neither Linux nor a BSD
@@ -186,7 +186,7 @@ class Sessions:
         """Open the first session.
 
         Errors of a mesh or a setting then appear early, and the first visitor does not wait.
-        Returns the folders that all pages want served, by route.
+        Returns the folders that all pages need, by route.
         """
         self._ready = await self._begin()
         return self._ready.static
@@ -225,7 +225,7 @@ class Sessions:
         return session
 
     def _forget(self, session: Session, how: str) -> None:
-        """Make room for another session in place of one that was lost."""
+        """Remove a session that was lost."""
         _log.error("a session was lost: %s", how)
         self._by_token.pop(session.token, None)
         if self._ready is session:
@@ -240,10 +240,10 @@ class Sessions:
         await self.end(token)
 
     async def end(self, token: str) -> None:
-        """End the session of a token, and leave nothing of it."""
+        """End the session of a token, and free its memory."""
         await self._end(token)
-        # Applications and VTK's objects point at each other. They are freed here, where their
-        # window was made, and not in whatever thread next fills up. So who calls this holds none.
+        # Applications and VTK's objects refer to each other. They are freed here, in the thread of
+        # their window, and not by the next collection in any thread. The caller must hold none.
         gc.collect()
         give_back()
 
@@ -253,7 +253,7 @@ class Sessions:
             return
         try:
             await session.end()
-        except Exception:  # what one page does wrong must not end the others
+        except Exception:  # an error of one page must not end the others
             _log.exception("a session could not be ended in full")
 
     async def sweep(self, every: float = 5.0) -> None:
@@ -267,7 +267,7 @@ class Sessions:
     async def close(self) -> None:
         """End all sessions."""
         self._ready, self._closed = None, True
-        # No page waits for another one, which may be asleep.
+        # A page does not wait for another one, which may be suspended.
         await asyncio.gather(*(session.disconnect() for session in self))
         await asyncio.gather(*map(self._end, list(self._by_token)))
         gc.collect()
