@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-from flowtex._util.arguments import is_number, near_names
+from flowtex._util.arguments import brief, is_number, near_names
 from flowtex.errors import FieldError
 
 Affects = Literal["uniform", "shader", "textures", "trace"]
@@ -92,7 +92,8 @@ class Setting:
             fits = fits and (self.low is None or value >= self.low)
             fits = fits and (self.high is None or value <= self.high)
         if not fits:
-            msg = f"{self.name} is {value!r}; expected {self.expected} (default {self.default!r})"
+            expected = f"{self.expected} (default {self.default!r})"
+            msg = f"{self.name} is {brief(value)}; expected {expected}"
             raise SettingsError(msg)
         return self.kind(value)
 

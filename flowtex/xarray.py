@@ -19,7 +19,7 @@ import xarray as xr
 from xarray.plot import FacetGrid
 
 import flowtex
-from flowtex._util.arguments import checked_number
+from flowtex._util.arguments import brief, checked_number
 from flowtex._util.terminal.console import plain_text
 from flowtex.field import FlowField
 from flowtex.field.datasets.read import recognised
@@ -154,7 +154,7 @@ class FlowtexAccessor:
         """
         if transform is not None and not _is_geodetic(transform):
             msg = (
-                f"transform is {transform!r}; expected ccrs.PlateCarree() or none: the "
+                f"transform is {brief(transform)}; expected ccrs.PlateCarree() or none: the "
                 "positions follow from the longitudes and latitudes of the data"
             )
             raise flowtex.FieldError(msg)

@@ -134,10 +134,8 @@ def test_what_is_no_dataset_is_told_in_the_words_of_xarray(tmp_path: Path) -> No
     ds = few_winds()
     with pytest.raises(FieldError, match="is a DataArray of xarray's; expected a Dataset with"):
         flowtex.render(ds.u)
-    with pytest.raises(
-        SettingsError, match=r"'month' does not exist; for .* use sel={'month': 1};"
-    ):
-        flowtex.render(ds, month=1)
+    with pytest.raises(SettingsError, match=r"'month' does not exist; .* use sel={'month': 1}$"):
+        flowtex.render(ds.expand_dims("month"), month=1)
     with pytest.raises(FieldError, match=r"the folder '.*none' does not exist; create"):
         flowtex.export(ds, tmp_path / "none" / "page.html")
 

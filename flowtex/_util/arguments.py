@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import math
 import os
-import reprlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,13 +18,43 @@ from flowtex.errors import FieldError
 SYNONYMS = {
     **dict.fromkeys(("vmin", "vmax", "range"), "clim"),
     **dict.fromkeys(("colormap", "palette", "cm"), "cmap"),
-    **dict.fromkeys(("colorbar", "cbar", "legend"), "show_scalar_bar"),
-    **dict.fromkeys(("length", "streak_length", "line_length"), "samples"),
-    **dict.fromkeys(("normal", "cut", "origin"), "slice"),
+    **dict.fromkeys(("normal", "plane_normal", "cut", "origin"), "slice"),
     **dict.fromkeys(("variables", "vector", "velocity"), "vectors"),
     **dict.fromkeys(("scalar", "color_by", "field"), "scalars"),
+    **dict.fromkeys(("depth", "height", "lev", "altitude"), "level"),
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
 }
+_LENGTH = "a streak has samples times spacing grains, as in samples=49, spacing=0.7"
+_LEGEND = (
+    "show_scalar_bar=True draws a legend of the colours, annotations=True one with scale and time; "
+    "on axes of matplotlib use plt.colorbar(image)"
+)
+_PART = "all times of the data are drawn; time=5 draws one of them"
+#: What is reached in another way than by an argument of the same kind.
+ELSEWHERE = {
+    **dict.fromkeys(("length", "streak_length", "streaklength", "line_length"), _LENGTH),
+    **dict.fromkeys(("colorbar", "cbar", "legend"), _LEGEND),
+    **dict.fromkeys(("start", "stop", "end"), _PART),
+    **dict.fromkeys(
+        ("quiet", "silent", "verbose"),
+        "in a shell send the output to /dev/null, in Python use warnings.simplefilter('ignore')",
+    ),
+    "group": "give the path of the group in the file, such as 'model.nc/ocean'",
+    "transform": (
+        "it is not needed: longitudes and latitudes in the data are recognised, and "
+        'projection="north" chooses the map'
+    ),
+    "duration": "the length of a movie is seconds=5",
+    "title": "pictures have none; on axes of matplotlib use ax.set_title",
+}
+#: Longest value that is written in a message, in letters.
+LONGEST_SHOWN = 100
+
+
+def brief(value: Any) -> str:
+    """Return a value as a message writes it: on one line, and cut where it is long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 3]}..."
 
 
 def is_number(value: Any) -> bool:
@@ -47,7 +76,7 @@ def checked_number(
 ) -> float:
     """Return a number from ``low`` to ``high``; otherwise ``error`` names what was expected."""
     if not (is_number(value) and low <= value <= high):
-        msg = f"{name} is {value!r}; expected {expected}"
+        msg = f"{name} is {brief(value)}; expected {expected}"
         raise error(msg)
     return float(value)
 
@@ -58,7 +87,7 @@ def checked_count(
     """Return a whole number from ``low`` to ``high``; a FieldError names what was expected."""
     number = checked_number(name, value, low, high, expected=expected)
     if not number.is_integer():
-        msg = f"{name} is {value!r}; expected {expected}"
+        msg = f"{name} is {brief(value)}; expected {expected}"
         raise FieldError(msg)
     return int(value)
 
@@ -68,7 +97,7 @@ def checked_array(name: str, value: Any, *, expected: str) -> Floats:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
-        msg = f"{name} is {value!r}; expected {expected}"
+        msg = f"{name} is {brief(value)}; expected {expected}"
         raise FieldError(msg) from error
 
 
@@ -77,7 +106,7 @@ def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
     expected = "width and height in pixels, such as (1024, 768)"
     sides = checked_array("size", size, expected=expected)
     if sides.shape != (2,) or not (sides >= low).all() or (sides % 1).any():
-        msg = f"size is {size!r}; expected {expected}"
+        msg = f"size is {brief(size)}; expected {expected}"
         raise FieldError(msg)
     return int(sides[0]), int(sides[1])
 
@@ -85,7 +114,7 @@ def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
 def checked_path(name: str, path: Any) -> Path:
     """Return a path as one of Python's."""
     if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
-        msg = f"{name} is {reprlib.repr(path)}; expected a path"
+        msg = f"{name} is {brief(path)}; expected a path"
         raise FieldError(msg)
     return Path(path)
 
@@ -103,7 +132,7 @@ def checked_target(path: Any) -> Path:
 def check_field(field: Any, kind: type) -> None:
     """Raise a FieldError if ``field`` is not a field, an instance of ``kind``."""
     if not isinstance(field, kind):
-        msg = f"field is {field!r}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
+        msg = f"field is {brief(field)}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
         raise FieldError(msg)
 
 
@@ -114,6 +143,12 @@ def closest(name: str, names: Sequence[str]) -> list[str]:
         return synonyms
     begun = [candidate for candidate in names if len(name) > 2 and candidate.startswith(name)]
     return begun[:2] or difflib.get_close_matches(name, names, n=2)
+
+
+def elsewhere(name: str, names: Sequence[str]) -> str:
+    """Return how else to reach what a name stands for, if none of these names is an argument."""
+    name = name.replace("-", "_")
+    return "" if SYNONYMS.get(name) in names else ELSEWHERE.get(name, "")
 
 
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:

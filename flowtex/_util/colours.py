@@ -20,6 +20,8 @@ CMAPS = (
     *("viridis", "cividis", "magma", "inferno", "plasma", "gray", "Blues_r", "YlGnBu_r", "turbo"),
     *("coolwarm", "RdBu_r", "twilight"),
 )
+#: Packages whose maps are found by their names.
+PACKAGES = ("cmocean", "cmcrameri", "colorcet")
 #: Maps with a middle, by the names of matplotlib, cmocean and cmcrameri.
 DIVERGING = frozenset(
     (
@@ -87,6 +89,9 @@ def _named_table(name: Any) -> Bytes:
         return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"
+        package, _, rest = str(name).partition(".")
+        if package in PACKAGES:
+            hint = f"install {package}, and give its name there, {rest!r}"
         msg = f"the colour map {name!r} does not exist; {hint}"
         raise FieldError(msg) from error
 

@@ -103,7 +103,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
     from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
 
     bar_options = options.pop("scalar_bar_args", None)
-    arguments = Options.split(**options)
+    arguments = Options.split(mesh=mesh, **options)
     plotter = new_plotter(checked_size(size), two_views=arguments.view.beside is not None)
     plotter.disable_anti_aliasing()
     plotter.set_background(arguments.view.ground)
@@ -123,7 +123,7 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
     if options.pop("beside", None) is not None:
         msg = "two views need a window, but there is no display; use flowtex.render to draw both"
         raise FieldError(msg)
-    field = Options.split(**options).field.field(mesh)
+    field = Options.split(mesh=mesh, **options).field.field(mesh)
     from flowtex.app import serve
 
     serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
 
-from flowtex._util.arguments import closest
+from flowtex._util.arguments import closest, elsewhere
 from flowtex._util.terminal.ending import Ended, ended_by_signals
 from flowtex.cli import page
 from flowtex.cli.console import complain
@@ -108,10 +108,11 @@ def _explained(error: Exception) -> Exception:
     off = "--no-" if flag.startswith("--no-") else "--"
     names = [name for argument in error.argument_collection or () for name in argument.names]
     words = [name.removeprefix(off) for name in names if name.startswith(off)]
-    near = " or ".join(off + word for word in closest(flag.removeprefix(off), words))
+    name = flag.removeprefix(off)
+    near = " or ".join(off + word for word in closest(name, words))
     command = " ".join(error.command_chain or ())
     help_ = f"`{' '.join(['flowtex', *command.split()])} --help` lists all options"
-    hint = f"did you mean {near}?" if near else help_
+    hint = elsewhere(name, words) or (f"did you mean {near}?" if near else help_)
     return UsageError(f"{command or 'flowtex'} has no option {flag}; {hint}")
 
 

@@ -163,7 +163,8 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 def _field_table(field: FlowField) -> Table:
     import numpy as np
 
-    from flowtex.field.dates import date_text
+    from flowtex.field.dates import expected_times
+    from flowtex.field.derived import DERIVED
     from flowtex.textures.tiles import has_pyramid
 
     table = _pairs(
@@ -178,8 +179,7 @@ def _field_table(field: FlowField) -> Table:
     steady = "one, steady"
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
     if field.start is not None:
-        step = float(np.diff(field.times).min()) if len(field.times) > 1 else 60.0
-        ends = " to ".join(date_text(field.start, time, step) for time in field.times[[0, -1]])
+        ends = expected_times(field.start, field.times)
     table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
     if not field.steady:
         table.add_row("lines", _lines(field))
@@ -189,6 +189,7 @@ def _field_table(field: FlowField) -> Table:
     table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
     if field.sign_free:
         table.add_row("signs", "none: v and -v mean the same")
+    table.add_row("scalars", ", ".join(dict.fromkeys(("speed", *field.scalars, *DERIVED))))
     shape = "curved" if field.surface.frame is None else "flat"
     table.add_row(
         "surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip() + " across"

@@ -10,6 +10,7 @@ import numpy as np
 
 from flowtex._util.arguments import is_number
 from flowtex._util.extras import import_extra
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -121,6 +122,14 @@ def time_within(start: Any, times: Any, date: Any) -> float:
     if not float(times[0]) <= time <= float(times[-1]):
         msg = f"time is {date!r}; expected {expected_times(start, times)}"
         raise FieldError(msg)
+    if start is not None and isinstance(date, (int, np.integer)) and 0 < date < len(times):
+        step = float(times[1] - times[0])
+        if date < step:
+            text = date_text(start, float(times[int(date)]), step)
+            notify(
+                f"time is {date}, in seconds since {date_text(start, 0, step)}, and the steps are "
+                f"{step:g} s apart; a step is named by its date, as in time={text!r}"
+            )
     return time
 
 

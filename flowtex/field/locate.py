@@ -18,7 +18,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import check_field, checked_array
+from flowtex._util.arguments import brief, check_field, checked_array
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
@@ -53,7 +53,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     expected = "two finite numbers (j, i), in cells"
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
-        msg = f"index is {index!r}; expected {expected}"
+        msg = f"index is {brief(index)}; expected {expected}"
         raise FieldError(msg)
     place, number, weights = surface.triangle_at(at)
     nodes = surface.corners_of(np.array([number]))[0]
@@ -210,7 +210,7 @@ def locate(
     expected = "two or three finite coordinates in the mesh's units"
     at = checked_array("point", point, expected=expected)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
-        msg = f"point is {point!r}; expected {expected}"
+        msg = f"point is {brief(point)}; expected {expected}"
         raise FieldError(msg)
     target = np.zeros((1, 3))
     target[0, : len(at)] = at

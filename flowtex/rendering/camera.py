@@ -18,7 +18,7 @@ from typing import Any, Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import checked_number, is_number
+from flowtex._util.arguments import brief, checked_number, is_number
 from flowtex._util.array_types import Floats
 from flowtex._util.written import number_or_text
 from flowtex.errors import FieldError
@@ -122,7 +122,7 @@ class Camera:
             if _is_point(value):
                 object.__setattr__(self, name, _point(value))
             else:
-                faults.append(f"camera.{name} is {value!r}; expected three finite numbers")
+                faults.append(f"camera.{name} is {brief(value)}; expected three finite numbers")
         for name, greatest, expected in (
             ("parallel_scale", sys.float_info.max, "a positive length"),
             ("view_angle", 180.0, "0 to 180 degrees"),
@@ -131,7 +131,7 @@ class Camera:
             if is_number(value) and 0 < value < greatest:
                 object.__setattr__(self, name, float(value))
             else:
-                faults.append(f"camera.{name} is {value!r}; expected {expected}")
+                faults.append(f"camera.{name} is {brief(value)}; expected {expected}")
         object.__setattr__(self, "parallel", bool(self.parallel))
         if not faults and not self._sees():
             faults.append(
@@ -191,7 +191,10 @@ class Camera:
         center = surface.center.copy()
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):
-                msg = f"focus is {focus!r}; expected two or three coordinates in the mesh's units"
+                msg = (
+                    f"focus is {brief(focus)}; expected two or three coordinates in the mesh's "
+                    "units"
+                )
                 raise FieldError(msg)
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
@@ -261,12 +264,12 @@ class Camera:
         """
         names = [f.name for f in fields(cls)]
         if not isinstance(values, Mapping) or not set(values) <= set(names):
-            msg = f"camera is {values!r}; expected a mapping with some of {', '.join(names)}"
+            msg = f"camera is {brief(values)}; expected a mapping with some of {', '.join(names)}"
             raise CameraError(msg)
         whole = {**({} if base is None else asdict(base)), **values}
         missing = [name for name in ("position", "focal_point", "up") if name not in whole]
         if missing:
-            msg = f"camera is {values!r}; expected {', '.join(missing)} as well"
+            msg = f"camera is {brief(values)}; expected {', '.join(missing)} as well"
             raise CameraError(msg)
         return cls(**whole)
 
@@ -282,7 +285,7 @@ class Camera:
         try:
             position, focal_point, up = points
         except (TypeError, ValueError) as error:
-            msg = f"camera is {points!r}; expected position, focal point and up, three points"
+            msg = f"camera is {brief(points)}; expected position, focal point and up, three points"
             raise CameraError(msg) from error
         return cls(position, focal_point, up)
 

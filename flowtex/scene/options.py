@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import is_number, near_names
+from flowtex._util.arguments import brief, closest, elsewhere, is_number
 from flowtex._util.colours import DEFAULT_CMAP, SIGNED_CMAP, colour_table, rgb
 from flowtex._util.notices import notify
 from flowtex._util.written import (
@@ -250,7 +250,7 @@ EARTH_LINES = ("coastlines", "graticule")
 
 def default_cmap(scalars: Any) -> str:
     """Return the colour map of scalars for which none was chosen."""
-    return SIGNED_CMAP if scalars in SIGNED else DEFAULT_CMAP
+    return SIGNED_CMAP if isinstance(scalars, str) and scalars in SIGNED else DEFAULT_CMAP
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
@@ -329,11 +329,13 @@ class Appearance:
         if self.scalars is None or self.scalars is True:
             object.__setattr__(self, "scalars", SPEED)
         elif self.scalars is not False and not isinstance(self.scalars, str):
-            faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
+            faults.append(
+                f"scalars is {brief(self.scalars)}; expected the name of an array, or False"
+            )
         if self.cmap is None:
             object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
-            faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
+            faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
         if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
                 low, high = (float(value) for value in self.clim)
@@ -341,14 +343,14 @@ class Appearance:
                 low = high = math.nan
             if not (low < high and math.isfinite(low + high)):
                 faults.append(
-                    f"clim is {self.clim!r}; expected two numbers, (low, high), the lower one "
+                    f"clim is {brief(self.clim)}; expected two numbers, (low, high), the lower one "
                     f'first, or "{ROBUST}"'
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
         for name in ("log_scale", "visible", "lighting", "show_scalar_bar", *EARTH_LINES):
             if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
-                faults.append(f"{name} is {value!r}; expected True or False")
+                faults.append(f"{name} is {brief(value)}; expected True or False")
         if self.land is False or (isinstance(self.land, str) and self.land == "none"):
             object.__setattr__(self, "land", None)
         checks = (
@@ -422,12 +424,15 @@ class ViewOptions:
     def __post_init__(self) -> None:
         """Check values that nothing else checks."""
         if self.axes is not None and self.axes not in AXES:
-            msg = f"axes is {self.axes!r}; expected {', '.join(map(repr, AXES))}, or None"
+            msg = f"axes is {brief(self.axes)}; expected {', '.join(map(repr, AXES))}, or None"
             raise FieldError(msg)
         if self.background is not None:
             rgb(self.background)
         if not (self.beside is None or isinstance(self.beside, Mapping)):
-            msg = f"beside is {self.beside!r}; expected settings by name, such as {{'lod': False}}"
+            msg = (
+                f"beside is {brief(self.beside)}; expected settings by name, such as "
+                "{'lod': False}"
+            )
             raise FieldError(msg)
 
     @property
@@ -479,10 +484,11 @@ class Options:
         return Settings(**values)
 
     @classmethod
-    def split(cls, *kinds: str, **values: Any) -> Options:
+    def split(cls, *kinds: str, mesh: Any = None, **values: Any) -> Options:
         """Sort fields of the option classes, and settings, by name.
 
         Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
+        The mesh is what is drawn, whose axes may be named by mistake.
         Raises a SettingsError for an unknown argument, with the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
@@ -493,18 +499,21 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                near = near_names(name, known, ("scalars", "cmap", "samples"))
-                if "sel" in known and not near.startswith("did you mean"):
-                    near = "help(flowtex.render) has all of them"
-                    if name == "group":
-                        path = "give its path, such as 'model.nc/ocean'"
-                        near = f"for a group of a file, {path}; {near}"
-                    elif is_number(values[name]) or isinstance(values[name], str):
-                        axis = f"sel={{{name!r}: {values[name]!r}}}"
-                        near = f"for an axis of a dataset, use {axis}; {near}"
+                near = elsewhere(name, known)
+                if not near and (close := closest(name, known)):
+                    near = f"did you mean {' or '.join(map(repr, close))}?"
+                if is_dataset(mesh) and "sel" in known and name in _axes_of(mesh):
+                    near = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
+                near = near or "help(flowtex.render) has all of them"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
+
+
+def _axes_of(data: Any) -> set[str]:
+    """Return the names of the dimensions of datasets."""
+    several = data if isinstance(data, (list, tuple)) else [data]
+    return {str(dim) for one in several for dim in one.dims}
 
 
 _KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}

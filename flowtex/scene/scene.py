@@ -114,7 +114,7 @@ class Scene:
         These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings. Raises a
         FieldError, SettingsError or ImageError where one does not fit.
         """
-        return cls.from_options(mesh, Options.split("field", "appearance", **options))
+        return cls.from_options(mesh, Options.split("field", "appearance", mesh=mesh, **options))
 
     @classmethod
     def from_options(cls, mesh: Any, options: Options) -> Scene:

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import check_field, checked_array, checked_number
+from flowtex._util.arguments import brief, check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex._util.threads import pool
@@ -253,7 +253,7 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
         return list(range(len(field.times)))
     numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
     if not numbers:
-        msg = f"steps is {steps!r}; expected numbers of time steps, such as [0]"
+        msg = f"steps is {brief(steps)}; expected numbers of time steps, such as [0]"
         raise FieldError(msg)
     return numbers
 
@@ -279,7 +279,7 @@ def _threads() -> Iterator[Map]:
 
 def _parameter(field: FlowField, parameter: str) -> str:
     if parameter not in ("arclength", "time"):
-        msg = f'parameter is {parameter!r}; expected "arclength" or "time"'
+        msg = f'parameter is {brief(parameter)}; expected "arclength" or "time"'
         raise FieldError(msg)
     return parameter if field.steady else "time"
 
@@ -294,7 +294,7 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(checked_array("lags", lags, expected=expected))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
     if lag_values.ndim != 1 or not lag_values.size or not good.all():
-        msg = f"lags is {lags!r}; expected {expected}"
+        msg = f"lags is {brief(lags)}; expected {expected}"
         raise FieldError(msg)
     return lag_values
 

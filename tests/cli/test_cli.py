@@ -213,6 +213,10 @@ def test_flow_that_leaves_the_surface_is_told(
         ("movie {gyre} -o {tmp}/a.mp4 --size 95x64", "MP4 needs even sides"),
         ("info {tmp}/no.vts", "the file does not exist"),
         ("info {tmp}", "this is a folder"),
+        ("render {gyre} -o {tmp}/a.png --vmin 0", "no option --vmin; did you mean --clim?"),
+        ("render {gyre} -o {tmp}/a.png --duration 3", "of a movie is --seconds 5"),
+        ("movie {gyre} -o {tmp}/a.gif --duration 3", "did you mean --seconds?"),
+        ("render {gyre} -o {tmp}/a.png --quiet", "send the output to /dev/null"),
         ("info {gyre} --colour", "flowtex: info has no option --colour; did you"),
         ("demo --example soup", "the example 'soup' does not exist; expected one of cylinder"),
         ("demo --no-opne", "flowtex: demo has no option --no-opne; did you mean --no-open?"),
@@ -282,7 +286,7 @@ def test_info_describes_the_file_and_the_flow(run: Run, gyre: Path) -> None:
     assert (code, err) == (0, "")
     for words in ("StructuredGrid, 201 × 101 × 1 nodes", "vorticity", "What would be drawn"):
         assert words in out
-    for words in ("one, steady", "periodic no", "0 nodes", "flat", "lost 0.0%", "MB of traces"):
+    for words in ("one, steady", "periodic no", "0 nodes", "flat", "scalars speed", "MB of traces"):
         assert words in out
 
 

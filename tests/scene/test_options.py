@@ -47,7 +47,7 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ),
         (
             {"qqqq": 2},
-            r"^the setting .* 'qqqq' does not exist; for an axis of .*, use sel={'qqqq': 2}; help",
+            r"^the setting .* 'qqqq' does not exist; help\(flowtex\.render\) has all of them$",
         ),
         ({"proj": "north"}, r"'proj' does not exist; did you mean 'projection'\?$"),
         ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
@@ -56,6 +56,7 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ({"clim": "ab"}, r"^clim is 'ab'; expected two numbers, \(low, high\), the lower one fir"),
         ({"clim": (2, 1)}, r"^clim is \(2, 1\); expected .* the lower one first, or \"robust\"$"),
         ({"cmap": "virdis"}, r"^the colour map 'virdis' does not exist; did you mean 'viridis'"),
+        ({"cmap": "cmocean.speed"}, r"install cmocean, and give its name there, 'speed'$"),
         ({"cmap": 3}, r"^the colour map 3 does not exist; expected a name"),
         ({"color": "greyy"}, r"greyy"),
         ({"axes": "bar"}, r"^axes is 'bar'; expected 'ticks', 'scale', 'none', or None$"),
@@ -198,13 +199,34 @@ def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
     [
         ("vmin", 0.0, r"did you mean 'clim'\?"),
         ("alpha", 0.5, r"did you mean 'opacity'\?"),
-        ("colorbar", True, r"did you mean 'show_scalar_bar'\?"),
+        ("depth", 10, r"did you mean 'level'\?"),
+        ("colorbar", True, r"exist; show_scalar_bar=True draws a legend"),
+        ("streak_length", 5, r"exist; a streak has samples times spacing"),
+        ("title", "Wind", r"exist; .* ax\.set_title$"),
+        ("transform", object(), r"exist; it is not needed: longitudes"),
+        ("duration", 5, r"exist; the length of a movie is seconds=5$"),
         ("qqqq", object(), r"exist; help\(flowtex\.render\) has all"),
     ],
 )
 def test_arguments_of_other_packages_have_a_hint(name: str, value: Any, hint: str) -> None:
     with pytest.raises(SettingsError, match=hint):
         Options.split(**{name: value})
+
+
+def test_the_axis_of_a_dataset_is_selected_along() -> None:
+    data = pytest.importorskip("xarray").Dataset(
+        {"u": (("number", "lat", "lon"), np.ones((2, 3, 3)))}
+    )
+    with pytest.raises(SettingsError, match=r"along an axis, use sel={'number': 1}$"):
+        Scene.of(data, number=1)
+    with pytest.raises(SettingsError, match=r"has all of them$"):
+        Scene.of(data, member=1)
+
+
+def test_a_message_has_one_line_of_a_long_value() -> None:
+    mesh = pv.ImageData(dimensions=(9, 9, 1))
+    with pytest.raises(FieldError, match=r"^path is \[ImageData .{60,90}\.\.\.; expected a path$"):
+        flowtex.movie("y.mp4", [mesh, mesh])  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["coastlines", "graticule", "lighting", "visible"])

@@ -10,6 +10,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flowtex._util.arguments import brief
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.pairs import find_pairs
@@ -50,7 +51,7 @@ def dataset_paths(path: Any) -> list[Path]:
     """
     items = path if isinstance(path, (list, tuple)) else [path]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
-        msg = f"path is {path!r}; expected the path of a file, or a list of paths"
+        msg = f"path is {brief(path)}; expected the path of a file, or a list of paths"
         raise FieldError(msg)
     paths = [Path(item).expanduser() for item in items]
     files = [file_and_group(p)[0] for p in paths]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
@@ -140,6 +141,19 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
                         why = f"{source.replace('_', ' ')} with {word!r} and {PARTNERS[word]!r}"
                         pairs[key] = Pair(u, v, _directions(u), why, rank)
     return sorted(pairs.values(), key=_preference)
+
+
+def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:
+    """Yield what is not drawn of several files: the velocities of those that lack the one drawn."""
+    own = {ds.encoding.get("source") for ds in datasets if {drawn.u.name, drawn.v.name} & {*ds}}
+    for ds in datasets:
+        source = ds.encoding.get("source")
+        if source is not None and source not in own and (pairs := find_pairs([ds])):
+            u, v = pairs[0].u.name, pairs[0].v.name
+            yield (
+                f"{drawn.u.name} and {drawn.v.name} are drawn, and {u} and {v} of "
+                f"{Path(source).name} are not; draw these by themselves"
+            )
 
 
 def _preference(pair: Pair) -> tuple[int, int, bool]:

@@ -43,6 +43,7 @@ from flowtex.field.datasets.pairs import (
     Pair,
     choose_pair,
     find_pairs,
+    other_velocities,
     to_metres_per_second,
     variable,
 )
@@ -135,7 +136,7 @@ def read_datasets(
     if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
         flow, spread, datasets = _averaged(flow, datasets, uncertainty, sel, isel)
         name = ", ".join(filter(None, (name, f"mean over {uncertainty}")))
-    for note in flow.notes:
+    for note in (*flow.notes, *(other_velocities(datasets, flow.pair) if u is None else ())):
         notify(note)
     places = flow.places
     if not places.is_earth and projection is not None:

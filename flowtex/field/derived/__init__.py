@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -25,6 +26,8 @@ DERIVED: dict[str, Callable[[Floats], Floats]] = {
 SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))
 #: Scalars for which particles are followed over a horizon, by the field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
+#: Names such as those that other programs give to the components of a vector.
+COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 #: Long names that differ from the names.
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 
@@ -54,6 +57,8 @@ def steps_of(field: Any, name: str) -> Steps:
         return field.speed
     names = ", ".join(map(repr, dict.fromkeys(("speed", *field.scalars, *DERIVED))))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
+    if COMPONENT.search(name):
+        msg += "; one component is an array of its own, as in mesh['U_x'] = mesh['U'][:, 0]"
     if name in FOLLOWED:
         msg = f"{name!r} needs a horizon; first call field.with_derived({name!r}, horizon=...)"
     raise FieldError(msg)

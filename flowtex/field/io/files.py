@@ -118,7 +118,7 @@ def read_file(
         raise FieldError(file.problem)
     source = file.source
     if time is not None:
-        source = _at_time(source, time)
+        source, options["times"] = _at_time(source, time), [time]
     name = vectors if vectors is not None else file.velocity
     return read_meshes(source, vectors=name, block=block, name=Path(path).stem, **options)
 
@@ -166,7 +166,12 @@ def _check_path(file: Path) -> None:
     elif not file.exists():
         problem = "the file does not exist; check the spelling and the folder"
         similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
-        if similar:
+        if "*" in file.name:
+            problem = (
+                "the file does not exist, and patterns are not expanded; give a list of files, as "
+                "in sorted(glob.glob(pattern))"
+            )
+        elif similar:
             problem += f". Similar names: {', '.join(similar[:5])}"
     elif file.is_dir():
         problem = "this is a folder; expected a file: name the mesh inside it"

@@ -21,7 +21,7 @@ from PIL import Image, ImageDraw, ImageFont
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex.field import FlowField
-from flowtex.field.dates import date_text
+from flowtex.field.dates import DAY_S, date_text
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.structure_marks import (
     DOT_PX,
@@ -359,7 +359,8 @@ def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) ->
 
     A unit is shown up to this length.
     """
-    step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    alone = DAY_S if field.start is not None else abs(time) or 1.0
+    step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone
     if field.start is not None:
         return date_text(field.start, time, step)
     power = math.floor(math.log10(step))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,12 @@ from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.image import AxesImage
 from PIL import Image
 
-from flowtex._util.arguments import checked_size
+from flowtex._util.arguments import brief, checked_size
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
+from flowtex.field.datasets import is_dataset
+from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.io.arrays import SectionAxes
 from flowtex.plotting.offscreen.annotations import time_text
 from flowtex.plotting.offscreen.earth_axes import (
@@ -94,7 +97,7 @@ def extent(
     >>> flowtex.extent(field, size=(200, 100), margin=0)
     (0.0, 2.0, 0.0, 1.0)
     """
-    chosen, size = Options.split(**options), checked_size(size)
+    chosen, size = Options.split(mesh=mesh, **options), checked_size(size)
     if chosen.view.beside is not None:
         msg = "beside makes two views, which do not have one common extent; omit it"
         raise FieldError(msg)
@@ -105,8 +108,8 @@ def extent(
         camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
         msg = (
-            f"camera is {view.camera!r}; expected one that looks straight at the surface without "
-            "perspective. Omit it, and use zoom and focus"
+            f"camera is {brief(view.camera)}; expected one that looks straight at the surface "
+            "without perspective. Omit it, and use zoom and focus"
         )
         raise FieldError(msg)
     x, y = frame @ camera.focal_point
@@ -170,11 +173,11 @@ def axes(
     """
     if not is_geo(ax) and getattr(ax, "name", "") not in ("rectilinear", "polar"):
         msg = (
-            f"ax is {ax!r}; expected rectilinear or polar matplotlib axes, such as those of "
+            f"ax is {brief(ax)}; expected rectilinear or polar matplotlib axes, such as those of "
             "plt.subplots(), or axes of cartopy"
         )
         raise FieldError(msg)
-    chosen = Options.split("field", "appearance", **options)
+    chosen = Options.split("field", "appearance", mesh=mesh, **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
     image.set_clip_path(ax.patch)
@@ -212,7 +215,7 @@ class FlowImage(AxesImage):
         self._projection = projection = scene.field.projection
         if projection is None and is_geo(ax):
             msg = (
-                f"ax is a map, and {scene.field!r} is not of the Earth; give a dataset on "
+                f"ax is a map, and {brief(scene.field)} is not of the Earth; give a dataset on "
                 "longitudes and latitudes, or axes without a projection"
             )
             raise FieldError(msg)
@@ -457,6 +460,16 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
     return ax.name, ax.get_xscale(), ax.get_yscale()
 
 
+def _is_read_on_a_map(mesh: Any) -> bool:
+    """Whether something is data of the Earth: datasets, their files, or a store."""
+    several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
+    if not several or not all(isinstance(one, (str, Path)) for one in several):
+        return is_dataset(mesh)
+    from flowtex.pyramid.source import has_parts
+
+    return bool(dataset_paths(mesh)) or has_parts(mesh)
+
+
 def _in_projection(mesh: Any, options: Options, name: str) -> Options:
     """Return options with which data are drawn in a projection, and lines if requested."""
     if options.field.projection is not None or options.field.globe is not None:
@@ -467,7 +480,7 @@ def _in_projection(mesh: Any, options: Options, name: str) -> Options:
         raise FieldError(msg)
     look = options.appearance
     look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
-    if isinstance(mesh, FlowField):
+    if not _is_read_on_a_map(mesh):
         return replace(options, appearance=look)
     return replace(options, field=replace(options.field, projection=name), appearance=look)
 

@@ -230,7 +230,7 @@ def movie(
     """
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
-    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    field, chosen, shown = _prepare(mesh, Options.split(mesh=mesh, **options), fps, seconds)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     pictures = _draw(field, chosen, shown, **drawing)
     try:
@@ -265,7 +265,7 @@ def frames(
     >>> [picture.shape for picture in frames(field, size=(64, 48), fps=5, seconds=0.4, samples=5)]
     [(48, 64, 3), (48, 64, 3)]
     """
-    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    field, chosen, shown = _prepare(mesh, Options.split(mesh=mesh, **options), fps, seconds)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     return _draw(field, chosen, shown, **drawing)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_size
+from flowtex._util.arguments import brief, checked_size
 from flowtex._util.array_types import Bytes
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
@@ -200,7 +200,10 @@ def point_camera(
         try:
             plotter.camera_position = view.camera
         except (TypeError, ValueError, LookupError) as error:
-            msg = f"camera is {view.camera!r}; expected position, focal point and up, three points"
+            msg = (
+                f"camera is {brief(view.camera)}; expected position, focal point and up, three "
+                "points"
+            )
             raise CameraError(msg) from error
 
 

@@ -85,7 +85,7 @@ def render(
     """
     plotter = OffscreenPlotter(
         mesh,
-        Options.split(**options),
+        Options.split(mesh=mesh, **options),
         size=size,
         supersampling=supersampling,
         margin=margin,

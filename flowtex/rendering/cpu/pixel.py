@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flowtex._util.arguments import brief
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
@@ -53,7 +54,9 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
     triangle has no area.
     """
     if not 0 < pixel < np.inf:
-        msg = f"pixel is {pixel!r}; expected a positive length in the mesh's units, or a Camera"
+        msg = (
+            f"pixel is {brief(pixel)}; expected a positive length in the mesh's units, or a Camera"
+        )
         raise FieldError(msg)
     a, b, c = surface.points.reshape(-1, 3)[place.nodes]
     normal = np.cross(b - a, c - a)

@@ -15,6 +15,7 @@ from earth_data import components, east_and_north, winds
 from lying_files import grib2
 
 from flowtex import FlowField
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.datasets import files
 from flowtex.field.earth import EARTH_RADIUS
@@ -76,6 +77,17 @@ def test_files_of_several_days_are_one_series(tmp_path: Path) -> None:
     assert str(field.start)[:10] == "2002-01-01"
     means = [np.asarray(field.speed[n]).mean() for n in range(3)]
     assert np.allclose(np.divide(means, means[0]), [1, 2, 3])
+
+
+def test_files_that_are_not_drawn_are_told(tmp_path: Path) -> None:
+    air, sea = winds(LON, LAT), winds(LON, LAT).rename(u="uo", v="vo")
+    for name, along in (("uo", "eastward"), ("vo", "northward")):
+        sea[name].attrs = {"units": "m/s", "standard_name": f"{along}_sea_water_velocity"}
+    paths = [tmp_path / "air.nc", tmp_path / "sea.nc"]
+    air.drop_attrs().to_netcdf(paths[0])
+    sea.to_netcdf(paths[1])
+    with pytest.warns(Notice, match=r"^uo and vo are drawn, and u and v of air\.nc are not; draw"):
+        FlowField.from_file(paths)
 
 
 @pytest.mark.parametrize(

@@ -103,5 +103,5 @@ def test_groups_are_chosen_by_path(tmp_path: Path) -> None:
         FlowField.from_file(path)
     given = str(caught.value).rpartition(" as in ")[2]  # what it names can be opened
     assert same(whole, FlowField.from_file(ast.literal_eval(given)))
-    with pytest.raises(SettingsError, match=r"for a group of a file, give its path, such as"):
+    with pytest.raises(SettingsError, match=r"give the path of the group in the file"):
         Options.split(group="ocean")

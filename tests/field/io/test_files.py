@@ -107,6 +107,12 @@ def test_a_series_and_one_time_of_it(tmp_path: Path) -> None:
     assert field.velocity[:, 0, 1, 0].tolist() == [1.5, 2, 3]
     one = FlowField.from_file(series(tmp_path), time=1)
     assert one.steady and one.velocity[:, 0, 1, 0].tolist() == [2]
+    assert one.times.tolist() == [1], "so that a picture tells its time"
+
+
+def test_a_pattern_is_not_expanded(tmp_path: Path) -> None:
+    with pytest.raises(FieldError, match=r"patterns are not expanded; give a list of files, as in"):
+        FlowField.from_file(tmp_path / "*.vts")
 
 
 def test_a_time_that_is_not_there(tmp_path: Path) -> None:

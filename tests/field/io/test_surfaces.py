@@ -304,6 +304,8 @@ def test_flow_across_a_surface_is_told() -> None:
         ({"slice": "x=inf"}, "slice is 'x=inf'; expected"),
         ({"slice": "1,0,0 through 1,2"}, "expected"),
         ({"slice": 5}, "slice is 5; expected"),
+        ({"slice": ("z", 1)}, "slice is ('z', 1); expected a text such as \"z=1\", a normal"),
+        ({"slice": {"z": 1}}, "slice is {'z': 1}; expected a text such as \"z=1\", a normal"),
         ({"slice": "x=7"}, "slice is 'x=7', which does not cut the mesh; it has x from 0 to 1, y"),
         ({"contour": "p"}, "contour is 'p'; expected an array and its value"),
         ({"contour": "plane=1"}, "no array 'plane' of one component. Did you mean \"place\"?"),

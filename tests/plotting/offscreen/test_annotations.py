@@ -243,6 +243,14 @@ def test_colours_end_in_a_tip_where_values_lie_beyond(tips: tuple[bool, bool]) -
     assert (bool(ends[0][0] > ends[1][0]), bool(ends[0][1] < ends[1][1])) == tips
 
 
+def test_a_time_that_is_alone() -> None:
+    field = patch(steps=1)
+    one = FlowField.from_arrays(field.points, field.velocity, times=[6.0])
+    assert time_text(one, 6.0) == "t = 6.00"
+    day = FlowField.from_arrays(field.points, field.velocity, times=[np.datetime64("2002-01-05")])
+    assert time_text(day, 0.0) == "2002-01-05"
+
+
 @pytest.mark.parametrize(
     ("step", "unit", "text"),
     [

@@ -101,7 +101,7 @@ def test_the_title_tells_level_and_time_until_it_is_another(figure: Figure) -> N
     ds = flowtex.examples.weather().isel(latitude=slice(None, None, 4))
     ax, other = figure.subplots(1, 2)
     flowtex.axes(ax, ds.sel(level=250), samples=3)
-    assert ax.get_title() == "250 hPa, 2024-01-15 12:00:00"
+    assert ax.get_title() == "250 hPa, 2024-01-15 12:00"
     other.set_title("Winds")
     flowtex.axes(other, ds, level=500, samples=3)
     assert other.get_title() == "Winds"
@@ -233,5 +233,11 @@ def test_what_does_not_fit_a_map_of_cartopy_is_refused(figure: Figure) -> None:
     ax, _ = _axes(figure, "Robinson")
     with pytest.raises(FieldError, match=r"^ax is a map, and .* is not of the Earth; give a data"):
         flowtex.axes(ax, flowtex.examples.double_gyre_field())
+    for wrong, text in (
+        ("no.nc", "no.nc: the file does not exist"),
+        ([], "the list of meshes is em"),
+    ):
+        with pytest.raises(FieldError, match=f"^{text}"):
+            flowtex.axes(ax, wrong)
     with pytest.raises(FieldError, match=r"^projection and globe are those of the axes"):
         flowtex.axes(ax, winds(LON, LAT), projection="mercator")

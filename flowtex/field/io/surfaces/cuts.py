@@ -8,11 +8,13 @@ from __future__ import annotations
 import difflib
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flowtex._util.arguments import brief
 from flowtex._util.array_types import Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
@@ -128,12 +130,20 @@ def _slice(raw: Any) -> Slice:
     direction, place = _vector(normal), None if point is None else _vector(point)
     if direction is None or not any(direction) or (point is not None and place is None):
         msg = (
-            f'slice is {raw!r}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
-            'with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three '
-            "numbers each"
+            f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
+            '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
+            "point) of three numbers each"
         )
         raise FieldError(msg)
     return Slice(direction, place, repr(raw))
+
+
+def _example(raw: Any) -> str:
+    """Return a slice as a text, that of ``("z", 1)`` and ``{"z": 1}`` if these are given."""
+    pair = next(iter(raw.items()), ()) if isinstance(raw, Mapping) else raw
+    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
+        return f"{pair[0]}={pair[1]}"
+    return "x=0.5"
 
 
 def _contour(raw: Any) -> Contour:
@@ -142,7 +152,9 @@ def _contour(raw: Any) -> Contour:
         name, value = pair[0].strip(), _number(pair[1])
         if name and math.isfinite(value):
             return Contour(name, value, repr(raw))
-    msg = f'contour is {raw!r}; expected an array and its value, as in contour="pressure=101325"'
+    msg = (
+        f'contour is {brief(raw)}; expected an array and its value, as in contour="pressure=101325"'
+    )
     raise FieldError(msg)
 
 
