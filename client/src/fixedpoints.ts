@@ -258,6 +258,16 @@ export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Clos
   return found;
 }
 
+/** The line through a place, downstream: to fixed points or borders, once around, or as far as lines are followed. */
+export function trajectory(rate: Rate, ends: Ends, at: Pair): Pair[] {
+  const points = fixedPoints(rate, ends);
+  const step = Math.hypot(...ends.map(([low, high]) => high - low)) / STEPS;
+  const ahead = followed(rate, ends, points, [at], step);
+  const closed = turnOf(ahead, step, CLOSED);
+  if (closed) return ahead.slice(0, closed[1] + 1);
+  return [...followed(rate, ends, points, [at], -step).reverse(), ...ahead.slice(1)];
+}
+
 /** Whether a line turns around a place. */
 function windsAround(path: Pair[], [x, y]: Pair): boolean {
   let turned = 0;

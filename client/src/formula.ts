@@ -2,7 +2,7 @@
 // the trees, and flowtex/rendering/webgl/formula.py what else comes. As there is no finest level of a
 // formula, the source has tiles of every level, each a grid of nodes in the plane.
 
-import { closedOrbits, fixedPoints, nullclines, separatrices, type Pair } from "./fixedpoints.ts";
+import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Pair } from "./fixedpoints.ts";
 import { LINE, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
 import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
@@ -234,6 +234,17 @@ export class FormulaSource {
       });
     }
     return this.named(`${kind}/${step}`, { data: Float32Array.from(rows.flat()), shape: [rows.length, 4] });
+  }
+
+  /** The trajectory through a point and the velocity there; none of a flow that varies. */
+  trajectory([x, y]: Vector): { path: Vector[]; velocity: Vector } | null {
+    const { grid, header } = this;
+    if (header.slices.times.length > 1) return null;
+    const rate = grid.rate(header.slices.times[0], this.parameters);
+    const inSpace = ([u, v]: Pair): Vector => [u, v, 0];
+    const velocity = inSpace(rate(x, y));
+    if (!velocity.every(Number.isFinite)) return null;
+    return { path: trajectory(rate, grid.ends, [x, y]).map(inSpace), velocity };
   }
 
   /** The flow and the values of the whole at some steps. */

@@ -11,6 +11,7 @@ import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part, Settings } from "./protocol.ts";
 import { samplesOf } from "./samples.ts";
+import type { Requests } from "./sources/source.ts";
 import type { Layer } from "./tiles.ts";
 import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
@@ -78,6 +79,7 @@ export interface CardHost {
   readonly tiles: { readonly layers: Layer[] } | null;
   /** The views beside each other, which show the path as well. */
   readonly together: readonly { readonly card: PointCard }[];
+  readonly requests: Pick<Requests, "trajectory">;
   readonly lifetime: Lifetime;
   readonly canPick: boolean;
   find(x: number, y: number): Found | null;
@@ -174,14 +176,20 @@ export class PointCard {
   update(): void {
     const { chosen } = this;
     if (this.read) return void this.ask(this.read);
-    const { options, camera, shown, header, tiles, settings, stage } = this.host;
+    const { options, camera, shown, header, tiles, settings, stage, requests } = this.host;
     if (!chosen || options.bare || !camera || !shown || !header) return;
     const { point, layer, place } = chosen;
     const scene = tiles?.layers.find(({ key }) => String(key) === String(layer.key))?.scene;
-    if (!scene || scene.missing(shown[0], shown[1]).length) return;
     const position = point.position as Vector;
+    const exact = requests.trajectory(position);
+    if (!scene || scene.missing(shown[0], shown[1]).length) {
+      if (!exact) return;
+      const now = { ...exact, sampled: [], directed: true };
+      this.tell({ ...point, values: {} }, now, header, camera);
+      return this.share(now, position, []);
+    }
     const at = { scene, moment: shown, place, position };
-    const path = pathThrough(at, settings, camera, stage.clientHeight);
+    const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
     this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];

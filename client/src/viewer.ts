@@ -223,7 +223,10 @@ export class Viewer implements User, View {
   setSettings(settings: Settings): void {
     if (Object.entries(settings).every(([name, value]) => this.settings[name] === value)) return;
     Object.assign(this.settings, settings);
-    if (this.requests.follow(this.settings)) this.renew();
+    if (this.requests.follow(this.settings)) {
+      this.renew();
+      this.card.update();
+    }
     this.panel.update();
     this.change();
   }

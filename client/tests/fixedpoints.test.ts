@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { closedOrbits, fixedPoints, nullclines, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
+import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Ends, type Rate } from "../src/fixedpoints.ts";
 import { FormulaSource } from "../src/formula.ts";
 import { LINE, type FormulaHeader, type Header } from "../src/protocol.ts";
 
@@ -86,6 +86,23 @@ test("a damped pendulum has no closed orbit, and its points at rest are no centr
     assert.deepEqual(closedOrbits(rate, ends, points), []);
     assert.deepEqual([...new Set(points.map(({ kind }) => kind))].sort(), ["saddle", "spiral sink"]);
   }
+});
+
+test("a trajectory of a pendulum keeps its energy, closes, or ends at rest", () => {
+  const ends: Ends = [[-7, 7], [-4, 4]];
+  const energy = ([x, y]: [number, number]) => y * y / 2 - Math.cos(x);
+  const free: Rate = (x, y) => [y, -Math.sin(x)];
+  for (const start of [[1, 0.5], [-4.849, 2.666], [0, -2.5]] as [number, number][]) {
+    const path = trajectory(free, ends, start);
+    for (const at of path) assert.ok(Math.abs(energy(at) - energy(start)) < 1e-4);
+    const [first, last] = [path[0], path[path.length - 1]];
+    const isClosed = Math.hypot(first[0] - last[0], first[1] - last[1]) < 0.03;
+    assert.equal(isClosed, energy(start) < 1);
+    if (!isClosed) assert.deepEqual([Math.abs(first[0]), Math.abs(last[0])], [7, 7]);
+  }
+  const damped = trajectory((x, y) => [y, -Math.sin(x) - 0.5 * y], ends, [1, 0.5]);
+  assert.ok(Math.hypot(...damped[damped.length - 1]) < 1e-6);
+  for (let n = 1; n < damped.length; n += 1) assert.ok(energy(damped[n]) < energy(damped[n - 1]) + 1e-9);
 });
 
 test("no separatrix of a flow without divergence ends on a closed orbit", () => {

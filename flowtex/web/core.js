@@ -851,30 +851,31 @@ samples,position,camera)]:[]),this.share(path,position,[],found.alone?[{card:thi
 host.together){for(let{card}of views)card.drawn={path,point,samples},card.draw()}close(){for(let{card}of this.host.together)
 card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=this.drawn=this.read=null,this.asked+=1,this.element.
 hidden=!0,this.overlay.replaceChildren(),this.host.options.explainer?.clear()}update(){let{chosen}=this;if(this.read)return void this.
-ask(this.read);let{options,camera,shown,header,tiles,settings,stage}=this.host;if(!chosen||options.bare||!camera||!shown||
-!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||
-scene.missing(shown[0],shown[1]).length)return;let position=point.position,at={scene,moment:shown,place,position},path=pathThrough(
-at,settings,camera,stage.clientHeight);this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,
-camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(
-path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{label,unit:unit2}=header.speed,size=Math.hypot(
-...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(point.position,header,parts,camera,!0);if(earth&&
-lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(earth,point.position,velocity,parts.get("l\
-onlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("nort\
-hward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(
-header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}lines.set(
-label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
-scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
-point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(
-...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.
-explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
-placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
-let lines2=[[]];for(let place of points.map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(
-...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?
-[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
-sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
-let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,
-`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+ask(this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=this.host;if(!chosen||options.bare||!camera||
+!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.
+scene,position=point.position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)
+return;let now={...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now,header,camera),this.share(now,
+position,[])}let at={scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact};
+this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,
+rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){
+let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(
+point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(
+earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,
+VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(
+velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","\
+velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.
+entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
+withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.
+set(word,text);this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),
+this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)
+return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.project(point2);return place&&
+[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf))place?
+lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.
+path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({
+position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:
+[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});
+this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.createElementNS(SVG3,tag);for(let[name,
+value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1377,8 +1378,11 @@ if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0)
 last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let path=turn(
 low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(other=>other.path.some(at=>distance(at,path[0])<2*step));path&&
 isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:
-{place,out}}}}return found}function windsAround(path,[x,y]){let turned=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[
-path[n-1],path[n]].map(at=>difference(at,[x,y]));turned+=Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+{place,out}}}}return found}function trajectory(rate,ends2,at){let points=fixedPoints(rate,ends2),step=Math.hypot(...ends2.
+map(([low,high])=>high-low))/STEPS2,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(ahead,step,CLOSED);return closed?
+ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.slice(1)]}function windsAround(path,[
+x,y]){let turned=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(at=>difference(at,[x,y]));turned+=
+Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
 let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
 MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
 2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
@@ -1435,31 +1439,33 @@ forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.leaving*Number(isStable
 number)))});let saddles=points.filter(({ways})=>ways).slice(0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).
 forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;
 rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}return this.
-named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}whole(steps){let{shape:shape2}=this.
-header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,
-[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
-return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
-shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
-start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
-missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
-cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
-(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
-shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
--grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
-size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
-shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
-unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
-n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
-e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
-return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
-unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
-...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
-tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
-columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}trajectory([x,y]){let{grid:grid2,header}=this;
+if(header.slices.times.length>1)return null;let rate=grid2.rate(header.slices.times[0],this.parameters),inSpace=([u,v2])=>[
+u,v2,0],velocity=inSpace(rate(x,y));return velocity.every(Number.isFinite)?{path:trajectory(rate,grid2.ends,[x,y]).map(inSpace),
+velocity}:null}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
+{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
+state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
+window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
+1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
+s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
+{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
+if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
+mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
+1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
+from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
+to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
+pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
+shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
+sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
+trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
+unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
+parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
+`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
+this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
+map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),
+place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[
+Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.
+set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1478,12 +1484,12 @@ var Requests=class{tiles;wholes;marks;given;formula=null;constructor(source,take
 ()=>this.source,taker),this.wholes=new Queue(()=>this.source,taker),this.marks=new Queue(()=>this.source,taker)}get source(){
 return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.source?.hasMarks??
 !1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):null}follow(settings){
-return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(error=>taker.lack(wordsOf(
-ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){let before=this.wholes.
-jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set([...steps,...before])].
-slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}wantMarks(marks){let jobs=marks.map(
-([kind,step])=>[null,[step],kind]);String(jobs)!==String(this.marks.jobs)&&this.marks.want(jobs)}stop(){this.tiles.stop(),
-this.wholes.stop(),this.marks.stop()}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
+return this.formula?.follow(settings)??!1}trajectory(position){return this.formula?.trajectory(position)??null}open(){let{
+taker}=this.tiles;this.source?.open?.().catch(error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.
+want(keys.map(key=>[key,steps]))}wantSteps(steps){let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.
+includes(step)))return;let wanted=[...new Set([...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(
+wanted.map(step=>[null,[step]]))}wantMarks(marks){let jobs=marks.map(([kind,step])=>[null,[step],kind]);String(jobs)!==String(
+this.marks.jobs)&&this.marks.want(jobs)}stop(){this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
 before=new OffscreenCanvas(Math.max(canvas.width,1),Math.max(canvas.height,1));before.getContext("2d")?.drawImage(canvas,
 0,0),[canvas.width,canvas.height]=[width,height],this.pen?.drawImage(before,0,0,width,height)}get pen(){return this.view.
 canvas.getContext("2d",{alpha:!1})}frame(now){let{view}=this;view.camera||view.place(),!(!view.player.playing||!this.isPainted)&&
@@ -2047,18 +2053,18 @@ name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});th
 this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),
 this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices)\//.
-test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.
-own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
-onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(
-state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
-this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
-change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
-this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
-parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
-pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
-showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
-max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
+requests.follow(this.settings)&&(this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){this.held.clear(
+name=>/^(flow|scalars|critical|separatrices)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){
+name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
+this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
+copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
+firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(
+state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
+camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
+aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
+first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
+keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
+return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
 this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
 null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
 let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(

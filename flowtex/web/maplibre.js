@@ -347,11 +347,11 @@ fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
 source?.hasMarks??!1}setHeader(e){this.stop(),this.formula=e.formula?new ot(e,e.formula):null}follow(e){return this.formula?.
-follow(e)??!1}open(){let{taker:e}=this.tiles;this.source?.open?.().catch(t=>e.lack(Vn(di,t)))}wantTiles(e,t){this.tiles.
-want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[
-...new Set([...e,...t])].slice(0,e.length+fi);this.wholes.want(r.map(n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[
-null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){this.tiles.stop(),this.wholes.stop(),this.marks.
-stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=F(o.
+follow(e)??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.tiles;this.source?.open?.().
+catch(t=>e.lack(Vn(di,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
+,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+fi);this.wholes.want(r.map(
+n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){
+this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=F(o.
 frame,T(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(T(h,t))?u(h)?h:[0,
 0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var yi=-1e9;function mt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);for(let r=0;r<
 a.length;r+=1)t[r]=a[r]-e[r%3];return t}function Bn(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)

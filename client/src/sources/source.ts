@@ -10,6 +10,7 @@ import { FormulaSource } from "../formula.ts";
 import type { Header, MarkKind, NamedPart, Settings } from "../protocol.ts";
 import type { StoreError } from "./store.ts";
 import { nameOf, type TileKey } from "../tilechoice.ts";
+import type { Vector } from "../vectors.ts";
 
 /**
  * Gives the parts of a tile at time steps, or those of the whole, or of its marks of a kind;
@@ -193,6 +194,11 @@ export class Requests {
   /** Follow the settings; returns whether they change the result. */
   follow(settings: Settings): boolean {
     return this.formula?.follow(settings) ?? false;
+  }
+
+  /** The trajectory through a point, where a formula gives it. */
+  trajectory(position: Vector): ReturnType<FormulaSource["trajectory"]> {
+    return this.formula?.trajectory(position) ?? null;
   }
 
   /** Report an unreadable source before anybody zooms in. */
