@@ -266,9 +266,11 @@ def _lights(renderer: pv.Renderer) -> Iterator[Light]:
     """Yield the lights of a renderer, all as distant ones."""
     for light in renderer.lights:
         if light.on:
-            direction = np.array([0.0, 0.0, 1.0])
-            if not light.is_headlight:
-                direction = np.subtract(light.position, light.focal_point)
-                direction /= np.linalg.norm(direction)
+            toward = np.subtract(light.position, light.focal_point)
+            toward = np.array([0.0, 0.0, 1.0]) if light.is_headlight else toward
             color = light.intensity * np.asarray(light.diffuse_color.float_rgb)
-            yield Light(_plain(direction), _plain(color), turns=not light.is_scene_light)
+            yield Light(
+                _plain(toward / np.linalg.norm(toward)),
+                _plain(color),
+                turns=not light.is_scene_light,
+            )

@@ -18,6 +18,7 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.map_overlay import SPACING_PX, USUAL_HEIGHT_PX, WIDTH_RANGE
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk import FlowSurface
+from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import FlowMapper
 
 
@@ -66,14 +67,8 @@ class Overlay:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
-        reference = weakref.WeakMethod(self._before_frame)
-
-        def follow(caller: Any, event: str) -> None:
-            del caller, event
-            if (method := reference()) is not None:
-                method()
-
-        self._observed = renderer.AddObserver("StartEvent", follow, LAST)
+        callback: Any = weak_callback(self._before_frame)
+        self._observed = renderer.AddObserver("StartEvent", callback, LAST)
 
     def close(self) -> None:
         """Remove everything from the renderer."""

@@ -92,19 +92,19 @@ def _fit(
     em = points * dpi / POINTS
     pad = round(PAD * em)
     room = view[0] - 6 * pad
-    across, up = _size(title, bar.GetTitle(), dpi)
-    if across > room:
-        title.SetFontSize(max(int(title.GetFontSize() * room / across), 1))
-        across, up = _size(title, bar.GetTitle(), dpi)
+    title_width, title_height = _size(title, bar.GetTitle(), dpi)
+    if title_width > room:
+        title.SetFontSize(max(int(title.GetFontSize() * room / title_width), 1))
+        title_width, title_height = _size(title, bar.GetTitle(), dpi)
     low, high = bar.GetLookupTable().GetRange()
     form = bar.GetLabelFormat()
     texts = [form % v if "%" in form else form.format(v) for v in (low, (low + high) / 2, high)]
-    wide = max(_size(labels, text, dpi)[0] for text in texts)
+    label_width = max(_size(labels, text, dpi)[0] for text in texts)
     thick = THICKNESS * em
-    whole = max(across, thick + wide + 2 * pad) + 2 * pad
+    bar_width = max(title_width, thick + label_width + 2 * pad) + 2 * pad
     bar.SetTextPad(pad)
-    bar.SetBarRatio(thick / whole)
-    return whole, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), up
+    bar.SetBarRatio(thick / bar_width)
+    return bar_width, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), title_height
 
 
 def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:

@@ -176,10 +176,10 @@ class ArrowSeeds:
         most = least / OCTAVE
         distance: Floats = np.full(len(candidates.cell), most)
         if len(seeds.cell):
-            found = scipy.spatial.cKDTree(seeds.position).query(
+            nearest = scipy.spatial.cKDTree(seeds.position).query(
                 candidates.position, distance_upper_bound=most
             )
-            distance = np.minimum(found[0], most)
+            distance = np.minimum(nearest[0], most)
         order = np.argsort(-distance, kind="stable")
         order = order[distance[order] >= least]
         position, distance = candidates.position[order], distance[order]
@@ -207,16 +207,16 @@ class ArrowSeeds:
     def _divided(self, parts: _Parts, area: float) -> _Parts:
         """Halve parts along their longer sides until none is larger than an area."""
         while (large := self._areas(parts) > area).any():
-            whole = parts[large]
-            sides = norm(self._sides(whole))
+            large_parts = parts[large]
+            sides = norm(self._sides(large_parts))
             axis = (sides[1] > sides[0]).astype(int)
-            size, at = whole.size.copy(), np.arange(len(axis))
-            size[at, axis] *= 0.5
-            beyond = whole.low.copy()
-            beyond[at, axis] += size[at, axis]
+            size, rows = large_parts.size.copy(), np.arange(len(axis))
+            size[rows, axis] *= 0.5
+            beyond = large_parts.low.copy()
+            beyond[rows, axis] += size[rows, axis]
             halves = (
-                _Parts(whole.cell, low, size, _mixed(whole.key + prime))
-                for low, prime in ((whole.low, OCTAVE_PRIME), (beyond, SEED_PRIME))
+                _Parts(large_parts.cell, low, size, _mixed(large_parts.key + prime))
+                for low, prime in ((large_parts.low, OCTAVE_PRIME), (beyond, SEED_PRIME))
             )
             parts = parts[~large] + next(halves) + next(halves)
         return parts
@@ -242,8 +242,8 @@ class ArrowSeeds:
 
 def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
     """Interpolate between the corners (n, 4, ...) of cells at places (n, 2)."""
-    (i, j), at = place.T.reshape(2, -1, *[1] * (corners.ndim - 2)), np.moveaxis(corners, 1, 0)
-    low, high = (1 - i) * at[0] + i * at[1], (1 - i) * at[2] + i * at[3]
+    (i, j), values = place.T.reshape(2, -1, *[1] * (corners.ndim - 2)), np.moveaxis(corners, 1, 0)
+    low, high = (1 - i) * values[0] + i * values[1], (1 - i) * values[2] + i * values[3]
     return np.asarray((1 - j) * low + j * high)
 
 

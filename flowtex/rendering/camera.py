@@ -266,12 +266,12 @@ class Camera:
         if not isinstance(values, Mapping) or not set(values) <= set(names):
             msg = f"camera is {brief(values)}; expected a mapping with some of {', '.join(names)}"
             raise CameraError(msg)
-        whole = {**({} if base is None else asdict(base)), **values}
-        missing = [name for name in ("position", "focal_point", "up") if name not in whole]
+        attributes = {**({} if base is None else asdict(base)), **values}
+        missing = [name for name in ("position", "focal_point", "up") if name not in attributes]
         if missing:
             msg = f"camera is {brief(values)}; expected {', '.join(missing)} as well"
             raise CameraError(msg)
-        return cls(**whole)
+        return cls(**attributes)
 
     @classmethod
     def from_points(cls, points: Any) -> Self:

@@ -158,8 +158,8 @@ class MeshLevels:
         ]
         corners = (node[:, :-1, :-1], node[:, :-1, 1:], node[:, 1:, 1:], node[:, 1:, :-1])
         a, b, c, d = (corner[drawn] for corner in corners)
-        both = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)], axis=1)
-        flat = both.reshape(-1, 3)
+        halves = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)], axis=1)
+        flat = halves.reshape(-1, 3)
         distinct = (flat[:, 0] != flat[:, 1]) & (flat[:, 1] != flat[:, 2])
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
@@ -240,18 +240,13 @@ class MeshLevels:
         for level in range(1, len(mixed)):
             rows, columns = (np.arange(0, n - 1, 1 << level) for n in self._shape)
             drawn = np.add.reduceat(np.add.reduceat(self._cells.astype(int), rows, 0), columns, 1)
-            whole = np.outer(
-                np.diff([*rows, self._shape[0] - 1]), np.diff([*columns, self._shape[1] - 1])
-            )
-            mixed_cells = ((drawn > 0) & (drawn < whole)).astype(float)
-            first = (
-                np.searchsorted(rows, self._rows.first),
-                np.searchsorted(columns, self._columns.first),
-            )
-            reduced = np.maximum.reduceat(
-                np.maximum.reduceat(mixed_cells, first[0], 0), first[1], 1
-            )
-            mixed[level] = mixed[level - 1] | (reduced > 0)
+            ends = zip((rows, columns), self._shape, strict=True)
+            whole = np.outer(*(np.diff([*lines, count - 1]) for lines, count in ends))
+            in_blocks = ((drawn > 0) & (drawn < whole)).astype(float)
+            for axis, lines, blocks in ((0, rows, self._rows), (1, columns, self._columns)):
+                first = np.searchsorted(lines, blocks.first)
+                in_blocks = np.maximum.reduceat(in_blocks, first, axis)
+            mixed[level] = mixed[level - 1] | (in_blocks > 0)
         return mixed
 
 

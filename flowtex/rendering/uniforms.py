@@ -88,28 +88,20 @@ def variants(
     The grains may change in time and be sparse, and the view may be so near that paths stay in
     their cells.
     """
-    chosen = set()
-    if sparse:
-        chosen.add("FLOWTEX_SPARSE")
-    if moving:
-        chosen.add("FLOWTEX_MOVING")
-    if near:
-        chosen.add("FLOWTEX_CELLS")
-    if textures.paper is not None:
-        chosen.add("FLOWTEX_PAPER")
-    if textures.paper is not None and textures.paper.picture:
-        chosen.add("FLOWTEX_PICTURE")
-    if textures.geometry.planar:
-        chosen.add("FLOWTEX_PLANAR")
-    if textures.geometry.field.sign_free:
-        chosen.add("FLOWTEX_SIGNFREE")
-    if textures.geometry.field.triangles is not None:
-        chosen.add("FLOWTEX_TRIANGLES")
-    if textures.geometry.field.uncertainty:
-        chosen.add("FLOWTEX_UNCERTAIN")
-    if unsteady:
-        chosen.add("FLOWTEX_UNSTEADY")
-    return frozenset(chosen)
+    paper, flow = textures.paper, textures.geometry.field
+    conditions = {
+        "FLOWTEX_SPARSE": sparse,
+        "FLOWTEX_MOVING": moving,
+        "FLOWTEX_CELLS": near,
+        "FLOWTEX_PAPER": paper is not None,
+        "FLOWTEX_PICTURE": paper is not None and paper.picture,
+        "FLOWTEX_PLANAR": textures.geometry.planar,
+        "FLOWTEX_SIGNFREE": flow.sign_free,
+        "FLOWTEX_TRIANGLES": flow.triangles is not None,
+        "FLOWTEX_UNCERTAIN": flow.uncertainty,
+        "FLOWTEX_UNSTEADY": unsteady,
+    }
+    return frozenset(name for name, holds in conditions.items() if holds)
 
 
 def client_constants() -> dict[str, Any]:
@@ -340,12 +332,12 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
 def _noise_origin(even: Ints, finest: float, anchor: Floats) -> Values:
     """Return the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
-    whole = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
+    odd_cell = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
     return {
         "u_noiseOrigin": tuple(float(c) for c in even * finest - anchor),
         "u_noiseOriginEven": tuple(float(c) for c in even),
-        "u_noiseOriginOdd": tuple(float(c) for c in whole),
-        "u_noiseRestOdd": tuple(float(c) for c in odd - whole),
+        "u_noiseOriginOdd": tuple(float(c) for c in odd_cell),
+        "u_noiseRestOdd": tuple(float(c) for c in odd - odd_cell),
     }
 
 

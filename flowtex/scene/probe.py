@@ -247,7 +247,7 @@ class _Pixel:
         points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         first_slice, shares = bracket(knots, np.abs(lags), side="left")
-        certainty = self._summing.known(self._fragments.place, self._level)
+        certainty = self._summing.certainty(self._fragments.place, self._level)
         faded = self._summing.faded(self._fragments.place, self._level, certainty)
         cell = self._summing.cell(self._fragments.place, certainty)
         in_cell = cell is not None and cell.share[0] > 0
@@ -317,12 +317,9 @@ class _Pixel:
             nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
             return points, nearest, None
         coordinate = noise.value + displacement[:, :2]
-        start_index, index = (paper.index(where) for where in (noise.value, coordinate))
-        return (
-            start + surface.at(index) - surface.at(start_index),
-            surface.wrap(index)[:, ::-1],
-            coordinate,
-        )
+        first, index = (paper.index(places) for places in (noise.value, coordinate))
+        points = start + surface.at(index) - surface.at(first)
+        return points, surface.wrap(index)[:, ::-1], coordinate
 
     def _sizes(self) -> tuple[float, float]:
         """Return the longer side of the pixel, and the size of a grain."""

@@ -479,16 +479,16 @@ class Scene:
             notice(affects)
 
 
-def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appearance:
+def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:
     """Return the appearance of a scene beside a first one.
 
     Another scalar gets its own range, and a scalar that the field lacks becomes the speed.
     """
-    if "scalars" not in own and first.scalar_name not in (None, SPEED, *field.scalars):
-        own = {**own, "scalars": SPEED}
-    if "scalars" in own:
-        own = {"clim": None, **own}
-    return first.appearance.changed(**own)
+    if "scalars" not in changes and first.scalar_name not in (None, SPEED, *field.scalars):
+        changes = {**changes, "scalars": SPEED}
+    if "scalars" in changes:
+        changes = {"clim": None, **changes}
+    return first.appearance.changed(**changes)
 
 
 def follow(
@@ -545,15 +545,8 @@ def share_field(field: FlowField) -> FlowField:
     if has_pyramid(field):
         return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
-    formula = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (
-        *names,
-        str(formula),
-        field.periodic,
-        field.sign_free,
-        str(field.start),
-        field.projection,
-    )
+    text = field.formula and (field.formula.texts, field.formula.parameters)
+    words = (*names, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)

@@ -119,8 +119,8 @@ class TileSource:
             level = [child for key in level for child in scene.pyramid.children(key)]
         starts = range(0, len(keys), MOST_THREADS)
         for n in track(starts, len(starts), "Packing tiles"):
-            asked = [self.ask(key, steps) for key in keys[n : n + MOST_THREADS]]
-            yield from (future.result() for future in asked)
+            futures = [self.ask(key, steps) for key in keys[n : n + MOST_THREADS]]
+            yield from (future.result() for future in futures)
 
     def close(self) -> None:
         """Stop making parts."""

@@ -73,10 +73,8 @@ class WebView:
         colours, settings = replace(data.colours, others=others), self.scene.settings
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
-        requested = [
-            part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)
-        ]
-        kinds = [kind for kind in requested if data.marks and kind in data.marks.kinds]
+        drawn = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
+        kinds = [kind for kind in drawn if data.marks and kind in data.marks.kinds]
         marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
         return replace(data.recoloured(colours), marks=marks if kinds else None)
 

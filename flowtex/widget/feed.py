@@ -147,19 +147,19 @@ class Feed:
         self._requests.add(request)
         source = self._source
         answer = partial(self._answer, source.scene, request, key)
-        made = source.ask(key, steps, lambda: request not in self._requests, kind)
-        made.add_done_callback(answer)
+        future = source.ask(key, steps, lambda: request not in self._requests, kind)
+        future.add_done_callback(answer)
 
     def drop(self, request: str) -> None:
         """Cancel a request that a client no longer needs."""
         self._requests.discard(request)
 
     def _answer(
-        self, scene: ClientData, request: str, key: TileKey | None, made: Future[Parts]
+        self, scene: ClientData, request: str, key: TileKey | None, future: Future[Parts]
     ) -> None:
         """Send the parts made of a scene, or the error."""
         self._requests.discard(request)
-        error = made.exception()
+        error = future.exception()
         if isinstance(error, Stopped) or self._closed:
             return
         if error is not None:
@@ -169,7 +169,7 @@ class Feed:
         with self._lock:
             if scene is self.scene:
                 self._live = True
-                self._deliver(made.result(), again=True, offer=key is None)
+                self._deliver(future.result(), again=True, offer=key is None)
             self._end(request)
 
     def _end(self, request: str, **result: str) -> None:

@@ -298,10 +298,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         if point is None or field.triangles is None:
             return point
         try:  # the drawn triangles may differ from those of the field
-            at = locate(field, point.get("position"), tolerance=np.inf)
+            index = locate(field, point.get("position"), tolerance=np.inf)
         except FieldError as error:
             raise TraitValueError(str(error)) from error
-        return {**point, "index": None if at is None else at[::-1]}
+        return {**point, "index": None if index is None else index[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Set the values sent by the browser; invalid ones are reset there."""

@@ -36,16 +36,16 @@ def _control(row: Setting, value: Any) -> Any:
         "tooltip": row.text,
         "style": {"description_width": "9em"},
     }
-    whole = row.kind is int
+    is_integer = row.kind is int
     if row.control == "checkbox":
         return ipywidgets.Checkbox(**options)
     if row.control == "choice":
         return ipywidgets.Dropdown(options=row.choices, **options)
     options |= {"min": row.low, "max": row.high}
     if row.control == "number":
-        kind = ipywidgets.BoundedIntText if whole else ipywidgets.BoundedFloatText
+        kind = ipywidgets.BoundedIntText if is_integer else ipywidgets.BoundedFloatText
         return kind(**options)
-    if whole:
+    if is_integer:
         return ipywidgets.IntSlider(continuous_update=True, **options)
     return ipywidgets.FloatSlider(step=row.step, readout_format=".2f", **options)
 

@@ -230,13 +230,10 @@ class Data(Controller):
     def _requested(self) -> Choice:
         """Return the choice that the page requests; invalid parts are those of the present one."""
         options = self._options()
+        choices_of = {"block": "blocks", "vectors": "vectors_choices", "axis": "axes"}
         block, vectors, axis = (
             self.state.get(n) if name_among(self.state.get(n), options[choices]) else options[n]
-            for n, choices in (
-                ("block", "blocks"),
-                ("vectors", "vectors_choices"),
-                ("axis", "axes"),
-            )
+            for n, choices in choices_of.items()
         )
         if block != options["block"]:  # which has other planes and arrays
             arrays = self._current.source.block_vectors[block]

@@ -218,9 +218,9 @@ class Library:
         """Names of all flows; the folder is searched again."""
         openers = dict(self._named)
         if self._folder is not None:
-            found = find_files(self._folder)
-            openers |= {n: _Files((path,)) for n, path in found if not _reason(path)}
-            self._unshown = {name: why for name, path in found if (why := _reason(path))}
+            files = find_files(self._folder)
+            openers |= {n: _Files((path,)) for n, path in files if not _reason(path)}
+            self._unshown = {name: reason for name, path in files if (reason := _reason(path))}
         self._openers = openers
         return (*(self._shared.names if self._shared else ()), *openers)
 

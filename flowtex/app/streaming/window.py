@@ -76,13 +76,13 @@ class OffscreenWindow:
         camera, renderer = self.plotter.camera, self.plotter.renderer
         renderer.SetViewport(0, 0, *np.divide((width, height), self.plotter.window_size))
         renderer.ResetCameraClippingRange()
-        whole = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
+        saved = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
         if part is not None:
             self._narrow(camera, part)
         self._window.Render()
-        camera.SetWindowCenter(*whole[0])
-        camera.SetParallelScale(whole[1])
-        camera.SetViewAngle(whole[2])
+        camera.SetWindowCenter(*saved[0])
+        camera.SetParallelScale(saved[1])
+        camera.SetViewAngle(saved[2])
         return self._read(width, height)
 
     def _narrow(self, camera: vtkCamera, part: Rect) -> None:

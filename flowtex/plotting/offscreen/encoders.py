@@ -211,10 +211,8 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     width, height = checked_size(size, low=0)
     shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
-        fault = (
-            f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
-        )
-        msg = f"{path}: {fault}; expected {', '.join(FORMATS)}"
+        why = f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
+        msg = f"{path}: {why}; expected {', '.join(FORMATS)}"
     elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
     elif not (is_number(fps) and fps > 0):

@@ -68,21 +68,21 @@ def frame_times(
     checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)
     if field.steady:
         _check_motion(field, settings)
-    whole = _seconds(field, settings, seconds)
-    count = max(round(whole * fps), 1)
+    duration = _seconds(field, settings, seconds)
+    count = max(round(duration * fps), 1)
     if count > MAX_FRAMES:
         msg = (
-            f"{whole:g} seconds at {fps:g} frames per second are {count:,} frames; expected at "
+            f"{duration:g} seconds at {fps:g} frames per second are {count:,} frames; expected at "
             f"most {MAX_FRAMES:,}: choose fewer seconds or fewer frames per second"
         )
         raise MovieError(msg)
     if field.steady:
-        clocks = tuple(whole * n / count for n in range(count))
-        return FrameTimes((), clocks, fps, whole, closed=True)
+        clocks = tuple(duration * n / count for n in range(count))
+        return FrameTimes((), clocks, fps, duration, closed=True)
     closed = _is_periodic(field)
     first, last = float(field.times[0]), float(field.times[-1])
     times = np.linspace(first, last, max(count, 2), endpoint=not closed)
-    return FrameTimes(tuple(map(float, times)), (), fps, whole, closed=closed)
+    return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed)
 
 
 def run_seconds(times: int) -> float:

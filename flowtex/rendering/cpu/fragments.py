@@ -68,10 +68,10 @@ class Fragments:
     @property
     def place(self) -> Places:
         """Places at which the slices are looked up."""
-        at = self.coordinate.value
+        coordinate = self.coordinate.value
         if self.nodes is None:
-            return at
-        shares = np.concatenate([1 - at.sum(axis=1, keepdims=True), at], axis=1)
+            return coordinate
+        shares = np.concatenate([1 - coordinate.sum(axis=1, keepdims=True), coordinate], axis=1)
         return TrianglePlaces(shares, self.nodes, self.by)
 
     @property

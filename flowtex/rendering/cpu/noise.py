@@ -149,10 +149,12 @@ class SpaceNoise(Lookup):
         self.level = np.log2(grain / texel)
         self.spacing = values["u_spacing"] * grain
         octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
-        whole = octaves.astype(np.int64)
-        self._late = octaves - whole
+        octave_numbers = octaves.astype(np.int64)
+        self._late = octaves - octave_numbers
         offset = position.value - np.asarray(values["u_noiseOrigin"])
-        self._fine, self._coarse = (noise_lattice(offset, whole + k, values) for k in range(2))
+        self._fine, self._coarse = (
+            noise_lattice(offset, octave_numbers + k, values) for k in range(2)
+        )
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""

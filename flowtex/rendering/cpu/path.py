@@ -66,9 +66,9 @@ class AxisSlices(Slices):
         """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
         del level
         assert not isinstance(coordinate, TrianglePlaces)
-        at = coordinate * np.array(self.size) - 0.5
-        base = np.floor(at)
-        s, t = (at - base).T
+        texels = coordinate * np.array(self.size) - 0.5
+        base = np.floor(texels)
+        s, t = (texels - base).T
         weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
         # The other side, from which a reversed texel is taken.
         other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags

@@ -48,9 +48,10 @@ class Coverage:
 
     def mix(self, data: NDArray[np.floating]) -> tuple[Floats, Floats, Floats]:
         """Interpolate data of points, (P, C), to the pixels: values and derivatives, (N, C)."""
-        at = data.astype(float)[self.corners]
+        corner_values = data.astype(float)[self.corners]
         value, dx, dy = (
-            np.einsum("nk,nkc->nc", share, at) for share in (self.weights, self.dx, self.dy)
+            np.einsum("nk,nkc->nc", share, corner_values)
+            for share in (self.weights, self.dx, self.dy)
         )
         return value, dx, dy
 

@@ -118,11 +118,11 @@ class Summing:
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
-        known = self.known(coordinate, level)
+        certainty = self.certainty(coordinate, level)
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
-        cell = self.cell(coordinate, known)
-        count = self._count * known
+        cell = self.cell(coordinate, certainty)
+        count = self._count * certainty
         self._parting = np.zeros(len(base))
         if values["sparse"] and not isinstance(self._slices, AxisSlices):
             sine = self._parted(coordinate, level, by, 0.5 * count * lookup.spacing, cell)
@@ -136,14 +136,14 @@ class Summing:
         value = lookup.blend(sums)
         if value.ndim > 1:  # a picture keeps its colours
             return value
-        return np.asarray(value * self.faded(coordinate, level, known))
+        return np.asarray(value * self.faded(coordinate, level, certainty))
 
     def _parted(
         self, coordinate: Places, level: Floats, by: Floats, half: Floats, cell: CellPath | None
     ) -> Floats:
         """Sines (N,) of the angles to paths half a side's length beside; < 0 where they meet."""
-        whole = isinstance(coordinate, TrianglePlaces)
-        cells = np.ones(2) if whole else np.asarray(self._values["u_slicesSize"])
+        in_triangles = isinstance(coordinate, TrianglePlaces)
+        cells = np.ones(2) if in_triangles else np.asarray(self._values["u_slicesSize"])
 
         def direction(offset: Floats) -> Floats:
             tangent = unit(self._slices.layer(moved(coordinate, offset), 0, level)[:, :3])
@@ -155,26 +155,26 @@ class Summing:
         change = np.einsum("nc,nc->n", across, direction(offset) - direction(-offset))
         return np.asarray(0.5 * change)
 
-    def faded(self, coordinate: Places, level: Floats, known: Floats) -> Floats:
+    def faded(self, coordinate: Places, level: Floats, certainty: Floats) -> Floats:
         """Return the factor of the texture, (N,), less than 1 for uncertain or slow flow."""
-        share = const.FADED + (1 - const.FADED) * known
+        share = const.FADED + (1 - const.FADED) * certainty
         if self._values["u_fade"] > 0:
             speed = self._slices.layer(coordinate, 2, level)[:, 3]
             usual = np.clip(speed / self._values["u_fade"], 0, 1)
             share = share * usual**2 * (3 - 2 * usual)
         return np.asarray(share)
 
-    def known(self, coordinate: Places, level: Floats) -> Floats:
-        """Return how far the direction is known, (N,)."""
+    def certainty(self, coordinate: Places, level: Floats) -> Floats:
+        """Return the certainty of the direction, (N,): 1 where it is known."""
         if not self._slices.uncertain:
             return np.ones(len(level))
         return 1.0 - self._slices.layer(coordinate, const.UNCERTAIN_LAYER, level)[:, 3]
 
-    def cell(self, coordinate: Places, known: Floats | float = 1.0) -> CellPath | None:
+    def cell(self, coordinate: Places, certainty: Floats | float = 1.0) -> CellPath | None:
         """Paths in the cells of N fragments, where the view is so near."""
         if not self._values["near"]:
             return None
-        reach = self._count * known * self._lookup.spacing
+        reach = self._count * certainty * self._lookup.spacing
         return CellPath(self._slices, coordinate, reach, self._values)
 
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:

@@ -120,9 +120,9 @@ class GPUTexture:
         target.SetWrapS(repeat if self._repeat[1] else clamp)
         target.SetWrapT(repeat if self._repeat[0] else clamp)
         layers, height, width, channels = texels.shape
-        whole = max(height, width).bit_length() - 1
+        all_levels = max(height, width).bit_length() - 1
         # Left as it is, VTK's greatest level is 0, and there is no other level.
-        target.SetMaxLevel(whole if self._levels is None else self._levels)
+        target.SetMaxLevel(all_levels if self._levels is None else self._levels)
         if texels.dtype == np.float32:
             target.SetInternalFormat(SINGLE[channels])
         else:
@@ -467,6 +467,18 @@ def _window_height(camera: vtkCamera) -> float:
     if camera.GetParallelProjection():
         return float(2 * camera.GetParallelScale())
     return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
+
+
+def weak_callback(method: Callable[[], None]) -> Callable[[vtkObject, str], None]:
+    """Return a callback for VTK that does not keep the method's object alive."""
+    reference = weakref.WeakMethod(method)
+
+    def call(caller: vtkObject, event: str) -> None:
+        del caller, event
+        if (bound := reference()) is not None:
+            bound()
+
+    return call
 
 
 def observe_draws(mapper: Any, method: Callable[[vtkShaderProgram], None]) -> int:

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 from flowtex._util.array_types import Floats, Ints
@@ -33,7 +32,7 @@ from flowtex.rendering.tile_choice import (
 from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.vtk.arrows import SurfaceArrows
-from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
+from flowtex.rendering.vtk.layer import FlowLayer, corrects_places, weak_callback
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
@@ -82,8 +81,8 @@ class FlowSurface:
         self._notify: Callable[[], None] | None = None
         self._reported: set[TileKey] = set()
         self._observed = [
-            (event, renderer.AddObserver(event, self._observer(name)))
-            for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
+            renderer.AddObserver("StartEvent", weak_callback(self._before_frame)),
+            renderer.AddObserver("EndEvent", weak_callback(self._after_frame)),
         ]
 
     @property
@@ -157,25 +156,13 @@ class FlowSurface:
         """Remove everything from the renderer, and free the graphics card's memory."""
         renderer = self._renderer()
         if renderer is not None:
-            for _, tag in self._observed:
+            for tag in self._observed:
                 renderer.RemoveObserver(tag)
         self._drop(list(self._tiles))
         self._arrows.close()
         if self._loader is not None:
             self._loader.close()
         self._base.close()
-
-    def _observer(self, name: str) -> Callable[[vtkObject, str], None]:
-        """Return a callback that does not keep this surface alive."""
-        reference = weakref.WeakMethod(getattr(self, name))
-
-        def call(caller: vtkObject, event: str) -> None:
-            del caller, event
-            method = reference()
-            if method is not None:
-                method()
-
-        return call
 
     def _write_scalars(self, layer: FlowLayer, mesh: pv.PolyData) -> None:
         if self._scalars is not None:

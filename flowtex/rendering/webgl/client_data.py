@@ -317,9 +317,9 @@ class ClientData:
             return parts
         for number, values in self._values.items():
             if not shown or number == self.colours.number:
-                at = step if len(values) > 1 else 0
-                name = f"scalars/{at}/{number}" if number else f"scalars/{at}"
-                parts[name] = single(values[at])
+                source = step if len(values) > 1 else 0
+                name = f"scalars/{source}/{number}" if number else f"scalars/{source}"
+                parts[name] = single(values[source])
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:

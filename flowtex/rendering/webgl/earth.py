@@ -108,13 +108,15 @@ def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
     has_globe = has_land and globe_radius(field) is not None
 
     def make() -> _Lines:
-        both = map_lines(field, has_globe=has_globe)
-        local = {k: (v.points - geometry.center) @ geometry.frame.T for k, v in both.items()}
-        every = np.concatenate([*local.values(), np.zeros((1, 3))])
-        low, size = every.min(axis=0), np.ptp(every, axis=0)
+        lines_by_option = map_lines(field, has_globe=has_globe)
+        local = {
+            k: (v.points - geometry.center) @ geometry.frame.T for k, v in lines_by_option.items()
+        }
+        points = np.concatenate([*local.values(), np.zeros((1, 3))])
+        low, size = points.min(axis=0), np.ptp(points, axis=0)
         parts = {
             name: _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
-            for name, lines in both.items()
+            for name, lines in lines_by_option.items()
             if len(lines.points)
         }
         return _Lines(low, size, parts)

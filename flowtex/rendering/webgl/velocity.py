@@ -180,10 +180,12 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     cells = components * _sizes(textures)[..., None]
     np.divide(cells, speed[..., None], out=rate, where=moves[..., None])
     channels = [rate[..., 0], rate[..., 1], speed / typical]
-    whole = np.asarray(field.speed[0])
-    differs = np.abs(whole - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical
+    full_speed = np.asarray(field.speed[0])
+    differs = (
+        np.abs(full_speed - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical
+    )
     if differs or field.uncertainty:
-        channels.append(fill_blanked(whole, valid) / typical)
+        channels.append(fill_blanked(full_speed, valid) / typical)
     if field.uncertainty:
         channels.append(unknown_share(field, 0))
     share, exponent = np.frexp(channels[2:])

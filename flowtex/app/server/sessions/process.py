@@ -154,9 +154,7 @@ class _Files:
         async with self._http.request(
             request.method,
             URL(request.raw_path, encoded=True),
-            headers={
-                key: request.headers[key] for key in REQUEST_HEADERS if key in request.headers
-            },
+            headers={n: request.headers[n] for n in REQUEST_HEADERS if n in request.headers},
             data=request.content if request.body_exists else None,
         ) as answer:
             headers = {key: answer.headers[key] for key in ANSWER_HEADERS if key in answer.headers}
@@ -183,8 +181,8 @@ class HostedSession:
     def __call__(self, request: dict[str, Any]) -> tuple[Any, tuple[()]]:
         """Answer a request."""
         if "open" in request:
-            self._site, said = self._open_site(request["open"])
-            return {**self._loop.run_until_complete(self._open()), "said": said}, ()
+            self._site, messages = self._open_site(request["open"])
+            return {**self._loop.run_until_complete(self._open()), "said": messages}, ()
         self._loop.run_until_complete(self._run() if "run" in request else self._site.stop())
         return None, ()
 
