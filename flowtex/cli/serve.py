@@ -48,7 +48,7 @@ def serve(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Serve a page that streams a pyramid."""
-    options, at = drawing(look, settings), address or AddressFlags()
+    options, server = drawing(look, settings), address or AddressFlags()
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
         msg = (
@@ -75,11 +75,11 @@ def serve(
         serving = run_store(
             served,
             page,
-            (at.host, at.port),
+            (server.host, server.port),
             token=token or new_secret(),
-            hosts=known_hosts(at.host, at.allow_host),
-            announce=announcer(describe(field), at.host, end_waiting),
-            open_browser=at.open_browser and has_display(),
+            hosts=known_hosts(server.host, server.allow_host),
+            announce=announcer(describe(field), server.host, end_waiting),
+            open_browser=server.open_browser and has_display(),
         )
         with suppress(KeyboardInterrupt, asyncio.CancelledError):
             asyncio.run(serving)

@@ -185,7 +185,8 @@ class MeshLevels:
                 size = self._size(deviation, at_omitted, border=1 - axis)
                 parts = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
                 errors[:, level] += self._greatest(size, *parts)
-                kept = _every_second(len(lines[axis]))
+                last = len(lines[axis]) - 1
+                kept = np.append(np.arange(0, last, 2), last)
                 values, lines[axis] = values.take(kept, axis), lines[axis][kept]
                 directions = None if directions is None else directions.take(kept, axis + 1)
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
@@ -283,11 +284,6 @@ def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
     share = (numbers[1] - numbers[0]) / (numbers[2] - numbers[0])
     low, left, high = (values[(slice(None),) * axis + (part,)] for part in pick)
     return np.asarray(left - low - np.expand_dims(share, (1 - axis, 2)) * (high - low))
-
-
-def _every_second(count: int) -> Indices:
-    """Return the index of every second of this many lines, and the last one."""
-    return np.append(np.arange(0, count - 1, 2), count - 1)
 
 
 #: Marks blocks that are not drawn: more doublings than any block has.

@@ -107,7 +107,8 @@ class Sharing(Controller):
             "supersampling": 2 if self.state.get("out_smooth") else 1,
             "density": self._number("out_density"),
             "annotations": bool(self.state.get("out_annotations")),
-            "busy": self._busy,
+            # The view has priority while it is being drawn.
+            "busy": lambda: self.stream.moving and not self.stream.paused,
         }
         if kind == "PNG":
             return PictureJob(self.viewport, path, size, **options)
@@ -121,10 +122,6 @@ class Sharing(Controller):
             msg = f"{LABELS[name]} is {value!r}; expected a number"
             raise ExportError(msg)
         return checked
-
-    def _busy(self) -> bool:
-        """Return whether the view is being drawn, which has priority."""
-        return self.stream.moving and not self.stream.paused
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
         if before is not None:

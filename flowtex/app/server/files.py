@@ -243,7 +243,8 @@ class Downloads:
         limit = self._clock() - self._lifetime
         for token in [t for t, (_, requested) in self._files.items() if requested < limit]:
             self.remove(token)
-        sizes = {token: _size(path) for token, (path, _) in self._files.items()}
+        files = {token: path for token, (path, _) in self._files.items()}
+        sizes = {t: path.stat().st_size if path.is_file() else 0 for t, path in files.items()}
         for token in sorted(sizes, key=lambda t: self._files[t][1])[:-1]:
             if sum(sizes.values()) <= DOWNLOAD_BYTES:
                 break
@@ -267,10 +268,6 @@ class Downloads:
             raise web.HTTPGone(text=EXPIRED, headers={"Cache-Control": "no-store"})
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         return path, kind, path.name
-
-
-def _size(path: Path) -> int:
-    return path.stat().st_size if path.is_file() else 0
 
 
 def plain_name(name: str) -> str:

@@ -12,14 +12,11 @@ import threading
 import warnings
 from collections.abc import Container, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import Any, TypeGuard
 
 from flowtex._util.array_types import AnyArray
 from flowtex.settings import SettingsError
 from flowtex.textures.images import pixels_of
-
-if TYPE_CHECKING:
-    from PIL import Image
 
 #: Characters of a message to a page, at most.
 MESSAGE_LENGTH = 400
@@ -110,8 +107,12 @@ def _read(content: bytes, name: str) -> AnyArray:
             # A JPEG is read at a fraction of its size.
             picture.draft(None, (PICTURE_SIDE, PICTURE_SIDE))
             times = -(-max(picture.size) // PICTURE_SIDE)
-            small = picture if times == 1 else _averaged(picture, times)
-            return pixels_of(ImageOps.exif_transpose(small))
+            if times == 1:
+                return pixels_of(ImageOps.exif_transpose(picture))
+            # Pixels of a palette become colours before they are averaged.
+            has_colours = picture.mode in ("L", "RGB", "RGBA")
+            averaged = (picture if has_colours else picture.convert("RGBA")).reduce(times)
+            return pixels_of(ImageOps.exif_transpose(averaged))
     except Image.DecompressionBombError as error:
         msg = f"{name}: has far too many pixels; expected {PICTURE_PIXELS:,} at most"
         raise SettingsError(msg) from error
@@ -120,9 +121,3 @@ def _read(content: bytes, name: str) -> AnyArray:
             raise
         msg = f"{name}: the picture cannot be read; expected a PNG, a JPEG or a WebP"
         raise SettingsError(msg) from error
-
-
-def _averaged(picture: Image.Image, times: int) -> Image.Image:
-    """Average blocks of pixels; those of a palette are converted to colours first."""
-    plain = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGBA")
-    return plain.reduce(times)

@@ -84,11 +84,11 @@ class PointReader:
             except ValueError:  # it is not in view
                 return None
 
-        found = await asyncio.get_running_loop().run_in_executor(self._worker, work)
-        if found is None:
+        probed = await asyncio.get_running_loop().run_in_executor(self._worker, work)
+        if probed is None:
             return None
         alone = "field" in self._viewport.differences
-        read = path_of(found, index, first.handle.field)
+        read = path_of(probed, index, first.handle.field)
         read["point"] |= self._mark(first, read["point"]["position"])
         return {**read, "alone": alone}
 

@@ -14,6 +14,8 @@ from typing import Any
 
 from wslink.chunking import UnChunker
 
+from flowtex.app.server.validation import name_among
+
 #: Bytes of a message, and messages that a page may begin before it ends one.
 MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
 #: Methods of trame that no page of ours calls.
@@ -63,19 +65,15 @@ class LimitedMessages(UnChunker):
         first = args[0] if isinstance(args, list) and args else None
         if method == "trame.state.update":
             changes = [c for c in first if isinstance(c, dict)] if isinstance(first, list) else []
-            declared = [c for c in changes if _is_one_of(c.get("key"), self._declared)]
+            declared = [c for c in changes if name_among(c.get("key"), self._declared)]
             return {**message, "args": [declared], "kwargs": {}}
         if method == "trame.lifecycle.update":
-            return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
+            return {**message, "kwargs": {}} if name_among(first, EVENTS) else None
         if method == "trame.trigger" and not _is_plain_name(first):
             return None
         if isinstance(method, str) and method.startswith("trame.rca."):
-            return {**message, "kwargs": {}} if _is_one_of(first, self._areas) else None
+            return {**message, "kwargs": {}} if name_among(first, self._areas) else None
         return message
-
-
-def _is_one_of(name: object, names: Container[str]) -> bool:
-    return isinstance(name, str) and name in names
 
 
 def _is_plain_name(name: object) -> bool:
