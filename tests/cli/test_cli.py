@@ -329,7 +329,8 @@ def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
         file.base("Base", [("Tip 1", box(4, 3, 2)), ("Body", box(6, 3, 2, 3.0))], times=TIMES)
     code, out, _ = run("info", tmp_path / "wing.cgns")
     assert code == 0
-    for words in ("blocks 2", "times 2: 0.5, 1", "0 Base/Tip 1 StructuredGrid 4 × 3 × 2"):
+    table = "0 Base/Tip 1 StructuredGrid 4 × 3 × 2"
+    for words in ("blocks 2", "times 2: 0.5, 1", table, "least at t = 0.5", "(magnitude)"):
         assert words in out
     assert 'choose one, as in --block "Base/Tip 1"' in out
     code, out, _ = run("info", tmp_path / "wing.cgns", "--block", "Base/Body", "--plane", "k=0")

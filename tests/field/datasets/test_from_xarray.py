@@ -247,6 +247,24 @@ def test_units_are_those_of_velocities_and_the_same() -> None:
         FlowField.from_xarray(ds, "u", "v")
 
 
+def test_a_pair_in_another_unit_is_told_of() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    for name in "uv":
+        ds[name].attrs = {"units": "furlong/day"}
+    with pytest.raises(FieldError, match=r"^the unit of 'u' is 'furlong/day', which is not a unit"):
+        FlowField.from_xarray(ds)
+
+
+def test_a_region_is_cut_from_the_dataset() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(60.0, 40.0, -1.0))
+    with pytest.raises(
+        FieldError, match=r"'lon' is an axis of the surface.* as in data\.sel\(lon="
+    ):
+        FlowField.from_xarray(ds, sel={"lon": slice(5, 9)})
+    with pytest.raises(FieldError, match=r"the axis may run the other way: slice\(high, low\)$"):
+        FlowField.from_xarray(ds.sel(lat=slice(45, 50)))
+
+
 def test_several_pairs_are_asked_for_by_name() -> None:
     ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
     both = ds.assign(u2=ds.u, v2=ds.v).rename(u2="u100", v2="v100")

@@ -132,6 +132,9 @@ def test_one_of_several_blocks(tmp_path: Path) -> None:
     assert FlowField.from_file(path, block="right").shape == (3, 6)
     with says(f"{path}: block is 3; the blocks of the file are: 0 (left), 1 (hull), 2 (right)"):
         FlowField.from_file(path, block=3)
+    inner = pv.MultiBlock({"hull": flowing(), "top": flowing(6)})
+    pv.MultiBlock({"inside": flowing(5), "boundary": inner}).save(path)
+    assert FlowField.from_file(path, block="top").shape == (3, 6), "boundary/top"
 
 
 def test_one_block_of_a_series(tmp_path: Path) -> None:
