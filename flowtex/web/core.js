@@ -975,19 +975,24 @@ value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return 
 .readout:empty { display: none; }
 .head:not(:has(.title:not([hidden]), .parameters:not(:empty), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
-/* Sliders keep their room beside the legend. Several wrap, and have a line of their own where the view is
+/* Sliders keep their room beside the legend. Several, or one beside kinds of marks, wrap, and have a line of their own \
+where the view is
    narrow; the readout takes what is left there, as the picture would move if it took more. */
 .top:has(.row) .legend { flex-shrink: 9; }
-:host(.flowtex-framed) .top:has(.row + .row) {
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) {
   flex-wrap: wrap; justify-content: flex-end; row-gap: 2px; height: auto; min-height: 46px; padding-top: 0;
 }
-:host(.flowtex-framed) .top:has(.row + .row) :is(.kinds, .legend) { margin-left: 0; }
-:host(.flowtex-framed) .head:has(.row + .row) { flex: 1 1 auto; flex-flow: row wrap; gap: 0 10px; }
-:host(.flowtex-framed) .parameters:has(.row + .row) { flex-wrap: wrap; gap: 0 12px; }
-:host(.flowtex-framed) .parameters:has(.row + .row) + .readout {
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) :is(.kinds, .legend) { margin-le\
+ft: 0; }
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) .head { flex: 1 1 auto; flex-flo\
+w: row wrap; gap: 0 10px; }
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) .parameters { flex-wrap: wrap; g\
+ap: 0 12px; }
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) .readout {
   flex: 1 1 0; contain: inline-size; margin-left: -10px; padding: 0;
 }
-:host(.flowtex-framed) .parameters:has(.row + .row) + .readout > :first-child { margin-left: 10px; }
+:host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) .readout > :first-child { margin\
+-left: 10px; }
 .legend {
   flex: none; margin-left: auto; min-width: 150px; max-width: 60%; padding: 5px 10px 6px; font-size: 11px;
   pointer-events: none;
@@ -1163,7 +1168,10 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   margin: 0; max-width: 100%; white-space: pre-wrap; color: var(--quiet);
   font: 11px/1.4 ui-monospace, Menlo, Consolas, monospace; text-align: left;
 }
-@container (max-width: 640px) { :host(.flowtex-framed) .head:has(.row + .row) { flex-basis: 100%; margin-top: 5px; } }
+@container (max-width: 640px) {
+  :host(.flowtex-framed) .top:is(:has(.row + .row), :has(.row):has(.kinds:not([hidden]))) .head { flex-basis: 100%; marg\
+in-top: 5px; }
+}
 @container (max-width: 900px) {
   :host(.flowtex-framed) .head:has(.title:not([hidden]) + .parameters > .row:nth-child(3)) { flex-basis: 100%; margin-to\
 p: 5px; }
@@ -1178,7 +1186,7 @@ p: 5px; }
   .head > * { max-width: 100%; padding-right: 2px; overflow: hidden; text-overflow: ellipsis; }
   :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 56px; margin-right: 8px; }
 }
-@container (max-width: 420px) { .kinds { display: none; } }
+@container (max-width: 420px) { :host(:not(.flowtex-framed)) .kinds, .top:not(:has(.row)) .kinds { display: none; } }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
