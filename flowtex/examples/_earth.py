@@ -157,12 +157,12 @@ def _dataset(
             dims,
             values,
             {
-                "standard_name": standard_name,
-                "long_name": standard_name.replace("_", " "),
+                "standard_name": word,
+                "long_name": word.replace("_", " "),
                 "units": unit,
             },
         )
-        for key, (values, standard_name, unit) in data.items()
+        for key, (values, word, unit) in data.items()
     }
     attributes = {"Conventions": "CF-1.8", "title": title, "source": SOURCE}
     dataset: xr.Dataset = xarray.Dataset(variables, coordinates, attributes)

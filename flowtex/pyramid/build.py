@@ -195,9 +195,7 @@ def build(
         run, depth = _Run(group, arrays, about, lease, identity, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
-            units = sorted(
-                {unit for name in run.arrays for unit in _existing_units(run, name)}, key=repr
-            )
+            units = sorted({u for name in run.arrays for u in _existing_units(run, name)}, key=repr)
             run.work(workers, mend, units, "Checking existing objects", TILE_BYTES, new=False)
         _write_finest(run, data, workers if data.travels else threads)
         for level in range(1, depth + 1):

@@ -171,9 +171,8 @@ def attributes_of(about: About) -> dict[str, Any]:
 def described(about: About, levels: Iterable[int] | None = None) -> Group:
     """Return a group in memory with the arrays of levels, by default all, as they are written."""
     zarr = import_extra("zarr", "store")
-    group: Group = zarr.group(
-        zarr.storage.MemoryStore(), attributes=attributes_of(about), zarr_format=3
-    )
+    store, attributes = zarr.storage.MemoryStore(), attributes_of(about)
+    group: Group = zarr.group(store, attributes=attributes, zarr_format=3)
     for level in range(about["depth"] + 1) if levels is None else levels:
         _create_level(group, level, about)
     return group

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from zarr.core.metadata import ArrayV3Metadata
 
 T = TypeVar("T")
+Index = tuple[int | slice, ...]
 
 #: Metadata of an array that determine the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
@@ -60,7 +61,7 @@ class _Piece(NamedTuple):
     """A piece of an array: an index, and rows and columns within its result."""
 
     array: str
-    selection: tuple[int | slice, ...]
+    selection: Index
     #: Its name in errors.
     name: str
     lines: tuple[Indices, Indices] | None = None
@@ -338,10 +339,7 @@ def _size(piece: _Piece, expected: dict[str, Any]) -> int:
 
 
 async def _lines(
-    array: AsyncArray[ArrayV3Metadata],
-    leading: tuple[int | slice, ...],
-    rows: Indices,
-    columns: Indices,
+    array: AsyncArray[ArrayV3Metadata], leading: Index, rows: Indices, columns: Indices
 ) -> AnyArray:
     """Read some rows and columns of an array over the nodes, as blocks where these are few."""
     runs = [list(even_runs(lines)) for lines in (rows, columns)]

@@ -130,9 +130,7 @@ class OthersObjects(Objects):
     async def _found(self, group: str) -> list[str]:
         levels = level_names((await self._metadata(group)).get("attributes", {}))
         arrays = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
-        axes = {
-            str(name) for array in arrays.values() for name in array.get("dimension_names") or ()
-        }
+        axes = {str(n) for array in arrays.values() for n in array.get("dimension_names") or ()}
         return list(arrays | await self._present(group, axes - {*arrays}))
 
     async def _present(self, group: str, names: Iterable[str]) -> dict[str, dict[str, Any]]:
@@ -155,9 +153,7 @@ def level_names(attributes: Mapping[str, Any]) -> list[str]:
     if not isinstance(multiscales, dict):
         return []
     levels = [*multiscales.get("layout", []), *multiscales.get("datasets", [])]
-    return [
-        str(level.get("asset", level.get("path"))) for level in levels if isinstance(level, dict)
-    ]
+    return [str(item.get("asset", item.get("path"))) for item in levels if isinstance(item, dict)]
 
 
 class _BoundedGzip(GzipCodec):

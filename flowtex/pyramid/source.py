@@ -23,7 +23,7 @@ from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import dataset_paths, file_and_group
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
-from flowtex.field.datasets.regions import Regions, Selection
+from flowtex.field.datasets.regions import Lines, Regions
 from flowtex.field.io.arrays import FieldArrays
 from flowtex.field.io.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.field.io.inspection.zarr_folder import check_zarr
@@ -68,7 +68,7 @@ class Source:
     #: Nodes whose position is known, (J, I); ``None`` for all.
     has_position: Bools | None = None
 
-    def points(self, rows: Selection, columns: Selection) -> Floats:
+    def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
         raise NotImplementedError
 
@@ -124,7 +124,7 @@ class FieldSource(Source):
         has_position = field.has_position
         self.has_position = None if has_position is None or has_position.all() else has_position
 
-    def points(self, rows: Selection, columns: Selection) -> Floats:
+    def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions of nodes."""
         return np.asarray(self.field.points[rows][:, columns])
 
@@ -180,7 +180,7 @@ class RegionSource(Source):
             projection=lines.projection,
         )
 
-    def points(self, rows: Selection, columns: Selection) -> Floats:
+    def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions of nodes."""
         return self.regions.lines.points(rows, columns)
 

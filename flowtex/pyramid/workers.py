@@ -129,7 +129,7 @@ class Cluster(Threads):
         # Results of tasks outlive the worker that has them.
         sent = [self._client.submit(_unpacked, data, pure=False) for data in packed]
         futures = self._client.map(
-            _run_task, tasks, function=function, arguments=sent, pure=False, retries=MOST_TRIALS - 1
+            _run_task, tasks, function=function, inputs=sent, pure=False, retries=MOST_TRIALS - 1
         )
         try:
             for future in self._as_completed(futures):
@@ -163,12 +163,10 @@ class Cluster(Threads):
             )
 
 
-def _run_task(
-    task: tuple[Any, ...], *, function: Callable[..., None], arguments: list[Any]
-) -> None:
+def _run_task(task: tuple[Any, ...], *, function: Callable[..., None], inputs: list[Any]) -> None:
     _set_allocator()
     with plain_faults():
-        function(*arguments, *task)
+        function(*inputs, *task)
 
 
 @cache

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import zipfile
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -35,8 +36,6 @@ NODE_AXES = {
     "displacement": 2,
     "forward": 2,
 }
-#: Arrays whose first axis is the destination time.
-STEP_ARRAYS = tuple(name for name, axis in NODE_AXES.items() if axis > 0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,12 +113,8 @@ class TraceSlices:
     def at_step(self, step: int) -> TraceSlices:
         """Return the slices of one destination time, with T = 1."""
         span = slice(step, step + 1 or None)
-        parts: dict[str, Any] = {
-            name: data[span]
-            for name in (*STEP_ARRAYS, "times")
-            if (data := getattr(self, name)) is not None
-        }
-        return replace(self, **parts)
+        slices = self._mapped(lambda data, axis: data[span] if axis else data)
+        return replace(slices, times=self.times[span])
 
     def up_to(self, lags: int) -> TraceSlices:
         """Return the slices of the ``lags`` shortest lags, as if no more had been traced."""
@@ -132,12 +127,16 @@ class TraceSlices:
 
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return some rows and columns of the slices."""
-        parts: dict[str, Any] = {
-            name: data[(slice(None),) * axis + (rows, columns)]
+        return self._mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])
+
+    def _mapped(self, function: Callable[[AnyArray, int], AnyArray]) -> TraceSlices:
+        """Apply a function to each array over the nodes, and to its axis of j."""
+        arrays: dict[str, Any] = {
+            name: function(data, axis)
             for name, axis in NODE_AXES.items()
             if (data := getattr(self, name)) is not None
         }
-        return replace(self, **parts)
+        return replace(self, **arrays)
 
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
         """Return the positions of the particles at a lag.
@@ -203,12 +202,7 @@ class TraceSlices:
         most = min(self.shape)
         expected = f"1 to {most}, the shorter side"
         factor = checked_count("factor", factor, 1, most, expected=expected)
-        means: dict[str, Any] = {
-            name: block_means(data, factor, axis)
-            for name, axis in NODE_AXES.items()
-            if (data := getattr(self, name)) is not None
-        }
-        return replace(self, **means)
+        return self._mapped(lambda data, axis: block_means(data, factor, axis))
 
     def save(self, path: str | Path) -> None:
         """Write the slices to a compressed ``.npz`` file."""

@@ -144,12 +144,8 @@ class SliceStore:
     def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, so it has no progress bar.
         alone = self._nodes is None
-        parts: dict[str, Any] = {
-            "nodes": self._nodes,
-            "longest": self.long_enough,
-            "progress": alone,
-        }
-        follow = partial(trace, field, lags=lags, unit=self.unit, **parts, **options)
+        arguments = {**options, "nodes": self._nodes, "longest": self.long_enough}
+        follow = partial(trace, field, lags=lags, unit=self.unit, progress=alone, **arguments)
         return _slices.get(self._key(field, lags, options), follow) if alone else follow()
 
     def _key(self, field: FlowField, lags: Floats, options: dict[str, Any]) -> bytes:

@@ -73,7 +73,7 @@ def find_places(
     """Return the places of values, by their coordinates, or by those of other datasets."""
     shape = tuple(_size(d, array, datasets) for d in dims)
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
-        a, b = _spread(lon, lat, dims, shape)
+        a, b = _at_nodes(lon, lat, dims, shape)
         if a is None or b is None:
             continue
         if not _is_lonlat(a, b, lon, lat):
@@ -88,7 +88,7 @@ def find_places(
             why=f"{lon.name} and {lat.name}",
         )
     for x, y in _pairs(array, dims, datasets, (ACROSS, UPWARD), ("X", "Y")):
-        a, b = _spread(x, y, dims, shape)
+        a, b = _at_nodes(x, y, dims, shape)
         if a is None or b is None:
             continue
         return _plane(array, x, y, a, b, datasets)
@@ -164,7 +164,7 @@ def _partner_names(name: str) -> set[str]:
     return {low.replace(a, b) for a, b in swaps if a in low}
 
 
-def _spread(
+def _at_nodes(
     a: xr.DataArray, b: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""

@@ -149,7 +149,7 @@ def read_datasets(
     scalars = _scalars(flow, datasets, Choice(dict(sel), dict(isel or {})))
     words: dict[str, Any] = {
         "name": ", ".join(filter(None, (name, flow.u.level))),
-        **_words(scalars),
+        **_scalar_texts(scalars),
     }
     if regions and flow.mesh is None and spread is None:
         parts = _regions(flow, scalars, times, numbers, projection, words)
@@ -290,7 +290,7 @@ def _regions(
     )
 
 
-def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
+def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
     """Return units, and long names that are short enough, of variables."""
     attributes = {key: scalar.attributes for key, scalar in scalars.items()}
     words = {

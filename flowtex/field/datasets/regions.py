@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: Rows or columns, by numbers or as a slice.
-Selection: TypeAlias = Indices | slice
+Lines: TypeAlias = Indices | slice
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
 
@@ -56,7 +56,7 @@ class RegionLines:
         """Number of nodes (J, I)."""
         return len(self.rows), len(self.columns)
 
-    def points(self, rows: Selection, columns: Selection) -> Floats:
+    def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns."""
         a, b = np.broadcast_arrays(self.shown[columns], self.b[rows][:, None])
         if self.projection is None:
@@ -65,7 +65,7 @@ class RegionLines:
             return self.projection.positions(a, b)
         return shown_positions(self.projection, a, b)
 
-    def vectors(self, u: Floats, v: Floats, rows: Selection, columns: Selection) -> Floats:
+    def vectors(self, u: Floats, v: Floats, rows: Lines, columns: Lines) -> Floats:
         """Return vectors (J, I, 3) of components at some rows and columns."""
         if self.projection is None:
             return np.stack([u, v, np.zeros(u.shape)], axis=-1)
@@ -105,9 +105,7 @@ class Regions:
         drawn = projection is not None and not projection.is_globe
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
-    def nodes(
-        self, step: int, rows: Selection, columns: Selection, valid: Bools | None = None
-    ) -> Nodes:
+    def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
@@ -130,16 +128,14 @@ class Regions:
         points = self.lines.points(rows, columns)
         return Nodes(points, valid, velocity, scalars)
 
-    def _components(self, number: int, rows: Selection, columns: Selection) -> list[Floats]:
+    def _components(self, number: int, rows: Lines, columns: Lines) -> list[Floats]:
         parts = [self.read(part, number, rows, columns) * self.factor for part in self.components]
         if self.mask is None:
             return parts
         wet = self.read(self.mask, number, rows, columns) > 0
         return [np.where(wet, part, np.nan) for part in parts]
 
-    def read(
-        self, variable: xr.Variable, number: int, rows: Selection, columns: Selection
-    ) -> Floats:
+    def read(self, variable: xr.Variable, number: int, rows: Lines, columns: Lines) -> Floats:
         """Return some rows and columns of a variable, at a number in it."""
         step = variable[number] if variable.ndim > 2 else variable
         below = []

@@ -170,11 +170,10 @@ def _check_solution(layout: Layout, solution: Path) -> None:
         fits = rank == axes or size == _solution_length(layout, sizes, rank)
         if sizes and fits and sizes != grids:
             msg = (
-                f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has {grids[:3]}"
+                f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has "
+                f"{grids[:3]}; the grid file is truncated, or the solution belongs to another grid"
             )
-            raise FieldError(
-                msg + ("; the grid file is truncated, or the solution belongs to another grid")
-            )
+            raise FieldError(msg)
         check_count(size, _solution_length(layout, grids, axes), solution.name)
         if size == _solution_length(layout, grids, axes):
             break

@@ -335,16 +335,14 @@ class Pyramid:
         """Return a level, making those before it first."""
         with self._lock:
             while len(self._levels) <= level:
-                fine, coarse = self._levels[-1], self.line_numbers(len(self._levels))
+                fine, picks = self._levels[-1], self.line_numbers(len(self._levels))
                 valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
                 rows, columns = (
                     beside(np.searchsorted(lines, new), len(lines), closed=closed)
-                    for lines, new, closed in zip(
-                        fine[:2], coarse, self.field.periodic, strict=True
-                    )
+                    for lines, new, closed in zip(fine[:2], picks, self.field.periodic, strict=True)
                 )
                 mean = partial(averaged, valid=valid, rows=rows, columns=columns)
-                self._levels.append(_Level(*coarse, map_steps(fine.velocity, mean)))
+                self._levels.append(_Level(*picks, map_steps(fine.velocity, mean)))
             return self._levels[level]
 
 
