@@ -22,6 +22,7 @@ SYNONYMS = {
     **dict.fromkeys(("variables", "vector", "velocity"), "vectors"),
     **dict.fromkeys(("scalar", "color_by", "field"), "scalars"),
     **dict.fromkeys(("depth", "height", "lev", "altitude"), "level"),
+    **dict.fromkeys(("fixed_points", "equilibria"), "critical_points"),
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
 }
 _LENGTH = "a streak has samples times spacing grains, as in samples=49, spacing=0.7"

@@ -67,6 +67,8 @@ class Parameter:
                 f"{name} is {raw!r}; expected a number, or value, low and high of a slider, such "
                 "as (0.2, 0, 1)"
             )
+            if np.shape(raw) == (2,):
+                msg += ". If it is a coordinate, name it x or y, in the expressions as well"
             raise FieldError(msg)
         return cls(value, float(low), float(high))
 
