@@ -97,8 +97,12 @@ def test_a_formula_is_sharp_at_a_zoom_of_100_000(browser: Browser, tmp_path: Pat
     assert found.angle < 3 and found.coherence > 0.93
 
 
-def test_no_slider_is_hidden_by_a_legend(browser: Browser, tmp_path: Path) -> None:
-    field = flowtex.formula("y", "c - a*sin(x) - b*y", **ENDS, a=(1, 0, 2), c=(0.3, -1, 1))
+@pytest.mark.parametrize("more", [{}, {"a": (1, 0, 2), "c": (0.3, -1, 1)}], ids=["1", "3"])
+def test_no_slider_is_hidden_by_a_legend(
+    browser: Browser, tmp_path: Path, more: dict[str, Any]
+) -> None:
+    rate = "c - a*sin(x) - b*y" if more else "-sin(x) - b*y"
+    field = flowtex.formula("y", rate, **ENDS, **more)
     look: dict[str, Any] = {"samples": 3, "critical_points": True, "nullclines": True}
     path = flowtex.export(field, tmp_path / "page.html", **look).path
     found = """() => {
@@ -117,7 +121,7 @@ def test_no_slider_is_hidden_by_a_legend(browser: Browser, tmp_path: Path) -> No
         opened(page, path)
         for width in (360, 560, 800, 1200):
             page.set_viewport_size({"width": width, "height": 400})
-            assert page.evaluate(found) == [True, True, True], width
+            assert page.evaluate(found) == [True] * (1 + len(more)), width
             # What is said of the point under the pointer moves nothing.
             page.mouse.move(1, 1)
             page.locator(".readout:empty").wait_for(state="attached")
@@ -125,3 +129,33 @@ def test_no_slider_is_hidden_by_a_legend(browser: Browser, tmp_path: Path) -> No
             page.mouse.move(width / 2, 240)
             page.locator(".readout b").first.wait_for(state="attached")
             assert page.evaluate(stage) == before
+
+
+DRAWN = """() => {
+  const viewer = document.querySelector("flowtex-view").first;
+  return viewer.card.drawn.path.path;
+}"""
+
+
+def test_a_click_shows_the_trajectory_which_follows_the_slider(
+    browser: Browser, tmp_path: Path
+) -> None:
+    path = flowtex.export(pendulum(resolution=65), tmp_path / "page.html", samples=9).path
+    with opened_page(browser, 320, 240) as page:
+        opened(page, path)
+        box = page.evaluate("document.querySelector('flowtex-view').getBoundingClientRect()")
+        page.mouse.click(box["x"] + 0.4 * box["width"], box["y"] + 0.4 * box["height"])
+        page.wait_for_function("() => !!document.querySelector('flowtex-view').first.card.drawn")
+        for b in (0.2, 0.0):
+            page.evaluate(
+                "(b) => document.querySelector('flowtex-view').first.setSettings({'formula.b': b})",
+                b,
+            )
+            line = np.array(page.evaluate(DRAWN))[:, :2]  # at once
+            energy = line[:, 1] ** 2 / 2 - np.cos(line[:, 0])
+            lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+            assert lengths.sum() > 5
+            # dE/ds = -b y^2 / speed along the line.
+            x, y = (line[1:] + line[:-1]).T / 2
+            lost = -b * y**2 / np.hypot(y, np.sin(x) + b * y) * lengths
+            np.testing.assert_allclose(np.diff(energy)[1:-1], lost[1:-1], atol=2e-4)
