@@ -83,7 +83,8 @@ def read_meshes(
         return GridArrays(**arrays, **options, name=name)
     choices = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if refused := [f"{k}={value!r}" for k, value in choices.items() if value not in (None, "")]:
-        remedy = 'to cut it, use slice="x=0.5"; otherwise ' if plane is not None else ""
+        cut_here = plane if plane and plane[0] in "xyz" else "x=0.5"
+        remedy = f'to cut it, use slice="{cut_here}"; otherwise ' if plane is not None else ""
         msg = (
             f"{', '.join(refused)} applies to structured meshes, and this one is not; {remedy}omit "
             "it, or sample the mesh onto a structured one, as in "

@@ -174,6 +174,8 @@ def test_a_surface_is_not_cut_and_has_no_planes() -> None:
         FlowField.from_pyvista(mesh, slice="x")
     with says("plane='k=0' applies to structured meshes"):
         FlowField.from_pyvista(mesh, plane="k=0")
+    with says('to cut it, use slice="z=1"; otherwise omit'):
+        FlowField.from_pyvista(mesh, plane="z=1")
     with says("sign_free=True applies to structured meshes, and this one is not; omit"):
         FlowField.from_pyvista(mesh, sign_free=True)
 
