@@ -58,8 +58,9 @@ export function recoloured(
   if (Array.isArray(choice.clim)) [scalars.low, scalars.high] = choice.clim;
   if (choice.clim !== undefined) scalars.auto = !choice.clim;
   if (scalars.auto && scalars.choices[scalars.number]) {
-    const { low, high } = scalars.choices[scalars.number];
-    const widest = low < 0 && high > 0 && scalars.diverging.includes(scalars.cmap);
+    const { low, high, cmap = "" } = scalars.choices[scalars.number];
+    const isSigned = (low < 0 && high > 0) || scalars.diverging.includes(cmap);
+    const widest = isSigned && scalars.diverging.includes(scalars.cmap);
     const end = Math.max(-low, high);
     [scalars.low, scalars.high] = widest ? [-end, end] : [low, high];
   }

@@ -21,7 +21,7 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
-from flowtex.field.derived import DERIVED, steps_of
+from flowtex.field.derived import DERIVED, SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
@@ -331,7 +331,7 @@ class Scene:
             low, high = self.scalar_range(name, robust=chosen == ROBUST)
         else:
             low, high = self.usual_range(name)
-        if low < 0 < high and is_diverging(appearance.cmap):
+        if (low < 0 < high or name in SIGNED) and is_diverging(appearance.cmap):
             return -max(-low, high), max(-low, high)
         return low, high
 

@@ -50,22 +50,23 @@ let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let num
 choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
 unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
 high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
-low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
-high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.earth?.coastlines,graticule=header.earth?.
-graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{opacity=header.opacity}=choice,colours={scalars,
-earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(
-header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.
-knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/
-SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+
-v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,
-shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(
-c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-
-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(
-base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],
-shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
-mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
-Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
-colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.
+includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
+earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
+opacity=header.opacity}=choice,colours={scalars,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,
+part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};
+return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
+let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
+0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
+light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
+cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
+contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
+roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
+fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
+{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
+paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
+)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.

@@ -59,10 +59,11 @@ function Z(a,e){return lr(te(),z(e),a)}function R(a,e,t){return Math.min(Math.ma
 3;o+=1)s[4*i+o]=e[r+3*i+o];return s}function Jr(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:p})=>p===e.scalars);
 if(n>=0){let{name:p,label:f,unit:d,steps:g}=r.choices[n];Object.assign(r,{name:p,label:f,unit:d,steps:g,number:n,auto:!0})}
 if(e.cmap&&(r.cmap=e.cmap),Array.isArray(e.clim)&&([r.low,r.high]=e.clim),e.clim!==void 0&&(r.auto=!e.clim),r.auto&&r.choices[r.
-number]){let{low:p,high:f}=r.choices[r.number],d=p<0&&f>0&&r.diverging.includes(r.cmap),g=Math.max(-p,f);[r.low,r.high]=
-d?[-g,g]:[p,f]}let{coastlines:s=a.earth?.coastlines,graticule:i=a.earth?.graticule}=e,o=a.earth&&{...a.earth,coastlines:s,
-graticule:i},{opacity:c=a.opacity}=e,l={scalars:r,earth:o,opacity:c},h=t.get("maps");if(!e.cmap||!h)return{colours:l,part:null};
-let u={name:"cmap",data:_a(a,h.data,e.cmap),shape:[256,4],digest:`${Ta} ${e.cmap}`};return{colours:l,part:u}}var hr=[0,0,1],Zr=Math.sin(89*Math.PI/180),Pa=.2,ue=a=>Math.tan(a*Math.PI/360),pe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
+number]){let{low:p,high:f,cmap:d=""}=r.choices[r.number],y=(p<0&&f>0||r.diverging.includes(d))&&r.diverging.includes(r.cmap),
+b=Math.max(-p,f);[r.low,r.high]=y?[-b,b]:[p,f]}let{coastlines:s=a.earth?.coastlines,graticule:i=a.earth?.graticule}=e,o=a.
+earth&&{...a.earth,coastlines:s,graticule:i},{opacity:c=a.opacity}=e,l={scalars:r,earth:o,opacity:c},h=t.get("maps");if(!e.
+cmap||!h)return{colours:l,part:null};let u={name:"cmap",data:_a(a,h.data,e.cmap),shape:[256,4],digest:`${Ta} ${e.cmap}`};
+return{colours:l,part:u}}var hr=[0,0,1],Zr=Math.sin(89*Math.PI/180),Pa=.2,ue=a=>Math.tan(a*Math.PI/360),pe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
 this.state=mr(e),this.start=mr(e),this.limits=t,this.flat=r,this.globe=s,this.aspect=n,this.homeHeight=this.height,this.
 nearest=this.distance/t.closest}get height(){let{parallel:e,parallel_scale:t,view_angle:r}=this.state;return e?t:this.distance*
 ue(r)}get distance(){return L(T(this.state.focal_point,this.state.position))}get zoom(){return this.homeHeight/this.height}get axes(){

@@ -126,3 +126,13 @@ def test_signed_values_have_a_diverging_map_until_another_is_chosen() -> None:
     chosen = Appearance(scalars="vorticity", cmap="magma")
     assert chosen.changed(scalars="speed").cmap == "magma"
     assert Appearance(scalars="vorticity", cmap="viridis").cmap == "viridis"
+
+
+def test_zero_is_in_the_middle_of_a_vorticity_of_one_sign() -> None:
+    flow = gyre()
+    turning = np.linspace(1.0, 3.0, flow.valid.size).reshape(flow.shape)
+    named = flowtex.FlowField.from_arrays(
+        flow.points, flow.velocity, scalars={"vorticity": turning}
+    )
+    assert Scene.of(named, scalars="vorticity").scalar_limits == pytest.approx((-3, 3))
+    assert Scene.of(named, scalars="vorticity", cmap="magma").scalar_limits == pytest.approx((1, 3))
