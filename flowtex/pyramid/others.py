@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.notices import Notice, notify
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
@@ -47,8 +48,12 @@ def levels_of_others(
         return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **arguments)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # those of the finest level were issued
-        coarser: list[Any] = [read_datasets(d, regions=True, **arguments) for d in datasets[1:]]
-    return OtherLevels(place, [finest, *map(RegionSource, coarser)])
+        coarser = [read_datasets(d, regions=True, **arguments) for d in datasets[1:]]
+    sources = [RegionSource(part) for part in coarser if isinstance(part, Regions)]
+    if len(sources) < len(coarser):
+        msg = f"{place}: a coarser level is not on rows and columns, as the finest one is"
+        raise FieldError(msg)
+    return OtherLevels(place, [finest, *sources])
 
 
 class OtherLevels:
