@@ -134,6 +134,9 @@ VIEWS: dict[str, View] = {
     "streaklets, triangles": View(scattered_fountain, SOURCE, STREAKLETS),
     "streaklets, near triangles": View(scattered_fountain, straight(16, (0.3, 0.25)), STREAKLETS),
     "between two steps": View(swinging, MIDDLE, {"lines": "pathlines"}, time=0.55),
+    "between two steps, moving": View(
+        swinging, MIDDLE, {"lines": "pathlines", "motion": "speed"}, time=0.55
+    ),
     "streamlines": View(swinging, MIDDLE, {"lines": "streamlines"}, time=0.55),
     # At this moment the centre is within a cell.
     "streamlines, near": View(
@@ -194,7 +197,7 @@ def judged(name: str) -> tuple[Scene, Bytes]:
     view = (VIEWS | DEEP)[name]
     shown = view.made()
     before, after, between = shown.moment
-    state = ViewState(between=between, clock=view.clock)
+    state = ViewState(between=between, still=True, clock=view.clock)
     steps = (before, after)
     drawn = render(shown.textures, shown.settings, view.camera, SMALL, view=state, steps=steps)
     return shown, drawn.rgb(COLOUR, background=GROUND)
