@@ -1,1 +1,1 @@
-"""One flow and how it is drawn: the options of every call, the scene, a point's own sum."""
+"""A flow and how it is drawn: options, attributes, scene, and the computation of one point."""
