@@ -61,7 +61,8 @@ class ViewState:
     #: How far the time has come from one destination time of the slices to the next, 0 to 1.
     between: float = 0.0
     time: float = 0.0  #: Time that is shown of a field that varies, in its own unit.
-    #: Whether the grains of a field that varies stand still, as for a picture of one moment.
+    #: Whether it is a picture of one moment: the grains of a field that varies stand still, and
+    #: arrows do not fade in.
     still: bool = False
     clock: float = 0.0  #: Clock of the streaming of a steady flow, in seconds.
     #: Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
@@ -189,6 +190,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_bySpeed": settings.arrow_length == "speed",
         "u_arrowSides": textures.sides,
         "u_pieces": ARROW_PIECES,
+        "u_whole": view.still,
     }
     if textures.paper is not None:
         values |= _paper(textures.paper, settings, view.density)

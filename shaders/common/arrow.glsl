@@ -14,6 +14,7 @@ uniform float u_apart;       // pixels from a seed to the next, at least
 uniform bool u_bySpeed;      // longer where the flow is faster
 uniform int u_arrowSides;    // those of the slices
 uniform int u_pieces;        // of a whole arrow
+uniform bool u_whole;        // no arrow fades in: it is drawn or not
 
 struct FlowtexStroke
 {
@@ -91,6 +92,8 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   float apart = radius * mix(pixels.x, pixels.y, FLOWTEX_ARROW_FORESHORTENED) / u_apart;
   stroke.share = smoothstep(1.0, FLOWTEX_ARROW_GROWN, apart)
     * smoothstep(FLOWTEX_ARROW_EDGE, 2.0 * FLOWTEX_ARROW_EDGE, pixels.y / pixels.x);
+  if (u_whole)
+    stroke.share = step(0.5, stroke.share);
 #ifdef FLOWTEX_UNCERTAIN
   stroke.share *= flowtexKnown(coordinate, 0.0);
 #endif
@@ -105,7 +108,8 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   int before = flowtexPieces(coordinate, base, -1, spacing, inCell, straight);
   int beyond = flowtexPieces(coordinate, base, 1, spacing, inCell, straight);
   // None that winds around itself.
-  stroke.share *= smoothstep(FLOWTEX_ARROW_WOUND, 1.5 * FLOWTEX_ARROW_WOUND, straight);
+  float unwound = smoothstep(FLOWTEX_ARROW_WOUND, 1.5 * FLOWTEX_ARROW_WOUND, straight);
+  stroke.share *= u_whole ? step(0.5, unwound) : unwound;
   int behind = min(before, u_pieces / 2);
   int ahead = min(beyond, u_pieces - behind);
   behind = min(before, u_pieces - ahead);

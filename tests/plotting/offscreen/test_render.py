@@ -8,6 +8,7 @@ import os
 import warnings
 import weakref
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,9 @@ from flows import swinging
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
 from flowtex.field.datasets.notices import DatasetNotice
+from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.plotting.offscreen.render import _drawn
+from flowtex.scene.options import Options
 from flowtex.trace import store
 
 SMALL: dict[str, Any] = {"size": (64, 48), "samples": 3}
@@ -151,3 +154,25 @@ def test_a_picture_of_one_moment_is_that_of_a_steady_flow() -> None:
     assert np.abs(shot - alone).mean() < 0.5
     moving = flowtex.render(field, time=0.4, lines="streamlines", motion="speed", **look)
     assert np.abs(moving - alone).mean() > 5
+
+
+def faded(picture: Any) -> int:
+    """Return how many pixels are even and neither an arrow's ink nor the surface beneath."""
+    grey = picture.astype(int)[..., 0]
+    around = np.lib.stride_tricks.sliding_window_view(grey, (3, 3)).reshape(*grey[2:, 2:].shape, 9)
+    inner = grey[1:-1, 1:-1]
+    return int(((np.ptp(around, axis=-1) < 4) & (inner > 40) & (inner < 140)).sum())
+
+
+def test_no_arrow_of_a_picture_is_faded() -> None:
+    field = examples.double_gyre_field(shape=(21, 41))
+    look: dict[str, Any] = {"scalars": False, "strength": 0.0, "samples": 3, "arrows": 40}
+    views: list[dict[str, Any]] = [{"size": (320, 200), "zoom": z} for z in (1, 1.2, 1.5, 1.8)]
+    stills = [faded(flowtex.render(field, **view, **look)) for view in views]
+    changing = []
+    for view in views:
+        with closing(
+            OffscreenPlotter(field, Options.split(zoom=view.pop("zoom"), **look), **view)
+        ) as plotter:
+            changing.append(faded(plotter.picture()))
+    assert max(stills) == 0 < max(changing)
