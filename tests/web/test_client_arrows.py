@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,9 @@ from matrix import ASIDE, COLOUR, GROUND, SIZE, TILTED, straight
 from scipy import ndimage
 from webgl_page import ClientPage, packed, state
 
-import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
+from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene.options import Options
@@ -61,10 +62,15 @@ def test_arrows_have_the_colours(client: ClientPage) -> None:
     compare(theirs, swinging(), camera=camera, time=0.55, show_scalar_bar=False, **options)
 
 
+def fading(field: FlowField, *, time: float | None = None, **options: Any) -> Bytes:
+    """Draw arrows that fade in, as in a view that may come nearer."""
+    with closing(OffscreenPlotter(field, Options.split(**options), size=SIZE)) as plotter:
+        return plotter.picture(time=time)
+
+
 def compare(theirs: Bytes, field: FlowField, **options: Any) -> None:
     ours, without = (
-        flowtex.render(field, size=SIZE, **{**options, **more})
-        for more in ({}, {"arrows": 0, "scalars": False})
+        fading(field, **{**options, **more}) for more in ({}, {"arrows": 0, "scalars": False})
     )
     assert (np.abs(ours.astype(int) - without) > 60).any(axis=-1).mean() > 0.02
     # Outlines of the surface are smoothed in one of them.
