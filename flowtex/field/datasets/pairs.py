@@ -144,7 +144,7 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
 
 
 def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:
-    """Yield what is not drawn of several files: the velocities of those that lack the one drawn."""
+    """Yield a notice for each file whose velocity is not drawn, as another file's is."""
     own = {ds.encoding.get("source") for ds in datasets if {drawn.u.name, drawn.v.name} & {*ds}}
     for ds in datasets:
         source = ds.encoding.get("source")

@@ -343,13 +343,14 @@ class FlowImage(AxesImage):
         field, ax = self._scene.field, self.axes
         if self._projection is None or ax.get_title() != self._title:
             return
-        if ax.get_title("left") or ax.get_title("right"):
-            self._title = ""
-        else:
+        title = ""
+        if not (ax.get_title("left") or ax.get_title("right")):
             dated = len(field.times) > 1 or field.start is not None
             time = [time_text(field, self.time)] if dated else []
-            self._title = ", ".join([*filter(None, [field.name]), *time])
-        ax.set_title(self._title)
+            title = ", ".join([*filter(None, [field.name]), *time])
+        if title != self._title:  # setting a title has interactive figures drawn again
+            self._title = title
+            ax.set_title(title)
 
     def make_image(
         self,

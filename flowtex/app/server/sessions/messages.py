@@ -60,7 +60,7 @@ class LimitedMessages(UnChunker):
         return self._checked(message) if isinstance(message, dict) else message
 
     def _checked(self, message: dict[str, Any]) -> dict[str, Any] | None:
-        """Return the valid part of a message; ``None`` if there is none."""
+        """Return a message without its invalid parts; ``None`` if it is refused as a whole."""
         method, args = message.get("method"), message.get("args")
         first = args[0] if isinstance(args, list) and args else None
         if method == "trame.state.update":
