@@ -303,7 +303,9 @@ def test_something_was_read() -> None:
 
 
 def test_the_top_of_the_package_can_be_taken_in_at_a_glance() -> None:
-    entries = sorted(path.name for path in PACKAGE.iterdir() if path.name != "__pycache__")
+    # A folder that was moved away leaves its bytecode behind.
+    files = [path for path in PACKAGE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    entries = sorted({path.relative_to(PACKAGE).parts[0] for path in files})
     assert len(entries) <= MAX_ENTRIES, entries
 
 
