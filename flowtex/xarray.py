@@ -22,9 +22,9 @@ import flowtex
 from flowtex._util.arguments import brief, checked_number
 from flowtex._util.terminal.console import plain_text
 from flowtex.field import FlowField
-from flowtex.field.datasets.read import recognised
 from flowtex.field.locate import locate
 from flowtex.field.point_values import PointValues, values_at
+from flowtex.sources.datasets.read import recognised
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -68,7 +68,7 @@ def test_the_core_needs_neither_vtk_nor_threads_nor_processes() -> None:
 
 @pytest.mark.parametrize(
     ("room", "asker"),
-    [("field/io/plot3d.py", "plot3d.py"), ("trace/trace.py", ""), ("_util/colours.py", "")],
+    [("sources/meshes/plot3d.py", "plot3d.py"), ("trace/trace.py", ""), ("_util/colours.py", "")],
 )
 def test_what_must_do_without_fails_where_it_asks(room: str, asker: str) -> None:
     code = "def ask(): raise Refused"

@@ -194,7 +194,7 @@ PROTOCOLS = {
     "app/server/sessions/messages.py: ValueError",
     "app/server/sessions/process.py: ValueError",
     "app/server/site.py: ValueError",
-    "field/remote/packing.py: ValueError",
+    "sources/remote/packing.py: ValueError",
     "field/steps.py: IndexError",  # of sequences
     "pyramid/checks.py: ValueError",
     "pyramid/objects.py: ValueError",  # of a codec of Zarr's

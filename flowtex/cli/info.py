@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from flowtex.field import FlowField
-    from flowtex.field.io.summary import ArraySummary, FileSummary
+    from flowtex.sources.summary import ArraySummary, FileSummary
 
 #: Times and blocks that are listed one by one at most.
 MOST_TIMES, MOST_BLOCKS = 8, 40
@@ -25,11 +25,11 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Describe the contents of a file, and the flow that would be drawn."""
     from rich.text import Text
 
-    from flowtex.field.datasets.files import dataset_paths
-    from flowtex.field.io.summary import describe
     from flowtex.pyramid import is_store
     from flowtex.pyramid.places import is_remote, place_text
     from flowtex.pyramid.source import has_parts
+    from flowtex.sources.opening.dataset_files import dataset_paths
+    from flowtex.sources.summary import describe
 
     console, options = terminal(), arguments(flow)
     if len(files) == 1 and has_parts(files[0]):
@@ -95,9 +95,9 @@ def _store_table(place: Path) -> Table:
 
 def _recognised_table(paths: list[Path]) -> Table:
     """Describe the velocity, grid and coordinates that were recognised, with reasons."""
-    from flowtex.field.datasets.files import open_datasets
-    from flowtex.field.datasets.read import recognised
-    from flowtex.field.io.reader_errors import errors_of_file
+    from flowtex.sources.datasets.read import recognised
+    from flowtex.sources.opening.dataset_files import open_datasets
+    from flowtex.sources.reader_errors import errors_of_file
 
     table = _pairs()
     with errors_of_file(paths[0]):

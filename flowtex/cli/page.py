@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: Entry point of a forked session, and modules that are loaded before the fork.
 ENTRY = "flowtex.cli.commands:hosted"
 PRELOAD = (
-    "flowtex.field.remote:prepare_readers",  # sessions share the processes that read files
+    "flowtex.sources.remote:prepare_readers",  # sessions share the processes that read files
     *("flowtex.cli.commands", "flowtex.cli.show", "flowtex.app.flow_app", "trame.widgets.vuetify3"),
     *("trame_client.module.vue3", "trame_vuetify.module.v3", "vtkmodules.vtkInteractionWidgets"),
     *("scipy.interpolate", "xarray", "cf_xarray", "netCDF4", "pyproj", "dask.array"),

@@ -30,7 +30,7 @@ from flowtex.field.formula import KNOWN
 
 if TYPE_CHECKING:
     from flowtex.app import Library
-    from flowtex.field.source import FlowSource
+    from flowtex.sources.mesh_source import FlowSource
 
 #: Initial zoom and focus of examples.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
@@ -83,14 +83,14 @@ def demo(
 
 
 def _example(name: str) -> FlowSource:
-    from flowtex.field.source import FlowSource
+    from flowtex.sources.mesh_source import FlowSource
 
     return FlowSource(getattr(examples, f"{name}_field")())
 
 
 def _known_formula(name: str) -> FlowSource:
     from flowtex.field.formula.make import formula
-    from flowtex.field.source import FlowSource
+    from flowtex.sources.mesh_source import FlowSource
 
     return FlowSource(formula(name))
 
@@ -166,8 +166,8 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     the flags choose more than the page can.
     """
     from flowtex.app import Library
-    from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.earth import GLOBE, NAMES
+    from flowtex.sources.opening.dataset_files import dataset_paths
 
     choices_of_page = {"vectors", "projection", "globe", "level"}
     if not dataset_paths(files) or set(choice) - choices_of_page:
@@ -189,13 +189,13 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
 
 
 def _is_folder(path: Path) -> bool:
-    from flowtex.field.datasets.files import is_dataset_file
+    from flowtex.sources.opening.dataset_files import is_dataset_file
 
     return path.is_dir() and not is_dataset_file(path)
 
 
 def _belong_together(files: Sequence[Path]) -> bool:
     """Return whether several files are parts of one model output, or steps of a series."""
-    from flowtex.field.datasets.files import belong_together, dataset_paths
+    from flowtex.sources.opening.dataset_files import belong_together, dataset_paths
 
     return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)

@@ -18,6 +18,8 @@ from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
+from flowtex.field.arrays import FieldArrays, SectionAxes, TriangleArrays
+from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import as_seconds
 from flowtex.field.derived import (
     FOLLOWED,
@@ -33,8 +35,6 @@ from flowtex.field.gaps import filled_gaps
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
-from flowtex.field.io.arrays import FieldArrays, SectionAxes, TriangleArrays
-from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity
 from flowtex.field.steps import LazySteps, Steps, typical_steps
 from flowtex.field.surface import Surface
@@ -136,7 +136,7 @@ class FlowField(FieldConstructors):
         Examples
         --------
         >>> import flowtex
-        >>> from flowtex.field.io.arrays import GridArrays
+        >>> from flowtex.field.arrays import GridArrays
         >>> arrays = GridArrays(points=([0, 1, 2], [0, 1]), velocity=[[(1, 0)] * 3] * 2)
         >>> flowtex.FlowField.of(arrays).shape
         (2, 3)

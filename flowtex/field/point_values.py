@@ -14,9 +14,9 @@ from flowtex._util.array_types import Floats
 from flowtex.field.dates import time_within
 from flowtex.field.derived import speed_unit
 from flowtex.field.field import FlowField
+from flowtex.field.grids.signs import weighted_axis
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
-from flowtex.field.signs import weighted_axis
 
 
 @dataclass(frozen=True, eq=False)

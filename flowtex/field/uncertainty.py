@@ -13,7 +13,6 @@ import numpy as np
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.datasets.ensembles import spread_name
 from flowtex.field.interpolation import fill_blanked
 from flowtex.field.steps import LazySteps
 
@@ -21,6 +20,11 @@ from flowtex.field.steps import LazySteps
 Field = TypeVar("Field")
 #: Name of the scalar of an uncertainty that is an array.
 UNCERTAINTY = "uncertainty"
+
+
+def spread_name(dim: str) -> str:
+    """Return the name of the scalar that has the spread over a dimension."""
+    return f"spread over {dim}"
 
 
 def with_uncertainty(field: Field, value: Any) -> Field:

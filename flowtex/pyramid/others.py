@@ -20,11 +20,11 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.notices import Notice, notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.read import read_datasets
-from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
+from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.regions import Regions
 from flowtex.textures.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.

@@ -19,14 +19,7 @@ from flowtex._util.cache import digest
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets import is_dataset
-from flowtex.field.datasets.files import dataset_paths, file_and_group
-from flowtex.field.datasets.pairs import find_pairs
-from flowtex.field.datasets.read import read_datasets
-from flowtex.field.datasets.regions import Lines, Regions
-from flowtex.field.io.arrays import FieldArrays
-from flowtex.field.io.files import OF_MESHES, errors_of, read_files, refuse
-from flowtex.field.io.inspection.zarr_folder import check_zarr
+from flowtex.field.arrays import FieldArrays
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.pyramid.places import (
@@ -38,6 +31,13 @@ from flowtex.pyramid.places import (
     place_text,
     store_at,
 )
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.regions import Lines, Regions
+from flowtex.sources.datasets.select import find_pairs
+from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
+from flowtex.sources.inspection.zarr_folder import check_zarr
+from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group
 from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 

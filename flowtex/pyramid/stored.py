@@ -12,9 +12,9 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.ensembles import spread_name
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import Nodes
+from flowtex.field.uncertainty import spread_name
 from flowtex.pyramid.checks import About
 from flowtex.pyramid.layout import VELOCITY_BITS
 from flowtex.pyramid.levels import Levels

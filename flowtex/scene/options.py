@@ -38,12 +38,12 @@ from flowtex._util.written import (
 )
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.datasets import is_dataset
-from flowtex.field.datasets.pairs import two_names
 from flowtex.field.derived import SIGNED
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.datasets.select import two_names
 
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies

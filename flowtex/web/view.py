@@ -11,7 +11,6 @@ from typing import Any
 from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
 from flowtex.field import FlowField
-from flowtex.field.datasets.notices import notify_section
 from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
@@ -20,6 +19,7 @@ from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import Options, default_cmap
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
+from flowtex.sources.notices import notify_section
 from flowtex.textures.tiles import Pyramid
 
 

@@ -19,7 +19,7 @@ from flowtex import Camera, examples
 from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
-from flowtex.field.source import FlowSource
+from flowtex.sources.mesh_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

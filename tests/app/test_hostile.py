@@ -27,9 +27,9 @@ from flowtex.app.streaming import points
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.field.source import FlowSource, Source
 from flowtex.scene.probe import probe
 from flowtex.settings import Settings
+from flowtex.sources.mesh_source import FlowSource, Source
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

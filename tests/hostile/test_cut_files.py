@@ -21,8 +21,8 @@ from flowtex import FlowField
 from flowtex._util.child import Child
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
-from flowtex.field.io.inspection.files import inspect_file
-from flowtex.field.remote import open_remote
+from flowtex.sources.inspection.inspect_file import inspect_file
+from flowtex.sources.remote import open_remote
 
 #: Cuts, or changes, of a file of each format.
 CASES = 40
@@ -226,7 +226,7 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], str]:
             children.append(Child(*given, **named))
         return children[-1]
 
-    monkeypatch.setattr("flowtex.field.remote.source.Child", child)
+    monkeypatch.setattr("flowtex.sources.remote.source.Child", child)
 
     def digest(path: Path) -> str:
         try:

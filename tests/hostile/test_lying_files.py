@@ -13,13 +13,13 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.io.inspection import files, limits
-from flowtex.field.io.inspection.files import inspect_file
+from flowtex.sources.inspection import inspect_file as files, limits
+from flowtex.sources.inspection.inspect_file import inspect_file
 
 
 def refused(path: Path) -> str:
     """Return why a file is refused by every way in."""
-    from flowtex.field.datasets.source import open_source
+    from flowtex.sources.dataset_source import open_source
 
     with pytest.raises(FieldError) as caught:
         FlowField.from_file(path)

@@ -16,7 +16,7 @@ from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
-    pytest.mark.filterwarnings("ignore::flowtex.field.datasets.notices.DatasetNotice"),
+    pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice"),
 ]
 
 

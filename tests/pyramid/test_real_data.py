@@ -11,8 +11,8 @@ import pytest
 
 import flowtex
 from flowtex import FlowField
-from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.pyramid import build, open_store
+from flowtex.sources.notices import DatasetNotice
 from flowtex.textures.tiles import has_pyramid, shared_pyramid
 
 xr = pytest.importorskip("xarray")

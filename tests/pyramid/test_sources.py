@@ -16,7 +16,6 @@ from store_contents import contents
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
-from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import Nodes
 from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.checks import sealed
@@ -28,6 +27,7 @@ from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import Scene
+from flowtex.sources.datasets.regions import Regions
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.textures.tiles import TileKey, shared_pyramid
 

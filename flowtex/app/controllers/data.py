@@ -24,7 +24,7 @@ from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
 from flowtex.field.formula.line import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
-from flowtex.field.source import Source
+from flowtex.sources.mesh_source import Source
 from flowtex.textures.tiles import coarsened_field
 
 #: Nodes of another file above which it is first shown coarser, and how many it then has.

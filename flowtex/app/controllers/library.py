@@ -20,20 +20,20 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets import is_dataset
-from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
-from flowtex.field.datasets.files import common_name, is_dataset_file
-from flowtex.field.datasets.source import DatasetSource
 from flowtex.field.formula.line import is_line, line_field, line_python
-from flowtex.field.io.identity import Identity, file_identity, members_of
-from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
-from flowtex.field.remote import open_remote, prepare_readers
-from flowtex.field.source import FlowSource, Source
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import drawn_store
 from flowtex.settings import Settings
+from flowtex.sources.dataset_source import DatasetSource
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.identity import Identity, file_identity, members_of
+from flowtex.sources.mesh_source import FlowSource, Source
+from flowtex.sources.meshes.beside import SUFFIXES as WITHOUT_VECTORS
+from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
+from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
+from flowtex.sources.remote import open_remote, prepare_readers
 from flowtex.textures.tiles import Pyramid
 from flowtex.trace import SliceStore
 
@@ -432,6 +432,6 @@ def _reason(path: Path) -> str:
 
 def _is_solution(path: Path) -> bool:
     """Return whether a file is the solution of a PLOT3D pair, opened along with its grid."""
-    from flowtex.field.io import plot3d
+    from flowtex.sources.meshes import plot3d
 
     return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

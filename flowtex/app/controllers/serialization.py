@@ -41,12 +41,12 @@ from flowtex.app.controllers.context import State
 from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.field.datasets.files import is_dataset_file
-from flowtex.field.source import OUTER
 from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.scene.options import Appearance as Look
 from flowtex.scene.options import option_form
 from flowtex.settings import TABLE, SettingsError
+from flowtex.sources.mesh_source import OUTER
+from flowtex.sources.opening.dataset_files import is_dataset_file
 
 #: Values that a link leaves out.
 DEFAULTS: dict[str, Any] = {

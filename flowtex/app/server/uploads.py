@@ -14,7 +14,7 @@ from pathlib import Path
 from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.files import Routes, plain_name
 from flowtex.errors import FieldError
-from flowtex.field.remote import prepare_readers
+from flowtex.sources.remote import prepare_readers
 
 #: Endings of files that are accepted.
 UPLOAD_SUFFIXES = (

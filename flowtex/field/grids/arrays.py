@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.grids.periodic import NodalArrays, close_axes
+from flowtex.field.grids.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.grids.surface import GridSurface, known_positions
-from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps, first_step
 from flowtex.field.validation import (
     as_numbers,

@@ -19,9 +19,7 @@ from flowtex._util.arguments import brief, checked_size
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
-from flowtex.field.datasets import is_dataset
-from flowtex.field.datasets.files import dataset_paths
-from flowtex.field.io.arrays import SectionAxes
+from flowtex.field.arrays import SectionAxes
 from flowtex.plotting.offscreen.annotations import time_text
 from flowtex.plotting.offscreen.earth_axes import (
     AxesUnit,
@@ -41,6 +39,8 @@ from flowtex.scene.options import (
     accepts_options,
 )
 from flowtex.scene.scene import Scene
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.opening.dataset_files import dataset_paths
 
 #: Left, right, bottom and top.
 Extent = tuple[float, float, float, float]

@@ -12,7 +12,6 @@ from flowtex._util.arguments import brief, checked_size
 from flowtex._util.array_types import Bytes
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.datasets.notices import notify_section
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.offscreen.annotations import annotate, difference_text
@@ -21,6 +20,7 @@ from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.options import FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, share_field
+from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 
 #: Longest side of a drawing, in pixels.

@@ -15,11 +15,11 @@ from small_pages import small
 from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
 from flowtex.errors import FieldError
-from flowtex.field.io.identity import file_identity
-from flowtex.field.source import FlowSource
 from flowtex.pyramid import build
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
+from flowtex.sources.identity import file_identity
+from flowtex.sources.mesh_source import FlowSource
 from flowtex.textures.tiles import has_pyramid
 from flowtex.trace import SliceStore
 
@@ -200,7 +200,7 @@ def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:
 def test_a_source_whose_process_has_died_is_opened_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.field.remote.source.READER", "child_handler:TrickyReader")
+    monkeypatch.setattr("flowtex.sources.remote.source.READER", "child_handler:TrickyReader")
     gyre(tmp_path / "flow.vts", 0.0)
     library = Library.of(tmp_path)
     source = library.source("flow.vts")

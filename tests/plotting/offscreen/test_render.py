@@ -18,10 +18,10 @@ from flows import swinging
 
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
-from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.plotting.offscreen.render import _drawn
 from flowtex.scene.options import Options
+from flowtex.sources.notices import DatasetNotice
 from flowtex.trace import store
 
 SMALL: dict[str, Any] = {"size": (64, 48), "samples": 3}

@@ -1,0 +1,287 @@
+"""Constructors of a field from meshes, files and datasets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self, cast
+
+from numpy.typing import ArrayLike
+
+from flowtex._util.extras import require_pyvista
+from flowtex.field.arrays import FieldArrays
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class FieldConstructors:
+    """Class methods that make a field from a mesh, a file or a dataset."""
+
+    @classmethod
+    def of(cls, arrays: FieldArrays) -> Self:
+        """Return the field of the arrays of a source."""
+        raise NotImplementedError
+
+    @classmethod
+    def from_pyvista(
+        cls,
+        mesh: Any,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        slice: Any = None,
+        contour: Any = None,
+        times: ArrayLike | None = None,
+        periodic: str | None = None,
+        name: str = "",
+        sign_free: bool = False,
+        block: int | str | None = None,
+    ) -> Self:
+        """Make a field from a PyVista mesh, or from a series of them.
+
+        Parameters
+        ----------
+        mesh
+            A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns; or a
+            PolyData or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this
+            is the outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one
+            structured block, or one volume, is treated as that block; otherwise the surfaces of its
+            blocks are drawn together. The time steps of a series are a list or tuple of meshes, a
+            MultiBlock of meshes with the same nodes, or a PyVista reader with time values.
+        vectors
+            Name of the velocity on points or cells, with 2 or 3 components. By default the only
+            array that can be the velocity, or the active vectors of the mesh. Components in
+            separate arrays are named with commas between, as in ``"u,v,w"``. They are found
+            automatically if the mesh has no array of vectors and their names differ only in the
+            component, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
+        plane
+            Index plane to draw of a three-dimensional structured mesh: ``"k=20"``, ``"j=0"`` or
+            ``"i=-1"``, where negative numbers count from the end. On a k-plane the surface's (i, j)
+            are the mesh's (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh that is one
+            node thick along an axis needs no plane; its (i, j) follow the same rule.
+        slice
+            Plane through a volume of any kind, drawn as triangles: ``"x=0.5"``, a normal such as
+            ``"1,1,0"``, a normal and a point as in ``"1,1,0 through 0.5,0.5,0.2"``, or a pair of
+            normal and point. Without a point the plane goes through the middle of the mesh; without
+            ``block`` it cuts all volumes of a MultiBlock.
+        contour
+            An array and a value, ``"pressure=101325"``: the isosurface in a volume.
+        times
+            Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
+            field data of every step, or 0, 1, 2, ...
+        periodic, name, sign_free
+            As for :meth:`from_arrays`; ``periodic`` and ``sign_free`` are for structured meshes
+            only.
+        block
+            Number or path of the block of a MultiBlock to draw, such as ``"Base/Zone 1"``. Numbers
+            count from 0 and include only blocks with cells.
+
+        Returns
+        -------
+        FlowField
+            Positions are in the mesh's units. Arrays with one component become ``scalars``. Data on
+            cells are averaged over the visible cells around each node, on triangles weighted by
+            area. On a cut through a volume, arrays are interpolated.
+
+        Raises
+        ------
+        FieldError
+            When the mesh has no surface, the plane or the vectors are missing or ambiguous, the
+            steps of a series differ in their nodes, or :meth:`from_arrays` or
+            :meth:`from_triangles` raises it.
+
+        Warns
+        -----
+        Notice
+            When flowtex made a choice, such as the outer surface of a volume, or when most of the
+            flow is normal to a surface of triangles.
+
+        Notes
+        -----
+        Points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0 (PLOT3D), and points
+        that a sampling filter marked in ``vtkValidPointMask`` are not drawn. The mesh is not
+        changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> import flowtex
+        >>> box = pv.ImageData(dimensions=(12, 10, 8))
+        >>> box["wind"] = np.stack(
+        ...     [box.points[:, 1], -box.points[:, 0], 0 * box.points[:, 2]], axis=-1
+        ... )
+        >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
+        (10, 12)
+        """
+        from flowtex.sources.meshes.from_pyvista import read_meshes
+
+        require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
+        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
+        options |= {"plane": plane, "slice": slice, "contour": contour, "times": times}
+        return cls.of(read_meshes(mesh, vectors=vectors, name=name, **options))
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path | Sequence[str | Path],
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        slice: Any = None,
+        contour: Any = None,
+        periodic: str | None = None,
+        time: float | str | None = None,
+        block: int | str | None = None,
+        sign_free: bool = False,
+        projection: str | None = None,
+        globe: bool = False,
+        level: float | str | None = None,
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
+        uncertainty: Any = None,
+    ) -> Self:
+        """Make a field from a file, or from several that belong together.
+
+        Parameters
+        ----------
+        path
+            A mesh in any format that PyVista reads, or a PLOT3D grid or solution, whose counterpart
+            is found by its name in the same folder: ``postxyz.bin`` and ``postq.bin``, ``wing.xyz``
+            (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
+            with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
+            or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
+            GRIB, or the JSON of wind maps; ``model.nc/ocean`` is a group of a file. Several such
+            files, the parts of a model's output or the steps of a series, are given as a list.
+        vectors
+            Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
+            ``Velocity``, computed from density and momentum.
+        plane, slice, contour, periodic, sign_free
+            As for :meth:`from_pyvista`.
+        time
+            One time of the file, drawn as a steady field. All times by default.
+        block
+            Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
+            Numbers count from 0 and include only blocks with cells.
+        projection, globe, level, sel, isel
+            As for :meth:`from_xarray`, for data of the Earth.
+        uncertainty
+            As for :meth:`from_xarray`; of a mesh a scalar.
+
+        Returns
+        -------
+        FlowField
+            Its ``name`` is the file's, without folder and suffix.
+
+        Raises
+        ------
+        FieldError
+            When the file is missing, empty, unreadable, corrupt or of an unknown format, or does
+            not contain a flow; the text starts with the path.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> flowtex.examples.airfoil().save("airfoil.vts")
+        >>> flowtex.FlowField.from_file("airfoil.vts").shape
+        (65, 193)
+        """
+        from flowtex.sources.files import errors_of, read_files
+
+        options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
+        options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
+        options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
+        with errors_of(path):
+            arrays = read_files(
+                path, vectors=vectors, time=time, uncertainty=uncertainty, **options
+            )
+            return _with_uncertainty(cls.of(cast("FieldArrays", arrays)), uncertainty)
+
+    @classmethod
+    def from_xarray(
+        cls,
+        data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+        u: str | None = None,
+        v: str | None = None,
+        *,
+        projection: str | None = None,
+        globe: bool = False,
+        name: str = "",
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
+        uncertainty: Any = None,
+        **selection: Any,
+    ) -> Self:
+        """Make a field from an xarray dataset, such as the output of an ocean or weather model.
+
+        Parameters
+        ----------
+        data
+            A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
+            and of coordinates, or the steps of a series; or a DataTree, of which one group has a
+            velocity. Only coordinates and one step are read at first, or three where data are
+            missing; further steps are read when they are drawn.
+        u, v
+            Names of the components. By default the only pair that is recognised as the velocity by
+            CF standard names, long names or names.
+        projection
+            A flat map, or ``"globe"``; see :class:`flowtex.field.earth.Projection`. By default
+            plate carree around the middle of the data, or a polar projection near and around a
+            pole.
+        globe
+            Whether to draw on a sphere; the same as ``projection="globe"``.
+        name
+            Name for captions.
+        sel, isel
+            Selections along axes, by value and by index, such as ``sel={"level": 500}``, or of a
+            range of times, its ends included: ``sel={"time": slice("2001-02", "2001-03")}``.
+        uncertainty
+            The uncertainty of the direction, where streaks are shorter and fainter: the name of a
+            scalar, or an array of the nodes, with the standard deviation of the velocity over its
+            magnitude; or a dimension, such as ``"number"`` of an ensemble: the mean over it is
+            drawn, and its spread becomes a scalar.
+        **selection
+            The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
+            ``level`` select along these axes whatever their names. By default all times, the level
+            nearest to the surface, and the first entry of any other axis.
+
+        Returns
+        -------
+        FlowField
+            For data on longitude and latitude, positions are metres on the map, and the velocity in
+            m/s is projected with them; otherwise positions are the x and y coordinates. Components
+            on the sides of cells (Arakawa C) are averaged to the centres. Other variables at the
+            same nodes are ``scalars``; on a flat map ``"speed"`` is the speed on the Earth.
+
+        Raises
+        ------
+        FieldError
+            When components or coordinates are not recognised, or a selection does not exist.
+        ModuleNotFoundError
+            When xarray, cf_xarray or pyproj is missing.
+
+        Warns
+        -----
+        DatasetNotice
+            When flowtex made a choice, such as a level.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> winds = flowtex.examples.weather()
+        >>> flowtex.FlowField.from_xarray(winds, level=500, projection="robinson").steady
+        True
+        """
+        from flowtex.sources.datasets.read import read_datasets
+
+        options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
+        options |= {"sel": sel, "isel": isel, "uncertainty": uncertainty, **selection}
+        field = cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
+        return _with_uncertainty(field, uncertainty)
+
+
+def _with_uncertainty(field: Any, uncertainty: Any) -> Any:
+    from flowtex.field.uncertainty import with_uncertainty
+
+    return field if uncertainty is None else with_uncertainty(field, uncertainty)

@@ -1,5 +1,0 @@
-"""Unstructured meshes of models: their nodes, faces, axes and maps.
-
-Once a mesh is found, the dimensions of its nodes and faces are called ``NODES`` and ``FACES`` (see
-:mod:`flowtex.field.datasets.axes`) in all datasets that belong together.
-"""

@@ -1,1 +1,0 @@
-"""From meshes and files to fields."""

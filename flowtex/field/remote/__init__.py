@@ -1,7 +1,0 @@
-"""Files that are read in a separate process."""
-
-from __future__ import annotations
-
-from flowtex.field.remote.source import RemoteSource, open_remote, prepare_readers
-
-__all__ = ["RemoteSource", "open_remote", "prepare_readers"]

@@ -1,0 +1,1 @@
+"""From files, meshes and labelled arrays to fields."""

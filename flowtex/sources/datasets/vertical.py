@@ -1,0 +1,192 @@
+"""Vertical sections: a velocity along latitudes, longitudes or a distance, and across levels.
+
+Nodes are at the coordinates of the data, in degrees or a unit of length, and in a unit of length or
+pressure. Both components are converted to these units per second.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+from flowtex.field.arrays import GridArrays, SectionAxes
+from flowtex.field.earth import DEGREE
+from flowtex.field.steps import LazySteps
+from flowtex.sources.datasets.axes import (
+    LEVEL,
+    PRESSURES,
+    TIME,
+    Choice,
+    axis_kind,
+    drawn_steps,
+    sections,
+)
+from flowtex.sources.datasets.coordinates import LATITUDE, LENGTHS, LONGITUDE
+from flowtex.sources.datasets.regions import numbers_in
+from flowtex.sources.datasets.select import plain_unit, to_metres_per_second, variable
+from flowtex.sources.notices import notify
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Names, and words of standard names, of vertical velocities.
+NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
+WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
+#: Names of the dimensions of a section, which are those of rows and columns.
+ROWS, COLUMNS = "y_of_section", "x_of_section"
+
+
+def is_vertical(array: xr.DataArray) -> bool:
+    """Return whether a variable is a vertical velocity, by its names."""
+    words = str(array.attrs.get("standard_name", ""))
+    return bool(WORDS.search(words) or (not words and NAMES.match(str(array.name))))
+
+
+def read_section(
+    datasets: Sequence[xr.Dataset],
+    u: str,
+    v: str,
+    *,
+    name: str,
+    sel: Mapping[str, Any],
+    isel: Mapping[str, Any],
+) -> GridArrays:
+    """Read a vertical section, from the names of a component along it and a vertical one."""
+    one, two = variable(datasets, u), variable(datasets, v)
+    if set(one.dims) != set(two.dims):
+        listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
+        msg = (
+            f"the components have different axes: {listed}. Interpolate one to the levels of the "
+            "other, as in ds.w.interp(...)"
+        )
+        raise FieldError(msg)
+    level, along = _axes(one, {*sel, *isel})
+    across, up = _coordinate(one, along), _coordinate(one, level)
+    choice = Choice(dict(sel), dict(isel))
+    flat = [
+        a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
+        .swap_dims({level: ROWS, along: COLUMNS})
+        .transpose(..., ROWS, COLUMNS)
+        for a in (one, two)
+    ]
+    parts = sections(flat, choice)
+    for note in parts[0].notes:
+        notify(note)
+    metres = to_metres_per_second(one) or 1.0
+    x, x_factor, x_text = _horizontal(across, parts[0].array)
+    y, y_factor, y_text = _vertical(up, two)
+    times, numbers = drawn_steps(parts[0], flat[0])
+
+    def component(number: int) -> Callable[[int], Floats]:
+        return lambda step: numbers_in(parts[number].step(numbers[step]))
+
+    def velocity(step: int) -> Floats:
+        a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
+        return np.stack([a, b, np.zeros_like(a)], axis=-1)
+
+    velocities = LazySteps(len(numbers), velocity)
+    scalars = {
+        # The axes have different units, so a speed along both has none.
+        "speed": lambda step: np.abs(component(0)(step)) * metres,
+        u: component(0),
+        v: component(1),
+    }
+    return GridArrays(
+        points=np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1),
+        velocity=velocities if len(numbers) > 1 else velocities[0],
+        times=times,
+        scalars={key: LazySteps(len(numbers), read) for key, read in scalars.items()},
+        name=name,
+        time_unit="s",
+        units={"speed": "m/s", u: str(one.attrs.get("units", "")), v: str(two.attrs["units"])},
+        long_names={"speed": "speed along the section"},
+        periodic="",
+        section=SectionAxes(x_text, y_text, downward=_is_downward(up)),
+    )
+
+
+def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
+    """Return the dimensions of the levels and along the section."""
+    kinds = {str(dim): axis_kind(array, str(dim)) for dim in array.dims}
+    levels = [dim for dim, kind in kinds.items() if kind == LEVEL]
+    others = [
+        dim for dim, kind in kinds.items() if kind not in (LEVEL, TIME) and not {dim, kind} & chosen
+    ]
+    # Without a choice a northward component is shown along a meridian.
+    northward = re.search(r"north|merid|y_|^v", str(array.attrs.get("standard_name", array.name)))
+    preferred = LATITUDE if northward else LONGITUDE
+    others.sort(key=lambda dim: bool(preferred.match(dim)))
+    if not levels or not others:
+        msg = (
+            f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more for a "
+            "vertical section"
+        )
+        raise FieldError(msg)
+    return levels[0], others[-1]
+
+
+def _coordinate(array: xr.DataArray, dim: str) -> xr.DataArray:
+    """Return the coordinate of a dimension, (n,)."""
+    along: list[xr.DataArray] = [c for c in array.coords.values() if c.dims == (dim,)]
+    along = [c for c in along if c.dtype.kind in "fiu"]
+    if not along:
+        msg = f"{dim} has no coordinate; add it, as in ds.assign_coords({dim}=...)"
+        raise FieldError(msg)
+    along.sort(key=lambda c: c.name != dim)
+    return along[0]
+
+
+def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, float, str]:
+    """Return places along a section, m/s in their unit per second, and the text of the axis."""
+    values, unit = numbers_in(across), str(across.attrs.get("units", ""))
+    name = str(across.attrs.get("standard_name", across.name))
+    if LATITUDE.match(name):
+        return values, 1 / DEGREE, "latitude (°)"
+    if LONGITUDE.match(name):
+        latitudes = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
+        if not latitudes:
+            msg = (
+                f"the latitude of a section along {across.name} is not known; add it, as in "
+                "ds.assign_coords(lat=45.0)"
+            )
+            raise FieldError(msg)
+        return values, 1 / (DEGREE * math.cos(math.radians(float(latitudes[0])))), "longitude (°)"
+    if unit not in LENGTHS:
+        expected = f"degrees, {', '.join(LENGTHS)}"
+        msg = f"the unit of {across.name} is {unit!r}; expected {expected}: set its units"
+        raise FieldError(msg)
+    return values, 1 / LENGTHS[unit], f"{across.name} ({unit})"
+
+
+def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
+    """Return levels, the factor of the velocity to their unit per second, and the axis's text."""
+    unit, moves = str(up.attrs.get("units", "")), plain_unit(w)
+    text = f"{up.attrs.get('long_name', up.name)} ({unit})"
+    if unit in LENGTHS and (metres := to_metres_per_second(w)) is not None:
+        downward = _is_downward(up) != ("downward" in str(w.attrs.get("standard_name", "")))
+        return numbers_in(up), (-1 if downward else 1) * metres / LENGTHS[unit], text
+    pressure, _, time = moves.partition("/")
+    if unit.lower() in PRESSURES and pressure in PRESSURES and time in ("s", "day"):
+        seconds = 86400.0 if time == "day" else 1.0
+        factor = PRESSURES[pressure] / PRESSURES[unit.lower()] / seconds
+        return numbers_in(up), factor, text
+    msg = (
+        f"{up.name} is in {unit!r} and {w.name} in {str(w.attrs.get('units', ''))!r}; expected m "
+        "and m/s, or hPa and Pa/s"
+    )
+    raise FieldError(msg)
+
+
+def _is_downward(up: xr.DataArray) -> bool:
+    """Return whether levels grow downward, as pressures and depths do."""
+    positive = str(up.attrs.get("positive", "")).lower()
+    if positive in ("up", "down"):
+        return positive == "down"
+    is_pressure = str(up.attrs.get("units", "")).lower() in PRESSURES
+    return is_pressure or (str(up.name).lower().startswith("depth") and float(up.max()) > 0)

@@ -1,0 +1,260 @@
+"""From files to the arrays of a field: of a mesh, or of data of the Earth.
+
+PyVista's readers open most files; PLOT3D, which does not describe itself, is read by
+:mod:`flowtex.sources.meshes.plot3d`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flowtex._util.extras import require_pyvista
+from flowtex.errors import FieldError
+from flowtex.field.arrays import GridArrays, TriangleArrays
+from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.regions import Regions
+from flowtex.sources.datasets.select import two_names
+from flowtex.sources.inspection.inspect_file import inspect_file
+from flowtex.sources.meshes import beside, plot3d
+from flowtex.sources.meshes.from_pyvista import read_meshes
+from flowtex.sources.meshes.parts import time_steps, times_of
+from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
+from flowtex.sources.reader_errors import errors_of_file
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+
+def open_reader(file: Path) -> Any:
+    """Return the reader of a file; raises a ValueError if the format is unknown."""
+    import pyvista as pv
+
+    class DecomposedReader(pv.POpenFOAMReader):
+        """PyVista's reader, which must know of pieces before it opens the case."""
+
+        def _set_defaults(self) -> None:
+            super()._set_defaults()
+            self._reader.SetCaseType(0)
+
+    case = file.parent
+    in_pieces = (case / "processor0").is_dir() and not (case / "constant" / "polyMesh").is_dir()
+    if file.suffix.lower() == ".foam" and in_pieces:
+        return DecomposedReader(str(file))
+    reader: Any = pv.get_reader(str(file))
+    return _CGNSReader(reader) if isinstance(reader, pv.CGNSReader) else reader
+
+
+class _CGNSReader:
+    """PyVista's reader of CGNS with times, all bases, and blocks named ``Base/Zone``."""
+
+    def __init__(self, reader: Any) -> None:
+        from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+        self._reader = reader
+        # With patches each zone is a tree, and patches are not structured grids.
+        reader.load_boundary_patch = False
+        reader.enable_all_bases()
+        reader.reader.UpdateInformation()
+        information = reader.reader.GetOutputInformation(0)
+        times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ()
+        # VTK reports 0 if the file has no times.
+        self.time_values = [] if times == (0.0,) else sorted(map(float, times))
+        self.active_time_value = self.time_values[0] if self.time_values else 0.0
+
+    def set_active_time_value(self, time: float) -> None:
+        """Set the time to read."""
+        self.active_time_value = time
+
+    def read(self) -> pv.MultiBlock:
+        """Read the blocks at the active time."""
+        if self.time_values:
+            self._reader.reader.UpdateTimeStep(self.active_time_value)
+        return self._reader.read()
+
+
+_KNOWN_FORMATS = (
+    "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
+    ".foam and more), PLOT3D (.xyz with .q beside it), or data of the Earth (.nc, .zarr, .grib, "
+    ".json)"
+)
+
+
+#: A URL of which ``pathlib`` has made a path; one letter is a drive.
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
+
+
+#: Arguments for meshes; the others are for data of the Earth.
+OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
+
+
+@dataclass(frozen=True)
+class OpenFile:
+    """A file that was opened, and read only as far as its format requires."""
+
+    path: Path
+    source: Any  #: One of PyVista's readers, a mesh, or a list of time steps.
+    velocity: str | None  #: Name of the velocity where the format fixes it.
+    problem: str = ""  #: The reason if nothing can be drawn.
+
+
+def read_file(
+    path: str | Path,
+    *,
+    time: float | None = None,
+    block: int | str | None = None,
+    vectors: str | None = None,
+    **options: Any,
+) -> GridArrays | TriangleArrays:
+    """Read the arrays of a field from a mesh; callers name errors by :func:`errors_of`."""
+    file = open_file(path)
+    if file.problem:
+        raise FieldError(file.problem)
+    source = file.source
+    if time is not None:
+        source, options["times"] = _at_time(source, time), [time]
+    name = vectors if vectors is not None else file.velocity
+    return read_meshes(source, vectors=name, block=block, name=Path(path).stem, **options)
+
+
+def open_file(path: str | Path) -> OpenFile:
+    """Open a file; callers name errors by :func:`errors_of`."""
+    file = Path(path).expanduser()
+    _check_path(file)
+    inspect_file(file)
+    require_pyvista("its format")
+    grid = plot3d.find_grid(file) or file
+    layout = None
+    if grid.suffix.lower() in plot3d.GRID_SUFFIXES:
+        layout = plot3d.find_layout(grid)
+    if layout is not None:
+        mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
+        return OpenFile(file, mesh, "Velocity")
+    try:
+        if file.suffix.lower() in beside.SUFFIXES:
+            return OpenFile(file, *beside.read_with_vectors(file))
+        return OpenFile(file, open_reader(file), None)
+    except ValueError as error:
+        if "does not support a file" not in str(error):
+            raise
+        reason = repr(file.suffix) if file.suffix else "no suffix"
+        if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
+            reason = "not a PLOT3D grid in any layout"
+        msg = f"unknown format ({reason}); expected {_KNOWN_FORMATS}"
+        raise FieldError(msg) from error
+
+
+def _check_path(file: Path) -> None:
+    """Raise a FieldError for a path to nothing readable, before any reader opens it."""
+    problem = ""
+    if _ADDRESS.match(str(file)) and not file.exists():
+        problem = (
+            "this address has no flowtex pyramid, and files are read only from folders; open the "
+            "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
+        )
+    elif file.suffix.lower() == ".foam" and not [
+        *file.parent.glob("constant"),
+        *file.parent.glob("processor*"),
+    ]:
+        problem = "its folder has no folder constant; expected the folder of an OpenFOAM case"
+    elif not file.exists():
+        problem = "the file does not exist; check the spelling and the folder"
+        similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
+        if "*" in file.name:
+            problem = (
+                "the file does not exist, and patterns are not expanded; give a list of files, as "
+                "in sorted(glob.glob(pattern))"
+            )
+        elif similar:
+            problem += f". Similar names: {', '.join(similar[:5])}"
+    elif file.is_dir():
+        problem = "this is a folder; expected a file: name the mesh inside it"
+        if (file / "constant" / "polyMesh").exists():
+            case = f"{file.name}.foam"
+            problem = f"this is a case of OpenFOAM; make an empty file {case} in it, and name that"
+    elif file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
+        problem = (
+            "this is a pickle, which can run any program when it is loaded, so it is refused; "
+            'save the mesh as VTK instead, as in mesh.save("flow.vts")'
+        )
+    else:
+        try:
+            with file.open("rb") as stream:
+                # OpenFOAM marks a case with an empty file.
+                if not stream.read(1) and file.suffix != ".foam":
+                    problem = "the file is empty; expected " + _KNOWN_FORMATS
+        except OSError as error:
+            problem = f"cannot be opened ({error.strerror}); check its permissions"
+    if problem:
+        raise FieldError(problem)
+
+
+def _at_time(source: Any, time: float) -> Any:
+    """Read the one step of a series that is requested."""
+    if isinstance(source, list):
+        for step in time_steps(source):
+            if step.time == time:
+                return step.grid
+        times = [float(n) for n in range(len(source))]
+    else:
+        times = times_of(source)
+        for value in times:
+            if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
+                source.set_active_time_value(value)
+                return source.read()
+    listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
+    msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
+    raise FieldError(msg)
+
+
+def read_files(
+    path: str | Path | Sequence[str | Path],
+    *,
+    vectors: str | None = None,
+    time: float | str | None = None,
+    regions: bool = False,
+    uncertainty: Any = None,
+    **options: Any,
+) -> GridArrays | TriangleArrays | Regions:
+    """Read the arrays of a field; callers name errors by :func:`errors_of`."""
+    paths = dataset_paths(path)
+    of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
+    chosen = {name: value for name, value in options.items() if value is not None}
+    if paths:
+        refuse(of_meshes, "meshes, but this is data of the Earth")
+        if time is not None:
+            chosen["sel"] = {**chosen.get("sel", {}), "time": time}
+        chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
+        return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
+    if isinstance(path, (str, Path)):
+        _check_path(Path(path).expanduser())
+    refuse(chosen, "data of the Earth, but this is a mesh")
+    if not isinstance(path, (str, Path)):
+        msg = (
+            f"{len(path)} files are given, but several are read only as data of the Earth; for the "
+            "steps of a mesh give a .pvd file, or in Python a list of meshes"
+        )
+        raise FieldError(msg)
+    if isinstance(time, str):
+        msg = f"time is {time!r}; expected a number, one of the times of the file"
+        raise FieldError(msg)
+    return read_file(path, time=time, vectors=vectors, **of_meshes)
+
+
+def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
+    """Name a file, or the first of several, in errors until its field is made."""
+    paths = dataset_paths(path)
+    first = paths[0] if paths else path
+    return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
+
+
+def refuse(choices: Mapping[str, Any], subject: str) -> None:
+    """Raise a FieldError for options that apply to other data."""
+    if names := [name for name, value in choices.items() if value not in (None, False)]:
+        msg = f"{', '.join(names)} applies to {subject}; omit it"
+        raise FieldError(msg)

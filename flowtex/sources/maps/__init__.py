@@ -1,0 +1,1 @@
+"""Nodes of longitude and latitude on maps."""

@@ -1,0 +1,303 @@
+"""A file or a mesh that stays open, from which one field after another is made.
+
+The file is read once, and each plane is made from memory. Only a series that is too large for that
+is read again.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import warnings
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.notices import Notice
+from flowtex.errors import FieldError
+from flowtex.field.field import FlowField
+from flowtex.sources.files import open_file
+from flowtex.sources.identity import Identity
+from flowtex.sources.meshes.parts import (
+    Parts,
+    TimeStep,
+    drawn_parts,
+    is_reader,
+    is_structured,
+    parts_of,
+    time_steps,
+    times_of,
+)
+from flowtex.sources.meshes.vectors import candidates
+from flowtex.sources.reader_errors import errors_of_file
+
+#: Size of a series that is held in memory; a larger one is read again for each field.
+MAX_SERIES_BYTES = 2_000_000_000
+#: Places of a plane that cuts a volume, evenly spaced along an axis; one of them in the middle.
+CUTS = 101
+#: The surface around a volume, among its planes.
+OUTER = "outer"
+
+
+class Source:
+    """The choices of a file, a mesh or a field, from which one field after another is made.
+
+    ``name`` is for captions, ``nbytes`` the size in memory, and ``identity`` the state of
+    the files when they were opened; empty without files.
+    """
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        #: Names of the arrays that may be the velocity; empty where there is no choice.
+        self.vectors: tuple[str, ...] = ()
+        #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
+        self.dimensions: tuple[int, int, int] | None = None
+        #: Names of several meshes that are not time steps, of the arrays that may be the velocity
+        #: in each, and a word for one of them.
+        self.blocks: tuple[str, ...] = ()
+        self.block_vectors: dict[str, tuple[str, ...]] = {}
+        self.block_word = "Grid"
+        #: The plane that is drawn where none is chosen; empty for a surface.
+        self.default_plane = ""
+        #: Ends of a volume along the axes across which it can be cut.
+        self.ends: dict[str, tuple[float, float]] = {}
+        #: Other axes with a choice, and a text for each entry.
+        self.axes: dict[str, tuple[str, ...]] = {}
+        #: Whether a part of the file is read when a field is requested.
+        self.reads_late = False
+        self.nbytes = 0
+        self.identity: Identity = ()
+
+    @property
+    def planes(self) -> dict[str, int]:
+        """Axes of planes, those of the index first, and how many; empty for a surface."""
+        named = {name: len(words) for name, words in self.axes.items()}
+        if not self.ends:
+            return named
+        outer = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
+        return {**named, **dict(outer), **dict.fromkeys(self.ends, CUTS)}
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can still make fields."""
+        return True
+
+    def plane_at(self, axis: str, number: int) -> str:
+        """Return the plane of an axis by its number from 0, such as ``"k=20"`` or ``"x=0.25"``."""
+        if axis not in self.ends:
+            return f"{axis}={number}"
+        low, high = self.ends[axis]
+        # Enough digits to distinguish neighbouring positions.
+        digits = 3 - math.floor(math.log10(high - low))
+        return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
+
+    def plane_number(self, plane: str) -> int | None:
+        """Return the number of a plane, or of the nearest; ``None`` if it does not exist."""
+        axis, _, text = plane.partition("=")
+        try:
+            value = float(text)
+            if axis in self.ends:
+                low, high = self.ends[axis]
+                value = min(max((value - low) / (high - low) * CUTS - 0.5, 0), CUTS - 1)
+            number = round(value)
+        except (ValueError, OverflowError):
+            return None
+        return number if 0 <= number < self.planes.get(axis, 0) else None
+
+    def plane_text(self, plane: str) -> str:
+        """Return the text for a plane, such as ``"k = 20"`` or ``"500 hPa"``."""
+        axis, _, number = plane.partition("=")
+        words = self.axes.get(axis, ())
+        if number.isdecimal() and int(number) < len(words):
+            return words[int(number)]
+        return "outer surface" if axis == OUTER else plane.replace("=", " = ")
+
+    def plane_of(self, level: float | str) -> str:
+        """Return the plane of a level, in the form of :attr:`default_plane`."""
+        msg = f"level is {level!r}; expected data of the Earth, but this is a mesh"
+        raise FieldError(msg)
+
+    def field(
+        self,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        block: str | None = None,
+        **options: Any,
+    ) -> FlowField:
+        """Make a field of one of :attr:`vectors`, the first by default, and of one plane.
+
+        The plane is such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``, by default
+        :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
+        the function that makes the field, such as :meth:`FlowField.from_pyvista`.
+        """
+        return self._field(vectors, plane, block, options)
+
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    ) -> FlowField:
+        raise NotImplementedError
+
+    def part(self, block: str | None = None) -> Source:
+        """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself."""
+        raise NotImplementedError
+
+
+class FlowSource(Source):
+    """A mesh, a series or a field, from which one field after another is made.
+
+    The ``mesh`` is as for :meth:`FlowField.from_pyvista`, or a field. ``velocity`` is the name of
+    the velocity where the format of a file fixes it, ``path`` the file, for errors, and ``block``
+    the path of the block in a reader that has several at each time.
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        *,
+        name: str = "",
+        velocity: str | None = None,
+        path: Path | None = None,
+        block: str | None = None,
+    ) -> None:
+        super().__init__(name)
+        self._grids: Parts = {}
+        self._parts: dict[str, FlowSource] = {}
+        self._lock = threading.Lock()
+        self._mesh = mesh
+        self._velocity, self._path, self._block = velocity, path, block
+        if isinstance(mesh, FlowField):
+            self.name, self.nbytes = name or mesh.name, mesh.nbytes
+            return
+        self._describe(self._series(mesh)[0].grid)
+        self.reads_late = is_reader(self._mesh)
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> FlowSource:
+        """Open a file, as for :meth:`FlowField.from_file`; errors start with the path."""
+        with errors_of_file(path):
+            file = open_file(path)
+            if file.problem:
+                raise FieldError(file.problem)
+            return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
+
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    ) -> FlowField:
+        if isinstance(self._mesh, FlowField):
+            return self._mesh
+        if self.blocks:
+            return self.part(block)._field(vectors, plane, None, options)
+        if not {"slice", "contour"} & set(options):
+            plane = plane or self.default_plane
+            axis = plane.partition("=")[0].strip().lower()
+            if axis not in ("", OUTER):
+                options["slice" if axis in "xyz" else "plane"] = plane
+        chosen = vectors or (self.vectors[0] if self.vectors else None)
+        if self._block is not None:
+            options = {**options, "block": self._block}
+        with warnings.catch_warnings(), self._errors():
+            # The page shows the choices.
+            warnings.simplefilter("ignore", Notice)
+            return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
+
+    def part(self, block: str | None = None) -> FlowSource:
+        """Return the source of one of the blocks, as :meth:`Source.part` does."""
+        if not self.blocks:
+            return self
+        if block is not None and block.isdecimal() and int(block) < len(self.blocks):
+            block = self.blocks[int(block)] if block not in self.blocks else block
+        block = block or self.blocks[0]
+        if block not in self.blocks:
+            msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
+            raise FieldError(msg)
+        # Pages share a source, and there is one reader.
+        with self._lock:
+            if block not in self._parts:
+                self._parts[block] = self._open_part(block)
+        return self._parts[block]
+
+    def _open_part(self, block: str) -> FlowSource:
+        options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
+        if block in self._grids:
+            return FlowSource(self._grids[block], **options)
+        with self._errors():
+            part = FlowSource(self._mesh, **options, path=self._path, block=block)
+        self.nbytes += part.nbytes
+        return part
+
+    def _errors(self) -> AbstractContextManager[None]:
+        """Name the file, where there is one and it is read again."""
+        return errors_of_file(self._path) if is_reader(self._mesh) and self._path else nullcontext()
+
+    def _describe(self, mesh: Any) -> None:
+        """Set the dimensions, the planes and the names of the vectors."""
+        self.vectors = self._names(mesh)
+        if is_structured(mesh):
+            dimensions = tuple(int(n) for n in mesh.dimensions)
+            self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
+        if mesh.max_cell_dimensionality < 3:
+            return
+        ends = np.reshape(mesh.bounds, (3, 2)).tolist()
+        self.ends = {
+            axis: (low, high) for axis, (low, high) in zip("xyz", ends, strict=True) if low < high
+        }
+        if self.dimensions is not None:
+            self.default_plane = f"k={self.dimensions[2] // 2}"
+            return
+        # The inside shows more than walls, where nothing flows.
+        self.default_plane = f"{OUTER}=0"
+        if self.ends:
+            shortest = min(self.ends, key=lambda axis: np.ptp(self.ends[axis]))
+            if mesh.slice(normal=shortest).n_cells:
+                self.default_plane = self.plane_at(shortest, CUTS // 2)
+
+    def _names(self, grid: Any) -> tuple[str, ...]:
+        """Return the names of possible velocities of a grid, the preferred one first."""
+        names = [array.name for array in candidates(grid)]
+        first = grid.active_vectors_name if self._velocity is None else self._velocity
+        if self._velocity is not None or first in names:
+            names = [first, *names]
+        return tuple(dict.fromkeys(names))
+
+    def _series(self, mesh: Any) -> list[TimeStep]:
+        """Return the steps of a mesh, in memory where they fit; of several blocks the first."""
+        series = len(times_of(mesh)) > 1
+        first = mesh.read() if is_reader(mesh) else mesh
+        blocks = {} if self._block is not None else _choices(first, series=series)
+        if blocks:
+            self.blocks = tuple(blocks)
+            self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
+            if not series:
+                self._grids = blocks
+                self.nbytes = sum(_bytes(grid) for grid in blocks.values())
+            return [TimeStep(next(iter(blocks.values())), None, "the mesh")]
+        steps: list[TimeStep] = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Notice)
+            for step in time_steps(mesh if series else first, self._block):
+                steps.append(step)
+                self.nbytes += _bytes(step.grid)
+                if self.nbytes > MAX_SERIES_BYTES:
+                    return steps[:1]
+        self._mesh = steps[0].grid if len(steps) == 1 else steps
+        self._block = None
+        return steps
+
+
+def _choices(mesh: Any, *, series: bool) -> Parts:
+    """Return the blocks that may be chosen, the default ones first; none for a single one."""
+    if isinstance(mesh, (list, tuple)):
+        return {}
+    drawn, combination = drawn_parts(mesh, series=series)
+    if combination == "together" or (combination == "steps" and len(drawn) > 1):
+        return {}
+    others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
+    parts = {**drawn, **others}
+    return parts if len(parts) > 1 else {}
+
+
+def _bytes(grid: Any) -> int:
+    return int(grid.actual_memory_size) * 1024

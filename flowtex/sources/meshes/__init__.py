@@ -1,0 +1,1 @@
+"""From PyVista meshes to the arrays of a field."""

@@ -1,0 +1,89 @@
+"""Formats of surfaces that cannot store vectors, with vectors in a file beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex.errors import FieldError
+from flowtex.sources.meshes.parts import TimeStep
+from flowtex.sources.meshes.vectors import candidates
+
+#: Endings of such files.
+SUFFIXES = (".obj", ".ply", ".stl")
+#: Name of the vectors.
+NAME = "velocity"
+
+
+def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
+    """Return the mesh of a file, or its time steps, with vectors, their name, and the problem.
+
+    They are in ``NAME.npy``, in the order of points or triangles of the reader; points of an STL
+    may be three for each triangle, as in the file, or one for each place, as in PyVista.
+    """
+    import pyvista as pv
+
+    reader: Any = pv.get_reader(str(file))
+    mesh = reader.read()
+    if candidates(mesh):
+        return mesh, None, ""
+    try:
+        vectors = _vectors(file)
+    except FieldError as error:
+        return mesh, None, f"{error}; {_expected(file, mesh)}"
+    count = vectors.shape[-2]
+    if count == 3 * mesh.n_cells != mesh.n_points and file.suffix.lower() == ".stl":
+        reader.reader.SetMerging(0)
+        mesh = reader.read()
+    if count not in (mesh.n_points, mesh.n_cells):
+        shape = f"{file.with_suffix('.npy').name} has shape {vectors.shape}"
+        return mesh, None, f"{shape}; {_expected(file, mesh)}"
+
+    def with_vectors(step: AnyArray) -> Any:
+        copy = mesh.copy(deep=False)
+        data = copy.point_data if count == mesh.n_points else copy.cell_data
+        data[NAME] = step
+        return copy
+
+    if vectors.ndim == 2:
+        return with_vectors(vectors), NAME, ""
+    steps = [TimeStep(with_vectors(v), float(n), f"step {n}") for n, v in enumerate(vectors)]
+    return steps, NAME, ""
+
+
+def _vectors(file: Path) -> AnyArray:
+    """Return the array beside a file, (N, 2 or 3) or (T, N, 2 or 3)."""
+    path = file.with_suffix(".npy")
+    if not path.is_file():
+        msg = "the file has no vectors, because its format cannot store them"
+        raise FieldError(msg)
+    try:
+        # Mapped first: NumPy allocates the declared size even if the file is shorter.
+        vectors = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        msg = f"{path.name} is not a NumPy array ({error})"
+        raise FieldError(msg) from error
+    if not isinstance(vectors, np.ndarray):  # an archive
+        msg = f"{path.name} contains several arrays"
+        raise FieldError(msg)
+    real = vectors.dtype.kind in "fiu" and vectors.size
+    if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
+        msg = f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"
+        raise FieldError(msg)
+    return np.array(vectors)
+
+
+def _expected(file: Path, mesh: Any) -> str:
+    name = file.with_suffix(".npy").name
+    points, cells = mesh.n_points, mesh.n_cells
+    corners = (
+        f", ({3 * cells}, 3) for the corners of the faces" if file.suffix.lower() == ".stl" else ""
+    )
+    return (
+        f"expected them in {name} in the same folder, written by numpy.save: numbers of shape "
+        f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}, or (T, {points}, 3) "
+        "for times, in the order of the file"
+    )

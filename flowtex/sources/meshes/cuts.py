@@ -1,0 +1,293 @@
+"""The drawn surface of a mesh: its surface, a plane through a volume, or a contour of it.
+
+A cut is given as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or as numbers.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.arguments import brief
+from flowtex._util.array_types import Indices
+from flowtex._util.notices import notify
+from flowtex.errors import FieldError
+from flowtex.field.triangles.arrays import solid_triangles
+from flowtex.field.triangles.topology import needle_edges
+from flowtex.sources.meshes.parts import hidden_nodes
+from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+_NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
+#: Flags of VTK's ghost arrays for cells that are not drawn, also of other pieces, which would
+#: coincide with these.
+_NOT_DRAWN = 1 | 8 | 32
+#: Point array that marks hidden points during filters.
+HIDDEN = "flowtex hidden"
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A plane with this normal, through a point or the middle of the mesh; ``text`` as given."""
+
+    normal: Vector
+    point: Vector | None
+    text: str
+
+    def faults(self, mesh: pv.DataSet) -> list[str]:
+        """Return no faults: a plane is tested by the cut."""
+        return []
+
+    def of(self, mesh: pv.DataSet) -> pv.PolyData:
+        """Return the section of a volume."""
+        # Polygons would be torn where some of their points nearly coincide.
+        middle = self.point or mesh.center
+        cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
+        if not cut.n_cells:
+            ends = np.reshape(mesh.bounds, (3, 2))
+            spans = (
+                f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends, strict=True)
+            )
+            msg = f"slice is {self.text}, which does not cut the mesh; it has {', '.join(spans)}"
+            raise FieldError(msg)
+        return cut
+
+
+@dataclass(frozen=True)
+class Contour:
+    """The places where an array has a value; ``text`` as given."""
+
+    name: str
+    value: float
+    text: str
+
+    def faults(self, mesh: pv.DataSet) -> list[str]:
+        """Return the fault of an unknown array."""
+        names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
+        if self.name in names:
+            return []
+        near = difflib.get_close_matches(self.name, names, n=1)
+        hint = f'. Did you mean "{near[0]}"?' if near else ""
+        listed = ", ".join(dict.fromkeys(names))
+        expected = f"expected one of: {listed}" if listed else "it has only vectors, or no arrays"
+        return [
+            f"contour is {self.text}, but the mesh has no array {self.name!r} of one "
+            f"component{hint}; {expected}"
+        ]
+
+    def of(self, mesh: pv.DataSet) -> pv.PolyData:
+        """Return the contour in a volume whose array is on points."""
+        cut = mesh.contour([self.value], scalars=self.name)
+        if not cut.n_cells:
+            values = np.asarray(mesh.point_data[self.name], dtype=np.float64)
+            low, high = np.nanmin(values), np.nanmax(values)
+            msg = (
+                f"contour is {self.text}; expected a value of {self.name} from {low:g} to {high:g}"
+            )
+            raise FieldError(msg)
+        return cut
+
+
+Cut = Slice | Contour
+
+
+def find_cut(slice: Any, contour: Any) -> Cut | None:
+    """Return the requested cut, or ``None``."""
+    if slice is not None and contour is not None:
+        msg = f"slice is {slice!r} and contour is {contour!r}; choose one of the two"
+        raise FieldError(msg)
+    if slice is not None:
+        return _slice(slice)
+    return None if contour is None else _contour(contour)
+
+
+def _slice(raw: Any) -> Slice:
+    normal: Any = None
+    point: Any = None
+    if isinstance(raw, str):
+        if match := _AXIS.fullmatch(raw):
+            axis = match["axis"].lower()
+            normal, at = _NORMALS[axis], match["at"]
+            point = None if at is None else [float(a == axis) * _number(at) for a in "xyz"]
+        else:
+            first, through, second = raw.partition("through")
+            normal = first.split(",")
+            point = second.split(",") if through else None
+    elif isinstance(raw, (list, tuple, np.ndarray)):
+        normal, point = raw if len(raw) == 2 else (raw, None)
+        normal = _NORMALS.get(normal, normal) if isinstance(normal, str) else normal
+    direction, place = _vector(normal), None if point is None else _vector(point)
+    if direction is None or not any(direction) or (point is not None and place is None):
+        msg = (
+            f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
+            '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
+            "point) of three numbers each"
+        )
+        raise FieldError(msg)
+    return Slice(direction, place, repr(raw))
+
+
+def _example(raw: Any) -> str:
+    """Return a slice as a text, that of ``("z", 1)`` and ``{"z": 1}`` if these are given."""
+    pair = next(iter(raw.items()), ()) if isinstance(raw, Mapping) else raw
+    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
+        return f"{pair[0]}={pair[1]}"
+    return "x=0.5"
+
+
+def _contour(raw: Any) -> Contour:
+    pair = raw.rpartition("=")[::2] if isinstance(raw, str) else raw
+    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
+        name, value = pair[0].strip(), _number(pair[1])
+        if name and math.isfinite(value):
+            return Contour(name, value, repr(raw))
+    msg = (
+        f'contour is {brief(raw)}; expected an array and its value, as in contour="pressure=101325"'
+    )
+    raise FieldError(msg)
+
+
+def _vector(raw: Any) -> Vector | None:
+    try:
+        x, y, z = (_number(number) for number in raw)
+    except (TypeError, ValueError):
+        return None
+    return (x, y, z) if math.isfinite(x + y + z) else None
+
+
+def _number(raw: Any) -> float:
+    try:
+        return float(raw)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
+    """Return faults in a cut of a mesh, and in a mesh that has no surface."""
+    dimension = mesh.max_cell_dimensionality
+    if not mesh.n_cells:
+        return ["the mesh has no cells; check the file or filter that made it"]
+    if dimension < 2:
+        kind = "lines" if dimension else "points"
+        return [f"the mesh has only {kind}; expected a surface, or a volume to cut"]
+    if cut is None:
+        return []
+    if dimension == 2:
+        name = type(cut).__name__.lower()
+        return [
+            f"{name} is {cut.text}, but the mesh is already a surface, of which a cut is only a "
+            f"line; omit {name}"
+        ]
+    return cut.faults(mesh)
+
+
+def surface_of(
+    mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
+) -> tuple[pv.PolyData, Indices]:
+    """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
+
+    Arrays on the cells of a volume are interpolated to its points before a cut. :data:`HIDDEN` is
+    above zero at points that depend on hidden ones. ``tell`` issues a notice about automatic
+    choices; :func:`cut_faults` returned none before.
+    """
+    import pyvista as pv
+
+    mesh = _shown_cells(mesh)
+    if isinstance(mesh, pv.UnstructuredGrid):
+        kinds = mesh.distinct_cell_types
+        flat = cut is None and any(kind.dimension == 2 for kind in kinds)
+        if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
+            text = "cells of two dimensions are" if flat else "outer surface of the volume is"
+            notify(f"the {text} drawn; to cut the volume, use {_examples(mesh)}")
+        drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
+        drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
+        mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
+    if cut is not None:
+        mesh = cut.of(_exact(_on_points(mesh, vectors)))
+    elif not isinstance(mesh, pv.PolyData):
+        mesh = mesh.extract_surface(
+            pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"
+        )
+    if not mesh.is_all_triangles or mesh.n_cells != mesh.GetNumberOfPolys():
+        mesh = mesh.triangulate()
+    triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
+    if cut is not None:
+        # A plane through the corners of cells has triangles without area. Those with a short side
+        # show which points nearly coincide; others are left out.
+        points = np.asarray(mesh.points, dtype=np.float64)
+        kept = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
+        triangles = triangles[kept]
+    return mesh, triangles
+
+
+def _examples(mesh: pv.DataSet) -> str:
+    """Return examples of cuts of a volume: across its shortest side, and by one of its arrays."""
+    bounds = np.reshape(mesh.bounds, (3, 2))
+    axis = int(np.argmin(np.ptp(bounds, axis=1)))
+    cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
+    scalars = (a for a in catalogue(mesh) if a.real and a.components == 1)
+    names = [a.name for a in scalars if a.name != HIDDEN]
+    return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
+
+
+def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh without its hidden cells, and with the hidden points marked."""
+    hidden = hidden_nodes(mesh)
+    ghosts = mesh.cell_data.get("vtkGhostType")
+    shown = None if ghosts is None else (np.asarray(ghosts) & _NOT_DRAWN) == 0
+    mesh = mesh.copy(deep=False)
+    for data in (mesh.point_data, mesh.cell_data):
+        for name in BLANKING:
+            if name in data:
+                del data[name]
+    mesh.point_data[HIDDEN] = hidden.astype(np.float64)
+    if shown is None or shown.all():
+        return mesh
+    if not shown.any():
+        msg = "all cells of the mesh are hidden; show some of them"
+        raise FieldError(msg)
+    return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
+
+
+def _exact(mesh: Any) -> pv.DataSet:
+    """Return a volume in double precision; in single, slivers of a cut have random normals."""
+    import pyvista as pv
+
+    if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
+        mesh = mesh.cast_to_structured_grid()
+    if np.asarray(mesh.points).dtype != np.float64:
+        mesh.points = np.asarray(mesh.points, dtype=np.float64)
+    return mesh
+
+
+def _on_points(mesh: pv.DataSet, vectors: MeshArray) -> pv.DataSet:
+    """Return a volume with its arrays on its points, perhaps the changed mesh."""
+    chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
+    names = [
+        a.name
+        for a in catalogue(mesh)
+        if a.where == "cells"
+        and a.numeric
+        and (a.name in chosen or (a.components == 1 and a.name not in mesh.point_data))
+    ]
+    if names:
+        cells = mesh.copy(deep=False)
+        cells.clear_data()
+        for name in names:
+            cells.cell_data[name] = np.asarray(mesh.cell_data[name], dtype=np.float64)
+        points = cells.cell_data_to_point_data().point_data
+        for name in names:
+            mesh.point_data[name] = points[name]
+    mesh.cell_data.clear()
+    return mesh

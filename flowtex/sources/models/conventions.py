@@ -1,0 +1,189 @@
+"""Finding the mesh of a dataset by UGRID, by the names of models, or by the bounds of cells.
+
+Its dimensions, levels and times then get a form in which the axes are recognised.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flowtex.errors import FieldError
+from flowtex.sources.datasets.axes import FACES, LEVELS, NODES
+from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.models.mesh import Mesh
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Names of the corners of faces, and of coordinates of the nodes, of models without a convention.
+#: Each has the mesh's words, the corners, pairs of coordinates, and the number of the first node.
+MODELS = (
+    ("FVCOM", ("nv",), (("lon", "lat"), ("x", "y")), 1),
+    (
+        "SCHISM",
+        ("SCHISM_hgrid_face_nodes",),
+        (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),),
+        1,
+    ),
+    (
+        "FESOM",
+        ("face_nodes", "elem_nodes", "elements", "elem"),
+        (("lon", "lat"), ("nodes", "nodes")),
+        1,
+    ),
+    (
+        "ICON",
+        ("vertex_of_cell",),
+        (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices")),
+        1,
+    ),
+    # The velocity of MPAS is in the middle of its cells: these are the nodes here, and triangles
+    # join the three around each corner.
+    ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
+    ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex")), 1),
+)
+#: A dimension of the two components of a vector.
+COMPONENTS = re.compile(r"^(two|component\w*|n?vec\w*)$", re.IGNORECASE)
+
+
+def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
+    """Return the mesh of datasets that belong together; ``None`` where they have none."""
+    variables: dict[str, xr.DataArray] = {}
+    for ds in datasets:
+        for name in ds.variables:
+            variables.setdefault(str(name), ds[name])
+    for find in (_ugrid, _of_models, _bounded):
+        for mesh in find(variables):
+            return mesh
+    return None
+
+
+def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
+    for topology in variables.values():
+        attrs = topology.attrs
+        if attrs.get("cf_role") != "mesh_topology" or "face_node_connectivity" not in attrs:
+            continue
+        missing = [attrs["face_node_connectivity"], *str(attrs.get("node_coordinates", "")).split()]
+        missing = [name for name in missing if name not in variables]
+        names = str(attrs.get("node_coordinates", "")).split()
+        if missing or len(names) != 2:
+            msg = (
+                f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
+                "data do not contain; expected two coordinates of the nodes and the nodes of "
+                "each face. Open the file that has them together with this one"
+            )
+            raise FieldError(msg)
+        corners = variables[attrs["face_node_connectivity"]]
+        x, y = (variables[name] for name in names)
+        if _is_latitude(x):
+            x, y = y, x
+        kind = "SCHISM" if str(topology.name).startswith("SCHISM") else "UGRID"
+        yield Mesh(kind, x, y, corners, first=int(corners.attrs.get("start_index", 0)))
+
+
+def _is_latitude(c: xr.DataArray) -> bool:
+    named = str(c.attrs.get("standard_name", c.name)).lower()
+    return "lat" in named or named == "projection_y_coordinate"
+
+
+def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
+    for kind, names, coordinates, first in MODELS:
+        corners = next((variables[n] for n in names if n in variables), None)
+        if corners is None or corners.ndim != 2 or corners.dtype.kind not in "fiu":
+            continue
+        for x, y in coordinates:
+            if x not in variables or y not in variables:
+                continue
+            longitude, latitude = variables[x], variables[y]
+            if longitude.ndim != (2 if x == y else 1) or not _varies(longitude):
+                continue
+            attrs = {**corners.attrs}
+            counts = variables.get("nEdgesOnCell") if names == ("verticesOnCell",) else None
+            first_index = int(attrs.get("start_index", first))
+            yield Mesh(kind, longitude, latitude, corners, counts, first_index)
+
+
+def _varies(c: xr.DataArray) -> bool:
+    """Return whether the values of a coordinate differ; models write unused ones as zeros."""
+    values = np.asarray(values_in(c), dtype=float)
+    return bool(np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf))
+
+
+def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
+    """Yield meshes of cells with bounds, along one dimension."""
+    for x in variables.values():
+        name = str(x.attrs.get("bounds", x.encoding.get("bounds", "")))
+        if x.ndim != 1 or name not in variables or _is_latitude(x):
+            continue
+        for y in variables.values():
+            name_y = str(y.attrs.get("bounds", y.encoding.get("bounds", "")))
+            if y.dims != x.dims or name_y not in variables or not _is_latitude(y):
+                continue
+            bounds_x, bounds_y = variables[name], variables[name_y]
+            if bounds_x.ndim == 2 and bounds_x.dims == bounds_y.dims and bounds_x.shape[1] >= 3:
+                units = {"units": x.attrs.get("units", "")}
+                a, b = (c.assign_attrs(units | c.attrs) for c in (bounds_x, bounds_y))
+                yield Mesh("cells with bounds", a, b)
+
+
+def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+    """Return datasets whose mesh, if there is one, has dimensions of known names.
+
+    Vectors in one variable become two, and levels get values where files have them elsewhere.
+    """
+    mesh = find_mesh(datasets)
+    if mesh is None:
+        return list(datasets)
+    sizes = dict(zip((NODES, FACES), _sizes(mesh), strict=True))
+    named = dict(zip((NODES, FACES), mesh.dims, strict=True))
+    return [_levels(_split_vectors(_renamed(ds, named, sizes)), mesh) for ds in datasets]
+
+
+def _sizes(mesh: Mesh) -> tuple[int, int]:
+    nodes, faces = mesh.dims
+    of_faces = mesh.x if mesh.corners is None else mesh.corners
+    return (mesh.x.sizes[nodes] if nodes else -1), of_faces.sizes[faces]
+
+
+def _renamed(ds: xr.Dataset, named: dict[str, str], sizes: dict[str, int]) -> xr.Dataset:
+    """Rename dimensions by their names, or by their sizes in a file without the mesh."""
+    for ours, theirs in named.items():
+        if ours in ds.dims:
+            continue
+        alike = [d for d in ds.dims if ds.sizes[d] == sizes[ours] and d not in (NODES, FACES)]
+        dim = theirs if theirs in ds.dims else alike[0] if len(alike) == 1 else None
+        if dim is not None:
+            ds = ds.rename_dims({dim: ours})
+    return ds
+
+
+def _split_vectors(ds: xr.Dataset) -> xr.Dataset:
+    """Split variables with both components of a velocity into two."""
+    for name, array in list(ds.data_vars.items()):
+        dim = next((d for d in array.dims if COMPONENTS.match(str(d))), None)
+        if dim is None or array.sizes[dim] != 2 or not {NODES, FACES} & set(array.dims):
+            continue
+        both = {f"{name}_{letter}": array.isel({dim: n}) for n, letter in enumerate("uv")}
+        for part in both.values():
+            part.attrs = {k: v for k, v in array.attrs.items() if k == "units"}
+        ds = ds.drop_vars([name]).assign(both)
+    return ds
+
+
+def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
+    """Return a dataset with numbers for levels, which show the one at the surface."""
+    for dim in map(str, ds.dims):
+        line = ds.variables.get(dim)
+        if line is not None and line.ndim == 2 and {dim, NODES} >= set(line.dims):
+            # Levels that follow the ground, in shares of the depth: their means tell them apart.
+            values = np.asarray(line.values, dtype=float)
+            mean = np.nanmean(values, axis=line.dims.index(NODES))
+            ds = ds.drop_vars(dim).assign_coords({dim: (dim, mean, {**line.attrs, "axis": "Z"})})
+        elif line is None and mesh.kind == "SCHISM" and LEVELS.match(dim):
+            below = np.arange(1 - ds.sizes[dim], 1)
+            ds = ds.assign_coords({dim: (dim, below, {"axis": "Z", "long_name": "from the top"})})
+    return ds

@@ -1,0 +1,247 @@
+"""A mesh of polygons in the file of a model: nodes, faces, and these cut into triangles."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.triangles.arrays import nodal_means
+from flowtex.field.triangles.topology import triangle_normals
+from flowtex.sources.datasets.axes import FACES, NODES
+from flowtex.sources.datasets.coordinates import DEGREES, LENGTHS
+from flowtex.sources.inspection.limits import values_in
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Decimals of degrees to which bounds of neighbours agree.
+SAME_DEGREES = 5
+LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
+RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A mesh of polygons; its numbers are read when they are requested."""
+
+    kind: str  #: Name of the convention.
+    #: Coordinates of the nodes, or of the corners of each face where ``corners`` is missing.
+    x: xr.DataArray
+    y: xr.DataArray
+    corners: xr.DataArray | None = None  #: Nodes of each face.
+    counts: xr.DataArray | None = None  #: Number of corners of each face, where these differ.
+    first: int = 0  #: Index of the first node.
+
+    @property
+    def dims(self) -> tuple[str, str]:
+        """Names of the dimensions of nodes and of faces in the files."""
+        if self.corners is None:
+            return "", str(self.x.dims[0])
+        return _dim(self.x, NODES), _dim(self.corners, FACES)
+
+    @property
+    def coordinates(self) -> str:
+        """Names of the coordinates that give positions."""
+        names = dict.fromkeys((str(self.x.name), str(self.y.name)))
+        return " and ".join(names)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of its variables."""
+        parts = (self.x, self.y, self.corners, self.counts)
+        return tuple(str(part.name) for part in parts if part is not None)
+
+    @property
+    def is_earth(self) -> bool:
+        """Whether the coordinates are longitude and latitude, and not those of a plane."""
+        unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
+        if DEGREES.match(unit) or RADIANS.match(unit):
+            return True
+        if unit.lower() in LENGTHS:
+            return False
+        description = str(self.x.attrs.get("standard_name", "")) or name
+        if "projection" in description:
+            return False
+        if self.kind == "SCHISM" and not unit:
+            # Newer files have no attributes.
+            x, y = (np.abs(c) for c in self._raw)
+            return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
+        return bool(LONGITUDES.search(description)) or name == "nodes"
+
+    @cached_property
+    def _raw(self) -> tuple[Floats, Floats]:
+        parts = []
+        for n, c in enumerate((self.x, self.y)):
+            values = np.asarray(values_in(c), dtype=float)
+            if c.ndim == 2 and self.corners is not None:  # both in one variable
+                values = values[n] if values.shape[0] == 2 else values[:, n]
+            parts.append(values)
+        return parts[0], parts[1]
+
+    @cached_property
+    def _joined(self) -> tuple[Floats, Floats, Indices]:
+        """Coordinates of the nodes, (N,), and their numbers at faces, (F, K), -1 for none."""
+        a, b = self._raw
+        if self.is_earth:
+            unit = str(self.x.attrs.get("units", ""))
+            radians = RADIANS.match(unit) or (
+                not unit and self.kind in ("MPAS", "ICON", "FESOM") and np.nanmax(np.abs(a)) < 6.5
+            )
+            if radians:
+                a, b = np.degrees(a), np.degrees(b)
+        else:
+            factor = LENGTHS.get(str(self.x.attrs.get("units", "")).lower(), 1.0)
+            a, b = a * factor, b * factor
+        if self.corners is None:
+            return _from_bounds(a, b)
+        return a, b, _numbers(self, self.corners, len(a))
+
+    @property
+    def a(self) -> Floats:
+        """Longitudes of the nodes in degrees, or x in metres, (N,)."""
+        return self._joined[0]
+
+    @property
+    def b(self) -> Floats:
+        """Latitudes of the nodes in degrees, or y in metres, (N,)."""
+        return self._joined[1]
+
+    @property
+    def faces(self) -> Indices:
+        """Numbers of the nodes of each face, (F, K), -1 where it has fewer corners than others."""
+        return self._joined[2]
+
+    @cached_property
+    def positions(self) -> Floats:
+        """Positions of the nodes, (N, 3): on the globe, or in the plane."""
+        if not self.is_earth:
+            return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
+        return Projection(GLOBE).positions(self.a, self.b)
+
+    @cached_property
+    def middles(self) -> tuple[Floats, Floats]:
+        """Coordinates of the middles of the faces, (F,) each, as those of the nodes."""
+        present = (self.faces >= 0)[..., None]
+        with np.errstate(invalid="ignore"):
+            p = (self.positions[self.faces] * present).sum(axis=1) / present.sum(axis=1)
+        return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
+
+    @cached_property
+    def _split(self) -> tuple[Indices, Indices]:
+        """Triangles, (M, 3), and the number of the face that each is a part of, (M,)."""
+        faces = self.faces.copy()
+        if faces.shape[1] > 3:
+            # The shorter diagonal of a quadrilateral makes the better triangles.
+            p, four = self.positions, (faces >= 0).sum(axis=1) == 4
+            a, b, c, d = (p[faces[four, k]] for k in range(4))
+            with np.errstate(invalid="ignore"):
+                turn = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
+            turned = np.flatnonzero(four)[turn]
+            faces[turned, :4] = np.roll(faces[turned, :4], -1, axis=1)
+        fans, numbers = [], []
+        for k in range(1, faces.shape[1] - 1):
+            whole = (faces[:, [0, k, k + 1]] >= 0).all(axis=1)
+            fans.append(faces[whole][:, [0, k, k + 1]])
+            numbers.append(np.flatnonzero(whole))
+        return np.concatenate(fans), np.concatenate(numbers)
+
+    @property
+    def triangles(self) -> Indices:
+        """The faces cut into triangles, (M, 3)."""
+        return self._split[0]
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Areas of the faces, (F,)."""
+        triangles, numbers = self._split
+        doubled = np.nan_to_num(np.linalg.norm(triangle_normals(self.positions, triangles), axis=1))
+        return np.asarray(np.bincount(numbers, doubled / 2, len(self.faces)))
+
+    def at_nodes(self, values: Floats, dim: str) -> Floats:
+        """Return values (N, ...) at the nodes; those in faces become means by area."""
+        if dim == NODES:
+            return values
+        (step,) = nodal_means(values[None], self.faces, self.areas, len(self.a))
+        return np.asarray(step)
+
+    def vectors_at_nodes(self, u: Floats, v: Floats, dim: str) -> tuple[Floats, Floats]:
+        """Return components (N,); those in faces are averaged in space, where directions agree."""
+        if dim == NODES:
+            return u, v
+        if not self.is_earth:
+            x, y = self.at_nodes(np.stack([u, v], axis=-1), dim).T
+            return x, y
+        globe = Projection(GLOBE)
+        means = self.at_nodes(globe.vectors(*self.middles, u, v), dim)
+        return globe.components(self.a, self.b, means)
+
+    @property
+    def words(self) -> str:
+        """Words for the mesh and its size."""
+        edges = (self.faces >= 0).sum(axis=1)
+        kinds = {3: "triangles", 4: "quadrilaterals"}
+        name = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
+        return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
+
+
+def _dim(array: xr.DataArray, ours: str) -> str:
+    return ours if ours in array.dims else str(max(array.dims, key=lambda d: array.sizes[d]))
+
+
+def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
+    """Return the numbers of the nodes of faces, (F, K), from 0; -1 if missing."""
+    _, faces = mesh.dims
+    values = values_in(corners.transpose(faces, ...))
+    fill = corners.attrs.get("_FillValue", corners.encoding.get("_FillValue"))
+    present: Bools = np.asarray(np.isfinite(values))
+    if fill is not None and np.isfinite(fill):
+        present &= values != fill
+    if mesh.counts is not None:
+        present &= np.arange(values.shape[1]) < np.asarray(mesh.counts.values)[:, None]
+    values = np.where(present, values, -1).astype(np.int64)
+    first = mesh.first
+    if present.any():
+        # The numbers themselves are more reliable than their attributes.
+        least, greatest = values[present].min(), values[present].max()
+        first = 1 if greatest == count and first == 0 else first
+        first = 0 if least == 0 and greatest < count and mesh.kind != "MPAS" else first
+    values = values - first
+    present &= (values >= 0) & (values < count)
+    if not present.any():
+        msg = (
+            f"{corners.name!r} has no node numbers from {first} to {first + count - 1}; expected "
+            "numbers of nodes"
+        )
+        raise FieldError(msg)
+    if mesh.kind == "MPAS" and values.shape[1] == 3:
+        present &= present.all(axis=1, keepdims=True)  # at the border of a region
+    return _corners_first(np.where(present, values, -1))
+
+
+def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
+    """Return one node for all corners of cells, (F, K) each, at one place."""
+    present = np.isfinite(a) & np.isfinite(b)
+    p = Projection(GLOBE).positions(a[present], b[present]) / EARTH_RADIUS
+    _, first, at = np.unique(
+        np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
+    )
+    faces = np.full(a.shape, -1, dtype=np.intp)
+    faces[present] = at.ravel()
+    return a[present][first], b[present][first], _corners_first(faces)
+
+
+def _corners_first(faces: AnyArray) -> Indices:
+    """Return numbers of nodes with -1 after all others, also for repeated corners."""
+    repeated = np.any(
+        (faces[:, :, None] == faces[:, None, :]) & np.tri(faces.shape[1], k=-1, dtype=bool), axis=2
+    )
+    faces = np.where(repeated, -1, faces)
+    order = np.argsort(faces < 0, axis=1, kind="stable")
+    return np.asarray(np.take_along_axis(faces, order, axis=1), dtype=np.intp)

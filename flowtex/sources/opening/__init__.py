@@ -1,0 +1,1 @@
+"""Opening files, tables and series of datasets with xarray."""

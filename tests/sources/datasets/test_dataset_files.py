@@ -1,0 +1,219 @@
+"""Files of data of the Earth, real ones where they are available."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from earth_data import components, east_and_north, winds
+from lying_files import grib2
+
+from flowtex import FlowField
+from flowtex._util.notices import Notice
+from flowtex.errors import FieldError
+from flowtex.field.earth import EARTH_RADIUS
+from flowtex.sources.opening import dataset_files as files
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice"),
+    pytest.mark.filterwarnings("ignore::xarray.SerializationWarning"),  # of a file itself
+]
+
+LON, LAT = np.arange(-180.0, 180.0, 10.0), np.arange(90.0, -90.1, -10.0)
+DATA = Path(os.environ.get("FLOWTEX_DATA", ""))
+needs_data = pytest.mark.skipif(
+    not (DATA / "eraint_uvz.nc").is_file(), reason="FLOWTEX_DATA names no folder of real data"
+)
+
+
+def same(one: FlowField, other: FlowField) -> bool:
+    pairs = ((one.points, other.points), (one.velocity[0], other.velocity[0]))
+    return all(np.allclose(a, b, atol=1e-4) for a, b in pairs)
+
+
+def wind_json(ds: Any) -> list[dict[str, Any]]:
+    """The form of grib2json."""
+    header = {"nx": ds.sizes["lon"], "ny": ds.sizes["lat"], "lo1": float(ds.lon[0])}
+    header |= {"la1": float(ds.lat[0]), "la2": float(ds.lat[-1]), "dx": 10, "dy": 10}
+    header |= {"refTime": "2016-04-30T06:00:00Z", "forecastTime": 6, "parameterUnit": "m.s-1"}
+    return [
+        {"header": {**header, "parameterNumber": n}, "data": ds[name].values.ravel().tolist()}
+        for n, name in ((2, "u"), (3, "v"))
+    ]
+
+
+def test_netcdf_zarr_and_json_are_the_same_field(tmp_path: Path) -> None:
+    ds = winds(LON, LAT)
+    wanted = FlowField.from_xarray(ds, globe=True)
+    ds.to_netcdf(tmp_path / "a.nc")
+    paths = [tmp_path / "a.nc"]
+    ds.to_zarr(tmp_path / "a.zarr", consolidated=False)
+    paths.append(tmp_path / "a.zarr")
+    (tmp_path / "a.json").write_text(json.dumps(wind_json(ds)))
+    paths.append(tmp_path / "a.json")
+    for path in paths:
+        field = FlowField.from_file(path, globe=True)
+        assert same(field, wanted), path
+        assert field.name == "a"
+    assert str(field.start) == "2016-04-30 12:00:00"
+
+
+def test_files_of_several_days_are_one_series(tmp_path: Path) -> None:
+    paths = []
+    for day in (3, 1, 2):
+        ds = day * winds(np.arange(0.0, 20.0), np.arange(0.0, 10.0))
+        for name, other in (("u", "eastward_wind"), ("v", "northward_wind")):
+            ds[name].attrs = {"standard_name": other, "units": "m/s"}
+        paths.append(tmp_path / f"winds_2002010{day}.nc")
+        ds.expand_dims(time=[37000.0 + day]).to_netcdf(paths[-1])
+    field = FlowField.from_file(paths, globe=True)
+    assert field.times.tolist() == [0.0, 86400.0, 172800.0]
+    assert str(field.start)[:10] == "2002-01-01"
+    means = [np.asarray(field.speed[n]).mean() for n in range(3)]
+    assert np.allclose(np.divide(means, means[0]), [1, 2, 3])
+
+
+def test_files_that_are_not_drawn_are_told(tmp_path: Path) -> None:
+    air, sea = winds(LON, LAT), winds(LON, LAT).rename(u="uo", v="vo")
+    for name, along in (("uo", "eastward"), ("vo", "northward")):
+        sea[name].attrs = {"units": "m/s", "standard_name": f"{along}_sea_water_velocity"}
+    paths = [tmp_path / "air.nc", tmp_path / "sea.nc"]
+    air.drop_attrs().to_netcdf(paths[0])
+    sea.to_netcdf(paths[1])
+    with pytest.warns(Notice, match=r"^uo and vo are drawn, and u and v of air\.nc are not; draw"):
+        FlowField.from_file(paths)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("{", "not valid JSON"),
+        ("{}", "not a list of records"),
+        ("[]", "record of the component u and v is missing"),
+        ("[{}, 3]", "not a list of records"),
+        ('[{"header": {"parameterNumber": 2, "nx": 3}, "data": []}]', "component u is damaged"),
+        (
+            '[{"header": {"parameterNumber": 2, "nx": 1e99, "ny": 2}, "data": [1]}]',
+            "the component u declares some 10",
+        ),
+    ],
+)
+def test_json_of_another_form_is_refused(tmp_path: Path, content: str, words: str) -> None:
+    path = tmp_path / "a.json"
+    path.write_text(content)
+    with pytest.raises(FieldError, match=words) as error:
+        FlowField.from_file(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_broken_files_end_in_one_error(tmp_path: Path) -> None:
+    good = tmp_path / "good.nc"
+    winds(LON, LAT).to_netcdf(good)
+    content = good.read_bytes()
+    for name, share in (("a.nc", 0.0), ("b.nc", 0.02), ("c.nc", 0.5), ("d.grib", 0.5)):
+        path = tmp_path / name
+        path.write_bytes(content[: int(share * len(content))])
+        with pytest.raises((FieldError, ModuleNotFoundError)):
+            FlowField.from_file(path)
+    (tmp_path / "e.zarr").mkdir()
+    (tmp_path / "e.zarr" / "zarr.json").write_text("{}")
+    with pytest.raises(FieldError):
+        FlowField.from_file(tmp_path / "e.zarr")
+    with pytest.raises(FieldError, match="plane applies to meshes"):
+        FlowField.from_file(good, plane="k=3")
+    with pytest.raises(FieldError, match="the file does not exist"):
+        FlowField.from_file(tmp_path / "none.nc")
+
+
+def reference(lon: Any, lat: Any, u: Any, v: Any) -> Any:
+    """Velocities on the sphere by the definition of east and north alone."""
+    east, north = east_and_north(*np.meshgrid(lon, lat))
+    return u[..., None] * east + v[..., None] * north
+
+
+@needs_data
+@pytest.mark.parametrize("level", [200, 500, 850])
+def test_era_interim_on_the_globe(level: int) -> None:
+    field = FlowField.from_file(DATA / "eraint_uvz.nc", level=level, globe=True)
+    with xr.open_dataset(DATA / "eraint_uvz.nc") as ds:
+        one = ds.isel(month=0).sel(level=level)
+        wanted = reference(one.longitude, one.latitude, one.u.values, one.v.values)
+    assert np.allclose(field.velocity[0][1:-1, :480], wanted[1:-1], atol=1e-5)
+    assert field.periodic == (False, True)
+    assert len(list(field.surface.poles or ())) == 2
+    assert set(field.scalars) == {"z"} and field.unit_of("z") == "m**2 s**-2"
+
+
+@needs_data
+def test_grib_winds_have_levels_that_both_components_have() -> None:
+    try:
+        files.import_cfgrib()
+    except ModuleNotFoundError as missing:
+        pytest.skip(str(missing))
+    field = FlowField.from_file(DATA / "winds.grib", level=500, globe=True)
+    assert len(field.times) == 2 and str(field.start) == "2017-10-18 18:00:00"
+    with pytest.raises(FieldError, match="only one of the components has the level"):
+        FlowField.from_file(DATA / "winds.grib", level=850)
+
+
+@pytest.mark.parametrize(
+    "line", ['raise RuntimeError("Cannot find the ecCodes library")', "import no_such_module"]
+)
+def test_without_its_library_grib_names_the_remedy(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "cfgrib.py").write_text(line)
+    (tmp_path / "a.grib").write_bytes(grib2(4))
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "cfgrib", raising=False)
+    monkeypatch.setattr(files, "ECCODES_UNTIL", (3, 0))
+    with pytest.raises(
+        FieldError, match=r"support Python up to 3\.0\. Use such a Python, or cfgrib"
+    ):
+        FlowField.from_file(tmp_path / "a.grib")
+
+
+@needs_data
+def test_nemo_in_three_files_and_in_two() -> None:
+    names = ("U", "V", "coordinates")
+    paths = [DATA / f"nemo_orca025_{name}.nc" for name in names]
+    field = FlowField.from_file(paths, globe=True)
+    with xr.open_dataset(paths[2], decode_times=False) as places:
+        lon, lat = (places[n].values[0] for n in ("glamt", "gphit"))
+    # What lies on the sides of cells, or belongs to the grid, is nothing to colour by.
+    assert not field.scalars
+    assert field.projection is not None
+    a, b = field.projection.lonlat(field.points)
+    ok = field.valid
+    assert np.abs((a - lon[1:, 1:])[ok]).max() < 1e-6
+    assert np.abs((b - lat[1:, 1:])[ok]).max() < 1e-6
+    with xr.open_dataset(paths[0]) as u, xr.open_dataset(paths[1]) as v:
+        u, v = np.nan_to_num(u.uo.values[0, 0]), np.nan_to_num(v.vo.values[0, 0])
+    mean = (u[1:, :-1] + u[1:, 1:]) / 2, (v[:-1, 1:] + v[1:, 1:]) / 2
+    speed = np.linalg.norm(field.velocity[0], axis=-1)
+    # The grid has right angles but for a few hundredths.
+    assert np.abs(speed - np.hypot(*mean))[ok].max() < 0.02 * np.hypot(*mean)[ok].max()
+    other = FlowField.from_file(paths[:2], globe=True)
+    distance = np.linalg.norm(other.points - field.points, axis=-1)[ok & other.valid]
+    assert distance.max() < 1e-3 * EARTH_RADIUS * np.radians(0.25)
+
+
+@needs_data
+def test_roms_and_globcurrent_are_read_without_a_word() -> None:
+    roms = FlowField.from_file(DATA / "roms_his_0001.nc", globe=True)
+    assert roms.shape == (7, 12) and len(roms.times) == 2
+    days = sorted(DATA.glob("globcurrent_*.nc"))
+    currents = FlowField.from_file(days)
+    assert len(currents.times) == 8 and currents.times[1] == 86400.0
+    assert 0.1 < (~currents.valid).mean() < 0.4
+
+
+def test_components_are_those_of_the_rotation() -> None:
+    u, v = components(0.0, 90.0)
+    assert np.isfinite(u) and np.isfinite(v)

@@ -1,0 +1,282 @@
+"""Fields from datasets, against velocities that are known exactly."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from earth_data import RATE, c_grid, components, on_sphere, turning, winds
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+from flowtex.field.earth import EARTH_RADIUS
+from flowtex.sources.notices import DatasetNotice
+
+LON, LAT = np.arange(-180.0, 180.0, 5.0), np.arange(-90.0, 90.1, 5.0)
+
+
+def globe_error(field: FlowField, inside: Any = ...) -> float:
+    """Greatest deviation of a field on a globe from the rigid rotation, in m/s."""
+    points = field.points
+    exact = turning(points / np.linalg.norm(points, axis=-1, keepdims=True))
+    return float(np.abs(np.asarray(field.velocity)[0] - exact)[inside].max())
+
+
+def test_a_globe_has_the_velocities_of_the_earth() -> None:
+    field = FlowField.from_xarray(winds(LON, LAT), globe=True)
+    assert field.periodic == (False, True)
+    assert field.length_unit == "m" and field.unit_of("speed") == "m/s"
+    assert np.allclose(np.linalg.norm(field.points, axis=-1), EARTH_RADIUS)
+    assert globe_error(field) < 1e-9
+    assert field.speed.max() == pytest.approx(RATE, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda ds: ds.isel(lat=slice(None, None, -1)),
+        lambda ds: ds.isel(lon=slice(None, None, -1)),
+        lambda ds: ds.transpose("lon", "lat"),
+        lambda ds: ds.assign_coords(lon=ds.lon % 360).sortby("lon"),
+        lambda ds: ds.roll(lon=17, roll_coords=True),
+    ],
+    ids=["south to north", "east to west", "transposed", "0 to 360", "rolled"],
+)
+@pytest.mark.parametrize("projection", ["globe", "platecarree", "robinson"])
+def test_the_order_of_the_axes_changes_nothing(change: Any, projection: str) -> None:
+    ds = winds(LON, LAT[1:-1])
+    one, other = (
+        FlowField.from_xarray(d, projection=projection).at_step(0) for d in (ds, change(ds))
+    )
+
+    def table(field: FlowField) -> Floats:
+        flat = [field.points.reshape(-1, 3), np.asarray(field.velocity)[0].reshape(-1, 3)]
+        rows = np.concatenate(flat, axis=1)[field.valid.ravel()]
+        rows = np.unique(np.round(rows, 3) + 0.0, axis=0)
+        return rows[np.lexsort(rows.T[::-1])]
+
+    a, b = table(one), table(other)
+    assert a.shape == b.shape
+    assert np.abs(a - b).max() < 0.01
+
+
+@pytest.mark.parametrize("kind", ["nemo", "roms", "mitgcm", "comodo"])
+@pytest.mark.parametrize("turn", [0.0, 40.0, 90.0, 200.0])
+def test_a_staggered_grid_may_be_turned(kind: str, turn: float) -> None:
+    """Components along the grid are means in the middle of the cells, to second order."""
+    errors = []
+    for count in (20, 40):
+        with pytest.warns(DatasetNotice) if kind == "roms" else _silence():
+            field = FlowField.from_xarray(c_grid(kind, turn, count), globe=True)
+        assert field.valid.all()
+        assert min(field.shape) >= count - 2
+        # At an edge the direction of the grid is known to first order alone.
+        errors.append(globe_error(field, np.s_[1:-1, 1:-1]))
+        assert globe_error(field) < 1e-3 * RATE
+    assert errors[0] < 1e-4 * RATE
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_coordinates_of_another_model_do_not_count() -> None:
+    zeros = (("y", "x"), np.zeros((3, 4)))
+    nemo = xr.Dataset({"glamt": zeros, "gphit": zeros, "glamu": zeros})
+    with pytest.warns(DatasetNotice):
+        alone = FlowField.from_xarray(c_grid("roms"), globe=True)
+    with pytest.warns(DatasetNotice):
+        together = FlowField.from_xarray([nemo, *c_grid("roms")], globe=True)
+    np.testing.assert_array_equal(together.points, alone.points)
+
+
+def test_a_flat_map_has_the_paths_of_particles() -> None:
+    """A particle that moves on the Earth moves along its place on the map."""
+    lon, lat = np.linspace(20.0, 40.0, 21), np.linspace(30.0, 60.0, 31)
+    for projection in ("platecarree", "mercator", "lambert", "EPSG:3413", "north"):
+        field = FlowField.from_xarray(winds(lon, lat), projection=projection)
+        assert field.projection is not None
+        a, b = field.projection.lonlat(field.points)
+        later = on_sphere(a, b) + turning(on_sphere(a, b)) / EARTH_RADIUS
+        x, y, z = np.moveaxis(later, -1, 0)
+        moved = field.projection.positions(
+            np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        )
+        difference = np.abs(moved - field.points - field.velocity[0])[field.valid]
+        assert difference.max() < 1e-2 * RATE, projection
+        # Colours are of the speed on the Earth, whatever the map does to lengths.
+        true = np.hypot(*components(a, b))
+        assert np.allclose(np.asarray(field.scalars["speed"])[0], true, atol=1e-6)
+
+
+def test_a_global_flat_map_closes() -> None:
+    field = FlowField.from_xarray(winds(LON, LAT[1:-1]), projection="platecarree")
+    assert field.periodic == (False, True)
+    assert field.points[0, 0, 0] == pytest.approx(-field.points[0, -1, 0])
+    assert np.array_equal(field.velocity[0][:, 0], field.velocity[0][:, -1])
+
+
+def test_a_region_across_the_date_line_is_one_piece() -> None:
+    lon = np.concatenate([np.arange(170.0, 180.0), np.arange(-180.0, -165.0)])
+    field = FlowField.from_xarray(winds(lon, np.arange(-20.0, 20.0)))
+    assert field.valid.all()
+    assert np.ptp(field.points[..., 0]) < np.radians(26) * EARTH_RADIUS
+    assert (np.diff(field.points[0, :, 0]) > 0).all()
+
+
+def test_all_times_are_there_and_read_when_they_are_shown() -> None:
+    dask = pytest.importorskip("dask.array")
+    read: list[int] = []
+
+    def block(block_info: Any) -> Any:
+        (step, *_), *_ = block_info[None]["array-location"]
+        read.append(step)
+        return np.full((1, 30, 40), step + 1.0)
+
+    values = dask.map_blocks(block, chunks=((1,) * 9, 30, 40), dtype=float, meta=np.empty(()))
+    times = np.datetime64("2000-01-01") + np.arange(9) * np.timedelta64(1, "D")
+    lon, lat = np.linspace(0, 20, 40), np.linspace(0, 15, 30)
+    ds = xr.Dataset(
+        {n: (("time", "lat", "lon"), values, {"units": "cm/s"}) for n in ("uo", "vo")},
+        {"time": times, "lon": lon, "lat": lat},
+    )
+    ds["temperature"] = ds.uo.rename("temperature")
+    field = FlowField.from_xarray(ds, globe=True)
+    assert set(field.scalars) == {"temperature"}
+    assert len(field.times) == 9 and field.times[1] == 86400.0
+    assert set(read) == {0}
+    speed = field.at_step(4).speed
+    assert set(read) == {0, 4}
+    assert speed.mean() == pytest.approx(0.05 * np.sqrt(2), rel=1e-6)
+    assert str(field.start) == "2000-01-01 00:00:00"
+    one = FlowField.from_xarray(ds, time="2000-01-03", globe=True)
+    assert one.steady and str(one.start)[:10] == "2000-01-03"
+    with pytest.raises(FieldError, match="time is '2001-01-01'; expected one of 2000-01-01"):
+        FlowField.from_xarray(ds, time="2001-01-01")
+
+
+def test_scalars_of_one_time_are_read_when_they_are_asked_for() -> None:
+    dask = pytest.importorskip("dask.array")
+    read: list[int] = []
+
+    def block(block_info: Any) -> Any:
+        read.append(len(block_info))
+        return np.ones((30, 40))
+
+    ds = winds(np.linspace(0, 20, 40), np.linspace(0, 15, 30))
+    ds["heat"] = ("lat", "lon"), dask.map_blocks(block, chunks=(30, 40), meta=np.empty(()))
+    field = FlowField.from_xarray(ds, globe=True)
+    assert field.steady and not read
+    assert np.asarray(field.scalars["heat"]).mean() == 1 and read
+
+
+def levels() -> Any:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    pressure = ("level", [200.0, 500.0, 850.0], {"units": "millibars"})
+    return xr.concat([ds, 2 * ds, 3 * ds], "level", coords="minimal").assign_coords(level=pressure)
+
+
+def test_the_level_nearest_the_surface_is_said() -> None:
+    with pytest.warns(
+        DatasetNotice, match="level is 850 millibars, the nearest to the surface of 3"
+    ):
+        field = FlowField.from_xarray(levels(), globe=True)
+    assert np.allclose(
+        field.velocity, 3 * FlowField.from_xarray(levels(), globe=True, isel={"level": 0}).velocity
+    )
+    with pytest.raises(FieldError, match=r"level is 20; expected one of 200\.0, 500\.0, 850\.0"):
+        FlowField.from_xarray(levels(), level=20)
+    with pytest.raises(FieldError, match="the axis 'lvel' does not exist"):
+        FlowField.from_xarray(levels(), lvel=500)
+
+
+def _nameless(ds: Any) -> Any:
+    return xr.Dataset(
+        {n: (ds.u.dims, ds[m].values) for n, m in (("a", "u"), ("b", "v"))}, ds.coords
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda ds: ds.drop_vars("v"), "one component of a velocity, 'u'.*'northward_wind'"),
+        (lambda ds: ds.drop_vars(["lon", "lat"]), "neither longitude and latitude.*assign_coords"),
+        (lambda ds: ds.assign_coords(lat=ds.lat * np.nan), "NaN everywhere"),
+        (
+            lambda ds: ds.assign_coords(lat=("lat", ds.lat.values * 3, ds.lat.attrs)),
+            "expected degrees",
+        ),
+        (
+            lambda ds: ds.assign_coords(
+                lon=("lon", np.random.default_rng(1).permutation(ds.lon), ds.lon.attrs)
+            ),
+            "lon increases and decreases.*sortby",
+        ),
+        (_nameless, "Name the components, as in u="),
+        (lambda ds: ds.stack(cell=("lat", "lon")), "no variable has two axes.*If cell is the axis"),
+    ],
+    ids=[
+        "one component",
+        "no coordinates",
+        "NaN",
+        "no degrees",
+        "scrambled",
+        "no names",
+        "one axis",
+    ],
+)
+def test_what_cannot_be_told_is_one_error(change: Any, words: str) -> None:
+    with pytest.raises(FieldError, match=words):
+        FlowField.from_xarray(change(winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))))
+
+
+def test_units_are_those_of_velocities_and_the_same() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    knots = ds.copy()
+    for name in "uv":
+        knots[name] = ds[name].assign_attrs(units="knots")
+    assert np.allclose(
+        FlowField.from_xarray(knots, globe=True).velocity,
+        FlowField.from_xarray(ds, globe=True).velocity * 1852 / 3600,
+    )
+    ds["v"].attrs["units"] = "cm/s"
+    with pytest.raises(FieldError, match="'m s-1' and 'cm/s'; expected the same unit"):
+        FlowField.from_xarray(ds, "u", "v")
+    ds["v"].attrs["units"] = "kg"
+    with pytest.raises(FieldError, match="'kg', which is not a unit of velocity"):
+        FlowField.from_xarray(ds, "u", "v")
+
+
+def test_a_pair_in_another_unit_is_told_of() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    for name in "uv":
+        ds[name].attrs = {"units": "furlong/day"}
+    with pytest.raises(FieldError, match=r"^the unit of 'u' is 'furlong/day', which is not a unit"):
+        FlowField.from_xarray(ds)
+
+
+def test_a_region_is_cut_from_the_dataset() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(60.0, 40.0, -1.0))
+    with pytest.raises(
+        FieldError, match=r"'lon' is an axis of the surface.* as in data\.sel\(lon="
+    ):
+        FlowField.from_xarray(ds, sel={"lon": slice(5, 9)})
+    with pytest.raises(FieldError, match=r"the axis may run the other way: slice\(high, low\)$"):
+        FlowField.from_xarray(ds.sel(lat=slice(45, 50)))
+
+
+def test_several_pairs_are_asked_for_by_name() -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    both = ds.assign(u2=ds.u, v2=ds.v).rename(u2="u100", v2="v100")
+    for name, (a, b) in {"eastward": ("u", "u100"), "northward": ("v", "v100")}.items():
+        both[a].attrs["standard_name"] = f"{name}_wind_at_10m"
+        both[b].attrs["standard_name"] = f"{name}_wind_at_100m"
+    with pytest.raises(FieldError, match=r"several pairs.*u, v.*u100, v100.*u=\"u\", v=\"v\""):
+        FlowField.from_xarray(both)
+    assert FlowField.from_xarray(both, "u100", "v100").steady
+
+
+def _silence() -> Any:
+    from contextlib import nullcontext
+
+    return nullcontext()

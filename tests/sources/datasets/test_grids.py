@@ -1,0 +1,106 @@
+"""Lines of a grid that repeat others, masks, and pictures across the date line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from earth_data import DEGREES, components, winds
+
+import flowtex
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.sources.datasets.coordinates import Places
+from flowtex.sources.datasets.staggered import unrepeated
+
+
+def curvilinear(lon: Floats, lat: Floats, **more: Any) -> xr.Dataset:
+    """The rotation at places (J, I), eastward and northward."""
+    u, v = components(lon, lat)
+    dims = ("y", "x")
+    named = {"units": "m/s"}
+    return xr.Dataset(
+        {
+            "uo": (dims, u, {"standard_name": "eastward_sea_water_velocity", **named}),
+            "vo": (dims, v, {"standard_name": "northward_sea_water_velocity", **named}),
+            **more,
+        },
+        {"lon": (dims, lon, DEGREES["lon"]), "lat": (dims, lat, DEGREES["lat"])},
+    )
+
+
+def folded(rows: int = 30, columns: int = 40, pivot: int = 0) -> tuple[Floats, Floats]:
+    """A grid that is folded onto itself at its end, and a row beyond the fold."""
+    i, j = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows + 1.0))
+    beyond = j > rows - 1
+    # Beyond the seam the nodes are those below it, from the other end.
+    i = np.where(beyond, columns - i, i)
+    j = np.where(beyond, 2 * (rows - 1) - j + (1 - pivot), j)
+    bend = (j / rows) ** 4 * 20 * np.cos(2 * np.pi * i / columns)
+    return i * 360 / columns + 3 * np.sin(np.pi * j / rows), 80 * (j / rows) - bend
+
+
+@pytest.mark.parametrize("halo", [2, 3])
+def test_a_halo_beyond_the_date_line_is_left_out(halo: int) -> None:
+    lon, lat = np.meshgrid(np.arange(36 + halo) * 10.0, np.linspace(-60, 60, 20))
+    lon, lat = (lon + lat / 4) % 360, lat
+    field = FlowField.from_xarray(curvilinear(lon, lat), globe=True)
+    assert field.shape == (20, 37) and field.periodic == (False, True)
+
+
+@pytest.mark.parametrize("pivot", [0, 1])
+def test_rows_beyond_the_fold_are_left_out(pivot: int) -> None:
+    lon, lat = folded(pivot=pivot)
+    places = Places(lon, lat, is_earth=True, is_line=False, why="")
+    rows, columns = unrepeated(places)
+    assert rows == slice(0, len(lon) - 1)
+    assert columns == slice(0, 40)
+    plain = Places(lon[:20], lat[:20], is_earth=True, is_line=False, why="")
+    assert unrepeated(plain) == (slice(0, 20), slice(0, 40))
+
+
+def test_a_mask_and_places_without_a_position_are_land() -> None:
+    lon, lat = np.meshgrid(np.linspace(0, 20, 30), np.linspace(40, 50, 20))
+    lon = lon + lat / 10
+    mask = np.ones(lon.shape)
+    mask[:5] = 0
+    field = FlowField.from_xarray(curvilinear(lon, lat, tmask=(("y", "x"), mask)), globe=True)
+    assert np.array_equal(field.valid, mask > 0)
+    lon[15:], lat[15:] = 0.0, 0.0  # as where a model leaves out processors
+    field = FlowField.from_xarray(curvilinear(lon, lat), globe=True)
+    assert np.array_equal(field.valid, np.arange(20)[:, None] < 15) or field.valid[:15].all()
+    assert not field.valid[15:].any()
+
+
+@pytest.mark.parametrize("projection", ["platecarree", "mercator", "robinson", "equalearth"])
+@pytest.mark.parametrize("first", [-180.0, -178.0, 0.0, 2.0])
+def test_the_last_column_of_the_earth_is_a_turn_beyond_the_first(
+    projection: str, first: float
+) -> None:
+    lon = np.arange(first, first + 360.0, 4.0)
+    field = FlowField.from_xarray(winds(lon, np.arange(-80.0, 80.1, 4.0)), projection=projection)
+    x = field.points[20, :, 0]  # on the equator
+    assert (np.diff(x) > 0).all()
+    assert np.ptp(np.diff(x)) < 1e-3 * x.max()
+    assert np.ptp(x) == pytest.approx(90 * (x[1] - x[0]))
+
+
+@pytest.mark.parametrize("west", [-180.0, -178.0])
+def test_the_same_winds_are_the_same_picture_across_the_date_line(opengl: Any, west: float) -> None:
+    del opengl
+    ds = winds(np.arange(west, 180.0, 4.0), np.arange(-90.0, 90.1, 4.0))
+    shifted = ds.assign_coords(lon=ds.lon % 360).sortby("lon").isel(lat=slice(None, None, -1))
+    options: dict[str, Any] = {"size": (120, 120), "scalars": False, "coastlines": False}
+    options |= {"graticule": False, "lighting": False}
+    for view in ({"globe": True}, {"projection": "platecarree"}, {"projection": "south"}):
+        one, other = (flowtex.render(d, **view, **options).astype(float) for d in (ds, shifted))
+        assert one.std() > 10
+        assert np.abs(one - other).mean() < 2, view
+
+
+def test_an_orthographic_map_is_half_of_the_earth() -> None:
+    ds = winds(np.arange(-180.0, 180.0, 4.0), np.arange(-88.0, 88.1, 4.0))
+    field = FlowField.from_xarray(ds, projection="+proj=ortho +lat_0=30")
+    assert 0.35 < field.valid.mean() < 0.65

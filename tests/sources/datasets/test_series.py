@@ -1,0 +1,107 @@
+"""One data set gives one field, however it comes: paths, datasets, trees; units by any name."""
+
+from __future__ import annotations
+
+import ast
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from earth_data import winds
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+from flowtex.scene.options import Options
+from flowtex.settings import SettingsError
+from flowtex.sources.dataset_source import open_source
+
+pytest.importorskip("netCDF4")
+
+
+def days(count: int, **attributes: str) -> list[xr.Dataset]:
+    """Winds that grow day by day, in datasets of a day, whose times are numbers."""
+    one = winds(np.arange(0.0, 50, 5), np.arange(0.0, 40, 5))
+    return [
+        (one * (1.0 + day))
+        .map(lambda array: array.assign_attrs(one[array.name].attrs))
+        .expand_dims("time")
+        .assign_coords(time=("time", [float(day)], attributes))
+        for day in range(count)
+    ]
+
+
+def same(one: FlowField, other: FlowField) -> bool:
+    parts = ((f.points, np.asarray(f.velocity), f.times) for f in (one, other))
+    return one.start == other.start and all(
+        np.array_equal(a, b) for a, b in zip(*parts, strict=True)
+    )
+
+
+def test_paths_datasets_and_what_xarray_joined_are_the_same(tmp_path: Path) -> None:
+    steps = days(3, Unit="days since 2001-02-27")
+    paths = [tmp_path / f"flow_{n}.nc" for n in range(3)]
+    for ds, path in zip(steps, paths, strict=True):
+        ds.to_netcdf(path)
+    field = FlowField.from_file(paths)
+    assert len(field.times) == 3 and f"{field.start:%Y-%m-%d}" == "2001-02-27"
+    for data in (steps, steps[::-1], xr.concat(steps, "time")):
+        assert same(field, FlowField.from_xarray(data))
+    with xr.open_mfdataset(paths) as opened:
+        assert same(field, FlowField.from_xarray(opened))
+    assert all("Unit" in ds.time.attrs and "units" not in ds.time.attrs for ds in steps)
+
+
+@pytest.mark.skipif("FLOWTEX_DATA" not in os.environ, reason="the folder of real data is absent")
+def test_globcurrent_is_a_series_as_paths_and_as_a_dataset() -> None:
+    paths = sorted(Path(os.environ["FLOWTEX_DATA"]).glob("globcurrent_*.nc"))
+    with xr.open_mfdataset(paths) as opened:
+        field = FlowField.from_xarray(opened)
+        assert same(field, FlowField.from_file(paths))
+    assert np.array_equal(field.times, np.arange(8) * 86400.0)
+
+
+@pytest.mark.parametrize("key", ["Unit", "Units", "unit", "UNITS"])
+def test_a_unit_is_read_by_any_name(key: str) -> None:
+    ds = winds(np.arange(0.0, 50, 5), np.arange(0.0, 40, 5))
+    slow = ds.copy(deep=True)
+    for name in "uv":
+        slow[name].attrs = {"standard_name": ds[name].attrs["standard_name"], key: "cm/s"}
+    slow, fast = (FlowField.from_xarray(d).speed.max() for d in (slow, ds))
+    assert slow == pytest.approx(fast / 100)
+
+
+def test_domains_of_other_sizes_are_not_joined() -> None:
+    one, other = days(2, units="days since 2001-01-01")
+    field = FlowField.from_xarray([one, other.isel(lon=slice(1, None))])
+    assert field.steady
+
+
+def test_groups_are_chosen_by_path(tmp_path: Path) -> None:
+    ds = winds(np.arange(0.0, 50, 5), np.arange(0.0, 40, 5))
+    places = ds.drop_vars(["u", "v"])
+    parts = {"/": places, "/ocean/top": ds[["u", "v"]].drop_vars(["lon", "lat"])}
+    tree, path = xr.DataTree.from_dict(parts), tmp_path / "model.nc"
+    tree.to_netcdf(path)
+    whole = FlowField.from_xarray(ds)
+    found: Any = [tree, tree["ocean"], tree["ocean/top"]]
+    assert all(same(whole, FlowField.from_xarray(one)) for one in found)
+    assert all(
+        same(whole, FlowField.from_file(p)) for p in (path, path / "ocean", f"{path}/ocean/top")
+    )
+    assert same(whole, open_source(path / "ocean").field())
+    with pytest.raises(FieldError, match=r"model.nc.*group 'air' does not exist; expected /ocean"):
+        FlowField.from_file(path / "air")
+    tree["air"] = tree["ocean/top"]
+    with pytest.raises(FieldError, match=r"the groups /air, /ocean/top have a velocity; give one"):
+        FlowField.from_xarray(tree)
+    path = tmp_path / "two.nc"
+    tree.to_netcdf(path)
+    with pytest.raises(FieldError, match="give one, as in ") as caught:
+        FlowField.from_file(path)
+    given = str(caught.value).rpartition(" as in ")[2]  # what it names can be opened
+    assert same(whole, FlowField.from_file(ast.literal_eval(given)))
+    with pytest.raises(SettingsError, match=r"give the path of the group in the file"):
+        Options.split(group="ocean")

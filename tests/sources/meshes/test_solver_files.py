@@ -1,0 +1,207 @@
+"""Files as flow solvers write them: blocks by their paths, times, and what is not drawn yet."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, write_foam
+
+from flowtex import FlowField
+from flowtex._util.notices import Notice
+from flowtex.errors import FieldError
+from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.summary import BlockSummary, describe
+
+TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
+
+
+def says(text: str) -> pytest.RaisesExc[FieldError]:
+    """Expect an error with exactly this text."""
+    return pytest.raises(FieldError, match=f"^{re.escape(text)}$")
+
+
+def cgns(path: Path) -> Path:
+    """Two bases, one of them with two zones."""
+    with CGNS.write(path) as file:
+        file.base("Wing", [("Zone 1", TIP), ("Zone 2", BODY)], times=TIMES)
+        file.base("Tail", [("Zone 1", TIP)], times=TIMES, where="cells")
+    return path
+
+
+def test_zones_of_cgns_are_blocks_by_their_paths(tmp_path: Path) -> None:
+    path = cgns(tmp_path / "flow.cgns")
+    field = FlowField.from_file(path, block="Wing/Zone 2", plane="k=0")
+    assert field.times.tolist() == list(TIMES)
+    assert np.allclose(field.velocity[0], turning(BODY)[0])
+    assert np.allclose(field.velocity[1], turning(BODY, 2.0)[0])
+    assert list(field.scalars) == ["Pressure"]
+    field = FlowField.from_file(path, block=2, plane="k=0", time=1.0)
+    assert field.steady and field.shape == (3, 4), "cells have become nodes"
+    with says(
+        f"{path}: step 0 has 3 blocks that are not time steps of one mesh: 0 (Wing/Zone 1, "
+        "4 x 3 x 2 nodes), 1 (Wing/Zone 2, 6 x 3 x 2 nodes), 2 (Tail/Zone 1, 4 x 3 x 2 nodes); "
+        'choose one, as in block="Wing/Zone 1", or cut all volumes, as in slice="z"'
+    ):
+        FlowField.from_file(path, plane="k=0")
+
+
+def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:
+    summary = describe(cgns(tmp_path / "flow.cgns"))
+    assert summary.times == TIMES
+    assert summary.blocks == (
+        BlockSummary("Wing/Zone 1", 0, "StructuredGrid", "4 x 3 x 2 nodes"),
+        BlockSummary("Wing/Zone 2", 1, "StructuredGrid", "6 x 3 x 2 nodes"),
+        BlockSummary("Tail/Zone 1", 2, "StructuredGrid", "4 x 3 x 2 nodes"),
+    )
+    assert summary.problem.startswith("the file has 3 blocks that are not time steps of one mesh:")
+    summary = describe(tmp_path / "flow.cgns", block="Tail/Zone 1")
+    assert [(a.name, a.where) for a in summary.arrays] == [
+        ("Velocity", "cells"),
+        ("Pressure", "cells"),
+    ]
+    assert summary.problem == ""
+
+
+def test_steady_cgns_has_no_times(tmp_path: Path) -> None:
+    with CGNS.write(tmp_path / "flow.cgns") as file:
+        file.base("Base", [("Plate", box(4, 3, 1))])
+    assert describe(tmp_path / "flow.cgns").times == ()
+    assert describe(tmp_path / "flow.cgns").problem == ""
+    assert FlowField.from_file(tmp_path / "flow.cgns").shape == (3, 4)
+
+
+def ensight(path: Path) -> Path:
+    write_ensight(path, [("wing tip", TIP), ("body", BODY)])
+    return path
+
+
+def test_parts_of_ensight(tmp_path: Path) -> None:
+    path = ensight(tmp_path / "flow.case")
+    field = FlowField.from_file(path, block="body", plane="k=1", vectors="velocity")
+    assert field.times.tolist() == list(TIMES)
+    assert np.allclose(field.velocity[1], turning(BODY, 2.0)[1])
+    again = FlowField.from_file(path, block=1, plane="k=1", vectors="u,v,w", time=1)
+    assert np.array_equal(again.velocity[0], field.velocity[1])
+    summary = describe(path)
+    assert summary.times == TIMES
+    assert [block.name for block in summary.blocks] == ["wing tip", "body"]
+
+
+def test_times_of_ensight_that_stand_still(tmp_path: Path) -> None:
+    write_ensight(tmp_path / "flow.case", [("only", TIP)], times=[2.5])
+    field = FlowField.from_file(tmp_path / "flow.case", plane="k=0")
+    assert field.times.tolist() == [2.5]
+
+
+@pytest.mark.parametrize("write", [cgns, ensight])
+def test_blocks_with_times_are_read_when_they_are_asked_for(
+    tmp_path: Path, write: Callable[[Path], Path]
+) -> None:
+    path = write(tmp_path / ("flow.cgns" if write is cgns else "flow.case"))
+    source = FlowSource.from_file(path)
+    assert source.nbytes == 0
+    last = source.blocks[1]
+    assert source.block_vectors[last][0].lower() == "velocity"
+    field = source.field(block=last, plane="k=0")
+    assert field.times.tolist() == list(TIMES)
+    assert np.allclose(field.velocity[1], turning(BODY, 2.0)[0])
+    assert source.nbytes == source.part(last).nbytes > 0
+    assert np.allclose(source.field(block="1", plane="k=0").velocity, field.velocity)
+    assert source.field(block=source.blocks[0]).shape == (3, 4)
+    with pytest.raises(FieldError, match=r"block is 'nowhere'; expected one of "):
+        source.field(block="nowhere")
+
+
+def test_blocks_of_a_large_series_are_read_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.sources.mesh_source.MAX_SERIES_BYTES", 0)
+    source = FlowSource.from_file(cgns(tmp_path / "flow.cgns"))
+    field = source.field(block="Wing/Zone 2", plane="k=0")
+    assert np.allclose(field.velocity[1], turning(BODY, 2.0)[0])
+    (tmp_path / "flow.cgns").unlink()
+
+
+def test_nested_blocks(tmp_path: Path) -> None:
+    left, right = (pv.ImageData(dimensions=(n, 3, 1)).cast_to_structured_grid() for n in (4, 6))
+    for grid in (left, right):
+        grid["v"] = np.asarray(grid.points) + 1
+    base = pv.MultiBlock({"a/b": left, "hull": pv.Sphere()})
+    base.append(right, "a/b")
+    tree = pv.MultiBlock({"Base": base, "c": right})
+    tree.save(tmp_path / "flow.vtm")
+    path = tmp_path / "flow.vtm"
+    assert [b.name for b in describe(path).blocks] == ["Base/a/b 0", "Base/hull", "Base/a/b 2", "c"]
+    assert FlowField.from_file(path, block="Base/a/b 0").shape == (3, 4)
+    assert FlowField.from_file(path, block="Base/a/b 2").shape == (3, 6)
+    assert FlowField.from_pyvista(tree, block="c").shape == (3, 6)
+    with pytest.raises(FieldError, match="the mesh has no vectors that could be"):
+        FlowField.from_file(path, block="Base/hull")
+
+
+OUTER = "the outer surface of the volume is drawn"
+
+
+def test_openfoam_tells_its_patches_and_times(tmp_path: Path) -> None:
+    path = tmp_path / "case.foam"
+    write_foam(path)
+    summary = describe(path)
+    assert summary.times == TIMES
+    assert [(b.name, b.grid) for b in summary.blocks] == [
+        ("internalMesh", "UnstructuredGrid"),
+        ("boundary/inlet", "PolyData"),
+        ("boundary/outlet", "PolyData"),
+        ("boundary/walls", "PolyData"),
+    ]
+    assert "U" in summary.candidates
+    assert summary.problem == ""
+    with pytest.warns(Notice, match=OUTER):
+        field = FlowField.from_file(path)
+    assert field.times.tolist() == list(TIMES) and field.triangles is not None
+    cut = FlowField.from_file(path, slice="z", time=TIMES[0])
+    assert cut.steady and np.ptp(cut.points[..., 2]) < 1e-6
+    assert FlowField.from_file(path, block="boundary/walls").triangles is not None
+    source = FlowSource.from_file(path)
+    assert source.blocks[0] == "internalMesh" and "boundary/walls" in source.blocks
+
+
+def test_openfoam_in_the_pieces_of_a_parallel_run(tmp_path: Path) -> None:
+    path = tmp_path / "case.foam"
+    write_foam(path, decomposed=True)
+    summary = describe(path)
+    assert summary.times == TIMES
+    assert summary.blocks[0].name == "internalMesh"
+    assert "U" in summary.candidates
+
+
+def test_exodus_tells_what_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "flow.ex2"
+    write_exodus(path, TIP)
+    summary = describe(path)
+    assert "velocity" in summary.candidates
+    with pytest.warns(Notice, match=OUTER):
+        assert FlowField.from_file(path).triangles is not None
+
+
+def test_hexahedra_of_cgns(tmp_path: Path) -> None:
+    path = tmp_path / "flow.cgns"
+    with CGNS.write(path) as file:
+        file.base("Base", [("Zone", TIP)], hexahedra=True)
+    assert "Velocity" in describe(path).candidates
+    with pytest.warns(Notice, match=OUTER):
+        assert FlowField.from_file(path).triangles is not None
+    assert FlowField.from_file(path, slice="z").triangles is not None
+
+
+def test_a_case_of_openfoam_is_named_by_a_file_in_it(tmp_path: Path) -> None:
+    (tmp_path / "case" / "constant" / "polyMesh").mkdir(parents=True)
+    with pytest.raises(FieldError, match=r"case of OpenFOAM; make an empty file case\.foam in it"):
+        FlowField.from_file(tmp_path / "case")
+    (tmp_path / "x.foam").touch()
+    with pytest.raises(FieldError, match="its folder has no folder constant"):
+        FlowField.from_file(tmp_path / "x.foam")
