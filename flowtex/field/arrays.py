@@ -14,6 +14,40 @@ from numpy.typing import ArrayLike
 
 from flowtex.field.earth import Projection
 
+#: Steps of reading, in their order.
+STEPS = ("select", "align", "coordinates", "mask", "units", "components", "surface")
+
+
+class ReadingStep(NamedTuple):
+    """One sentence about what a step of reading did."""
+
+    step: str  #: One of :data:`STEPS`.
+    text: str
+    notable: bool = False  #: Whether it is a choice that users must know: it is issued as a notice.
+    caption: str = ""  #: Text for captions, such as ``"500 hPa"``.
+
+
+class Reading(tuple[ReadingStep, ...]):
+    """What was done to data before they became a field, one sentence after the other."""
+
+    __slots__ = ()
+
+    @property
+    def caption(self) -> str:
+        """Text for captions; empty for none."""
+        return ", ".join(step.caption for step in self if step.caption)
+
+    def of(self, step: str) -> tuple[str, ...]:
+        """Return the sentences of a step."""
+        return tuple(item.text for item in self if item.step == step)
+
+    def __str__(self) -> str:
+        return "\n".join(f"{step.step}: {step.text}" for step in self)
+
+
+#: The reading of arrays.
+NOTHING = Reading()
+
 
 class SectionAxes(NamedTuple):
     """Texts for the axes of a vertical section, whose units differ."""
@@ -35,9 +69,11 @@ class FieldArrays:
     name: str = ""
     length_unit: str = ""
     time_unit: str = ""
+    velocity_unit: str = ""
     units: Mapping[str, str] = field(default_factory=dict)
     long_names: Mapping[str, str] = field(default_factory=dict)
     projection: Projection | None = None
+    reading: Reading = NOTHING
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -18,7 +18,7 @@ from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.arrays import FieldArrays, SectionAxes, TriangleArrays
+from flowtex.field.arrays import NOTHING, FieldArrays, Reading, SectionAxes, TriangleArrays
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import as_seconds
 from flowtex.field.derived import (
@@ -98,6 +98,11 @@ class FlowField(FieldConstructors):
         Name of the scalar with the uncertainty of the direction; empty for none.
     section
         Texts for the axes of a vertical section; ``None`` for other surfaces.
+    reading
+        What was done to the data of a file, mesh or dataset, step by step; ``print(field.reading)``
+        lists it.
+    velocity_unit
+        Unit of :attr:`speed`; by default the units of length and time.
 
     Examples
     --------
@@ -128,6 +133,8 @@ class FlowField(FieldConstructors):
     formula: Formula | None = None
     uncertainty: str = ""
     section: SectionAxes | None = None
+    reading: Reading = NOTHING
+    velocity_unit: str = ""
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -143,8 +150,9 @@ class FlowField(FieldConstructors):
         """
         on_triangles = isinstance(arrays, TriangleArrays)
         make: Any = cls.from_triangles if on_triangles else cls.from_arrays
-        section = (arguments := dict(vars(arrays))).pop("section", None)
-        field: FlowField = make(**arguments).same_flow(section=section)
+        arguments = dict(vars(arrays))
+        kept = {name: arguments.pop(name, None) for name in ("section", "reading")}
+        field: FlowField = make(**arguments).same_flow(**kept)
         late = isinstance(field.velocity, LazySteps)
         if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
             notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")
@@ -163,6 +171,7 @@ class FlowField(FieldConstructors):
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
+        velocity_unit: str = "",
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
@@ -252,6 +261,7 @@ class FlowField(FieldConstructors):
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
+            velocity_unit=velocity_unit,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
             units=dict(filled.units),
@@ -278,6 +288,7 @@ class FlowField(FieldConstructors):
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
+        velocity_unit: str = "",
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
@@ -345,6 +356,7 @@ class FlowField(FieldConstructors):
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
+            velocity_unit=velocity_unit,
             units=dict(filled.units),
             long_names=dict(long_names or {}),
             start=start,

@@ -9,7 +9,7 @@ for the contravariant components (u_i, u_j), in cells per unit of time (Forssell
 section 3). The part that is normal to the surface is left out; its share is returned.
 
 At a pole all nodes of the line are one point and have one velocity, their mean. Each keeps the
-component along its line, from which :meth:`flowtex.field.poles.Pole.vector` restores
+component along its line, from which :meth:`flowtex.field.grids.poles.Pole.vector` restores
 the whole, and the full speed.
 """
 
@@ -22,7 +22,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import row_blocks
 from flowtex._util.vectors import dot, norm
-from flowtex.field.poles import Pole, Poles
+from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.steps import Steps
 
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.

@@ -16,8 +16,8 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
+from flowtex.field.grids.poles import Poles
 from flowtex.field.metric import IndexVelocity, to_index_space
-from flowtex.field.poles import Poles
 
 
 class Surface(ABC):

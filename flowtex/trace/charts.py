@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.grids.signs import corner_signs
-from flowtex.field.poles import Pole, Poles
 from flowtex.trace.node_grid import Corners, NodeGrid
 
 Numbers = NDArray[np.int8]

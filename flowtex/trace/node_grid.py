@@ -14,7 +14,7 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Indices
 from flowtex.field import FlowField
-from flowtex.field.poles import Poles
+from flowtex.field.grids.poles import Poles
 
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6

@@ -13,7 +13,8 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.inspection import inspect_file as files, limits
+from flowtex.sources.inspection import inspect_file as files
+from flowtex.sources.inspection import limits
 from flowtex.sources.inspection.inspect_file import inspect_file
 
 

@@ -18,7 +18,7 @@ import scipy
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.vectors import norm
 from flowtex.field.earth import GLOBE, Projection
-from flowtex.field.poles import SAME_POINT_SHARE
+from flowtex.field.grids.poles import SAME_POINT_SHARE
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.surface import TriangleSurface
 

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex.field.poles import Poles
+from flowtex.field.grids.poles import Poles
 
 #: Additional cost of a step to a node at right angles, over that of a step to one that agrees.
 TURN_COST = 10.0

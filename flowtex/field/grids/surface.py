@@ -22,8 +22,8 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
 from flowtex._util.vectors import norm
 from flowtex.errors import FieldError
+from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
-from flowtex.field.poles import Pole, Poles, find_poles
 from flowtex.field.surface import Surface
 from flowtex.field.validation import finite_nodes
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.vectors import norm
+from flowtex.field.grids.poles import Poles
 from flowtex.field.interpolation import fill_blanked, nearest_known
-from flowtex.field.poles import Poles
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.webgl.packing import HALF_MAX, half
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list

@@ -13,7 +13,7 @@ from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.poles import Pole
+from flowtex.field.grids.poles import Pole
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.structure.strength import strengths

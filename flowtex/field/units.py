@@ -1,0 +1,72 @@
+"""Units of data: conversion, what they measure, and their symbols, by pint with CF's units."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+from flowtex._util.extras import import_extra
+
+#: Texts of data without a unit.
+NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")
+#: Dimensions by pint's names; images have pixels for lengths and frames for times.
+LENGTHS = ("[length]", "[printing_unit]")
+TIMES = ("[time]", "[frame]")
+PRESSURES = ("[mass] / [length] / [time] ** 2",)
+VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
+#: Spellings that pint reads otherwise: its px is a length of web pages.
+SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))
+
+
+@cache
+def registry() -> Any:
+    """Return pint's registry with CF's units, which takes a second at first."""
+    import_extra("pint", "xarray")
+    from cf_xarray.units import units
+
+    if "frame" not in units:
+        units.define("frame = [frame]")
+    return units
+
+
+@cache
+def parsed(text: str) -> Any:
+    """Return pint's unit of a text; ``None`` for no unit, or one that pint does not know."""
+    text = text.strip()
+    if text.lower() in NONE:
+        return None
+    for pattern, replacement in SPELLINGS:
+        text = pattern.sub(replacement, text)
+    try:
+        return registry().parse_units(text)
+    except ModuleNotFoundError:
+        raise
+    except Exception:  # pint raises whatever the tokenizer of Python does
+        return None
+
+
+def measures(text: str, dimensions: tuple[str, ...]) -> bool:
+    """Return whether a unit has one of some dimensions, such as :data:`VELOCITIES`."""
+    unit = parsed(text)
+    return unit is not None and str(unit.dimensionality) in dimensions
+
+
+def is_angle(text: str) -> bool:
+    """Return whether a unit is one of angles: degrees or radians."""
+    unit = parsed(text)
+    return unit is not None and text.strip().lower().startswith(("deg", "rad", "°"))
+
+
+def factor(unit: str, other: str) -> float | None:
+    """Return the factor from a unit to another one; ``None`` where they measure other things."""
+    one, two = parsed(unit), parsed(other)
+    if one is None or two is None or one.dimensionality != two.dimensionality:
+        return None
+    return float(registry().Quantity(1.0, one).to(two).magnitude)
+
+
+def symbol(text: str) -> str:
+    """Return the short form of a unit for legends, as ``"m/s"`` for ``"m s-1"``."""
+    unit = parsed(text)
+    return text if unit is None or not unit.dimensionality else f"{unit:~C}".replace("**", "^")
