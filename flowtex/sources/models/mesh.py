@@ -11,11 +11,11 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
-from flowtex.sources.datasets.coordinates import DEGREES, LENGTHS
 from flowtex.sources.inspection.limits import values_in
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ class Mesh:
     def is_earth(self) -> bool:
         """Whether the coordinates are longitude and latitude, and not those of a plane."""
         unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
-        if DEGREES.match(unit) or RADIANS.match(unit):
+        if units.is_angle(unit):
             return True
-        if unit.lower() in LENGTHS:
+        if units.measures(unit, units.LENGTHS):
             return False
         description = str(self.x.attrs.get("standard_name", "")) or name
         if "projection" in description:
@@ -74,6 +74,12 @@ class Mesh:
             x, y = (np.abs(c) for c in self._raw)
             return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
         return bool(LONGITUDES.search(description)) or name == "nodes"
+
+    @property
+    def unit(self) -> str:
+        """Unit of positions in a plane; empty where unknown."""
+        unit = str(self.x.attrs.get("units", ""))
+        return units.symbol(unit) if units.measures(unit, units.LENGTHS) else ""
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
@@ -97,8 +103,7 @@ class Mesh:
             if radians:
                 a, b = np.degrees(a), np.degrees(b)
         else:
-            factor = LENGTHS.get(str(self.x.attrs.get("units", "")).lower(), 1.0)
-            a, b = a * factor, b * factor
+            b = b * (units.factor(str(self.y.attrs.get("units", "")), self.unit) or 1.0)
         if self.corners is None:
             return _from_bounds(a, b)
         return a, b, _numbers(self, self.corners, len(a))

@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
-from flowtex.sources.opening.series import are_steps, joined, of_tree
+from flowtex.sources.opening.series import Opened, are_steps, of_tree
 from flowtex.sources.opening.wind_json import read_winds
 
 if TYPE_CHECKING:
@@ -74,13 +74,9 @@ def belong_together(paths: Sequence[Path]) -> bool:
     return series or not all(find_pairs(parts) for parts in opened)
 
 
-def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
+def open_datasets(paths: Sequence[Path]) -> Opened:
     """Open files that belong together: parts of one model's output, or steps of a series."""
-    opened = [open_files(path) for path in paths]
-    if len(opened) == 1:
-        return opened[0]
-    parts = [ds for datasets in opened for ds in datasets]
-    return [joined(parts)] if len(parts) == len(opened) and are_steps(parts) else parts
+    return Opened(ds for path in paths for ds in open_files(path))
 
 
 def open_files(path: Path) -> list[xr.Dataset]:
