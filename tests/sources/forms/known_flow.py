@@ -19,7 +19,7 @@ EAST = {"units": "m s-1", "standard_name": "eastward_wind"}
 NORTH = {"units": "m s-1", "standard_name": "northward_wind"}
 DEGREES = {"lat": {"units": "degrees_north"}, "lon": {"units": "degrees_east"}}
 #: The date at hour 0.
-EPOCH = datetime.datetime(2024, 1, 1)  # noqa: DTZ001
+EPOCH = datetime.datetime(2024, 1, 1)
 #: Distance in degrees, or as a share of the extent of a plane, up to which places are the same.
 NEAR = 2e-3
 #: Error as a share of the greatest speed.
@@ -85,6 +85,12 @@ def in_plane(x: Any, y: Any, times: Any = (0.0,), **more: Any) -> Truth:
     """Return the truth of the flow in the plane, by default without units."""
     more = {"flow": plane, "speed_unit": "", **more}
     return Truth(grid(x, y), tuple(np.atleast_1d(times).tolist()), on_earth=False, **more)
+
+
+def at_points(points: Any, **more: Any) -> Truth:
+    """Return the truth of the flow in the plane at points, (N, 2)."""
+    more = {"flow": plane, "speed_unit": "", **more}
+    return Truth(np.asarray(points, dtype=float), on_earth=False, **more)
 
 
 def without(truth: Truth, blank: Any) -> Truth:
@@ -193,7 +199,7 @@ def _value_faults(
     velocity = np.asarray(found.velocity[step])[found.valid]
     if truth.on_earth:
         assert found.projection is not None
-        a, b = found.projection.components(*places.T, velocity)
+        a, b = found.projection.components(places[:, 0], places[:, 1], velocity)
     else:
         unit = f"{found.length_unit}/{found.time_unit or 'second'}" if found.length_unit else ""
         factor = ratio(unit, truth.speed_unit)
@@ -236,9 +242,9 @@ def earth(
     lon: Any, lat: Any, hours: Any = None, dims: tuple[str, str] = ("lat", "lon")
 ) -> xr.Dataset:
     """Return a plain dataset of the flow on the Earth, of which all forms are changes."""
-    at = np.meshgrid(lon, lat)
+    a, b = np.meshgrid(lon, lat)
     times = np.atleast_1d(0.0 if hours is None else hours)
-    u, v = np.stack([np.stack(wind(*at, h)) for h in times], axis=1)
+    u, v = np.stack([np.stack(wind(a, b, h)) for h in times], axis=1)
     names = dims if hours is None else ("time", *dims)
     coords: dict[str, Any] = {
         dims[0]: (dims[0], np.asarray(lat, dtype=float), DEGREES["lat"]),
@@ -259,9 +265,9 @@ def dates(hours: Any) -> AnyArray:
 
 def lab(x: Any, y: Any, t: Any = None, dims: tuple[str, str] = ("y", "x"), **attrs: Any) -> Any:
     """Return a dataset of the flow in the plane; ``attrs`` are those of u and v."""
-    at = np.meshgrid(x, y)
+    a, b = np.meshgrid(x, y)
     times = np.atleast_1d(0.0 if t is None else t)
-    u, v = np.stack([np.stack(plane(*at, h)) for h in times], axis=1)
+    u, v = np.stack([np.stack(plane(a, b, h)) for h in times], axis=1)
     names = dims if t is None else ("t", *dims)
     coords: dict[str, Any] = {dims[0]: np.asarray(y), dims[1]: np.asarray(x)}
     if t is None:

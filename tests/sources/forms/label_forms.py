@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from form_table import form, variants
-from known_flow import DEGREES, Truth, dates, earth, on_earth, wind
+from known_flow import DEGREES, earth, on_earth, wind, without
 
 LON, LAT = np.arange(2.0, 38, 2), np.arange(-30.0, 31, 4)
 HOURS = np.array([0.0, 6.0, 12.0])
@@ -20,7 +20,9 @@ SERIES, STEADY = on_earth(LON, LAT, HOURS), on_earth(LON, LAT)
 
 
 def parts(ds: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
-    return ds[["u"]], ds[["v"]]
+    """Return datasets of the first and of the second component."""
+    u, v = ds
+    return ds[[u]], ds[[v]]
 
 
 def series() -> xr.Dataset:
@@ -230,7 +232,7 @@ def two_dimensional_places_beside_index_axes(kind: str) -> Any:
     line = {"count": (0, 1.0, {}), "one to n": (1, 1.0, {"units": "1"}), "metres": (0, 5e3, {})}
     first, step, attrs = line[kind]
     return xr.Dataset(
-        {"u": (("y", "x"), u, EAST_OF_MAP), "v": (("y", "x"), v, NORTH_OF_MAP)},
+        {"uo": (("y", "x"), u, EAST_OF_MAP), "vo": (("y", "x"), v, NORTH_OF_MAP)},
         {
             "x": ("x", first + step * np.arange(columns), attrs),
             "y": ("y", first + step * np.arange(rows), attrs),
@@ -249,6 +251,83 @@ def curved() -> tuple[Any, Any]:
     j, i = np.mgrid[0:16, 0:21]
     lon = 10 + 0.9 * i - 0.35 * j + 0.004 * i * j
     return lon, 35 + 0.3 * i + 0.8 * j - 0.003 * i * i
+
+
+@form()
+def lines_of_any_spacing() -> Any:
+    lon, lat = LON**1.2, 30 * np.sin(np.radians(2 * LAT))
+    return earth(lon, lat), on_earth(lon, lat)
+
+
+@form(says="lon")
+def first_column_repeated_in_v_alone() -> Any:
+    u, v = earth(ALL, LAT)[["u"]], earth(np.append(ALL, 360.0), LAT)[["v"]]
+    return [u, v], on_earth(ALL, LAT)
+
+
+@form()
+def lines_along_dimensions_of_other_names() -> Any:
+    """longitude(x) and latitude(y) are no index of their dimensions."""
+    ds = earth(LON, LAT).rename_dims(lon="x", lat="y")
+    return ds.rename_vars(lon="longitude", lat="latitude"), STEADY
+
+
+@form()
+def places_in_a_dataset_of_their_own() -> Any:
+    ds = earth(LON, LAT, dims=("j", "i")).drop_vars(["i", "j"])
+    a, b = np.meshgrid(LON, LAT)
+    dims = ("j", "i")
+    places = {"lon": (dims, a, DEGREES["lon"]), "lat": (dims, b, DEGREES["lat"])}
+    return [ds, xr.Dataset(places)], STEADY
+
+
+@form()
+def places_that_are_variables() -> Any:
+    ds, truth = two_dimensional_places_beside_index_axes("count")
+    return ds.reset_coords(["lon", "lat"]), truth
+
+
+@variants(["y", "x"], error="lon|lat|position")
+def two_dimensional_places_reversed_in_v(dim: str) -> Any:
+    ds, truth = two_dimensional_places_beside_index_axes("count")
+    u, v = parts(ds.drop_vars(["x", "y"]))
+    return [u, v.isel({dim: BACK})], truth
+
+
+@form()
+def two_dimensional_longitudes_from_0_to_360_in_v() -> Any:
+    lon, lat = curved()
+    u, v = wind(lon - 20, lat)
+    dims = ("y", "x")
+    places = {"lat": (dims, lat, DEGREES["lat"])}
+    counted = {"lon": (dims, (lon - 20) % 360, DEGREES["lon"])}
+    return [
+        xr.Dataset(
+            {"uo": (dims, u, EAST_OF_MAP)}, {**places, "lon": (dims, lon - 20, DEGREES["lon"])}
+        ),
+        xr.Dataset({"vo": (dims, v, NORTH_OF_MAP)}, {**places, **counted}),
+    ], on_earth(lon - 20, lat)
+
+
+@form(error="lon|lat|position")
+def two_dimensional_places_of_v_elsewhere() -> Any:
+    ds, _ = two_dimensional_places_beside_index_axes("count")
+    u, v = parts(ds.drop_vars(["x", "y"]))
+    return [u, v.assign_coords(lon=v.lon + 0.3)]
+
+
+@form()
+def bytes_in_another_order() -> Any:
+    """As in NetCDF 3 and files of Fortran."""
+    ds = earth(LON, LAT)
+    return ds.astype(">f4").assign_coords(lon=ds.lon.astype(">f4")), STEADY
+
+
+@form()
+def holes_of_u_and_v_differ() -> Any:
+    ds = earth(LON, LAT)
+    ds["u"][2, 3] = ds["v"][5, 4] = np.nan
+    return ds, without(STEADY, (np.isnan(ds.u) | np.isnan(ds.v)).values)
 
 
 # --- files --------------------------------------------------------------------------------------
@@ -339,8 +418,7 @@ def packed_in_a_file(folder: Path) -> Any:
     for name, attrs in (("u", "eastward_wind"), ("v", "northward_wind")):
         ds[name].attrs = {"units": "m s-1", "standard_name": attrs}
     ds.to_netcdf(folder / "packed.nc", encoding={"u": packing, "v": packing})
-    truth = on_earth(lon[~hole], lat[~hole])
-    return folder / "packed.nc", truth
+    return folder / "packed.nc", without(on_earth(lon, lat), hole)
 
 
 @form()
@@ -349,14 +427,14 @@ def packed_and_not_decoded() -> Any:
     ds = earth(LON, LAT)
     for name in "uv":
         attrs = {**ds[name].attrs, "scale_factor": 0.001, "add_offset": 2.0, "_FillValue": -9999}
-        number = np.round((ds[name] - 2.0) / 0.001).astype("i2")
+        number = ((ds[name] - 2.0) / 0.001).round().astype("i2")
         number[2, 3] = -9999
         ds[name] = number.assign_attrs(attrs)
     lon, lat = np.meshgrid(LON, LAT)
-    keep = np.ones(lon.shape, dtype=bool)
-    keep[2, 3] = False
+    hole = np.zeros(lon.shape, dtype=bool)
+    hole[2, 3] = True
     u, v = parts(ds)
-    return [u, v.isel(lat=BACK)], on_earth(lon[keep], lat[keep])
+    return [u, v.isel(lat=BACK)], without(on_earth(lon, lat), hole)
 
 
 # --- levels and members -------------------------------------------------------------------------
@@ -447,4 +525,3 @@ def an_axis_without_coordinate() -> Any:
     """A further axis of one entry, and one of several of which the first is drawn."""
     ds = levels([0, 1], "kind").drop_vars("kind").expand_dims("surface")
     return ds, STEADY
-

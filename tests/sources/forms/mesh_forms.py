@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from form_table import form, variants
-from known_flow import Truth, in_plane, plane
+from known_flow import Truth, at_points, plane
 
 #: Normals of planes and the axes that span them.
 PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -22,8 +22,7 @@ def sheet(kind: str) -> tuple[Any, Any, Any]:
 
 
 def truth_of(mesh: Any, kind: str, **more: Any) -> Truth:
-    a, b = (mesh.points[:, axis].astype(float) for axis in PLANES[kind])
-    return in_plane(a, b, axes=PLANES[kind], **more)
+    return at_points(mesh.points[:, PLANES[kind]], axes=PLANES[kind], **more)
 
 
 @variants(PLANES)
@@ -93,7 +92,7 @@ def a_slice_of_a_volume() -> Any:
     u, v = plane(x, z)
     volume["U"] = np.stack([u, 0 * u, v], axis=-1)
     kept = np.abs(volume.points[:, 1]) < 1e-9
-    return volume, in_plane(x[kept], z[kept], axes=(0, 2))
+    return volume, at_points(np.stack([x, z], axis=-1)[kept], axes=(0, 2))
 
 
 @form()
@@ -103,7 +102,6 @@ def steps_of_a_mesh() -> Any:
     for time in range(3):
         mesh, *_ = sheet("xy")
         p = mesh.points.astype(float)
-        mesh["U"] = np.stack([*plane(*p[:, :2].T, time), 0 * p[:, 0]], axis=-1)
+        mesh["U"] = np.stack([*plane(p[:, 0], p[:, 1], time), 0 * p[:, 0]], axis=-1)
         found.append(mesh)
-    p = found[0].points.astype(float)
-    return found, in_plane(p[:, 0], p[:, 1], range(3), undated=True)
+    return found, at_points(found[0].points[:, :2], times=(0.0, 1.0, 2.0), undated=True)

@@ -11,14 +11,16 @@ import mesh_forms
 import numpy as np
 import pytest
 import time_forms
+import turned_forms
 import value_forms
 from form_table import FORMS, judge, read
 from known_flow import check, in_plane, lab, plane, ratio
 
+from flowtex import FlowField
 from flowtex.errors import FieldError
 
 pytest.importorskip("pyproj")
-MODULES = (grid_forms, label_forms, mesh_forms, time_forms, value_forms)
+MODULES = (grid_forms, label_forms, mesh_forms, time_forms, turned_forms, value_forms)
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -81,6 +83,36 @@ def test_errors_about_laboratory_axes_have_no_longitude() -> None:
         read(ds)
     except FieldError as error:
         assert "longitude" not in str(error)
+
+
+@pytest.mark.parametrize("projection", ["platecarree", "robinson", "mercator", "EPSG:3857"])
+def test_pacific_is_not_stretched_over_africa(projection: str) -> None:
+    """On a map around Greenwich no cell reaches from one edge to the other."""
+    field = read(label_forms.pacific()[0], projection=projection)
+    corners = np.stack([field.points.reshape(-1, 3)[i] for i in corner_numbers(field)])
+    width = np.ptp(corners[..., 0], axis=0)
+    assert width.max() < 1.5 * np.median(width)
+
+
+def corner_numbers(field: FlowField) -> Any:
+    """Numbers of the nodes at the corners of the drawn cells, (4 or 3, M)."""
+    if field.triangles is not None:
+        return field.triangles[field.valid[0][field.triangles].all(axis=1)].T
+    number = np.arange(field.valid.size).reshape(field.shape)
+    at = (number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:])
+    return [corner[field.surface.cells] for corner in at]
+
+
+def test_shuffled_x_of_arrays_is_sorted_or_refused() -> None:
+    x, y = np.random.default_rng(0).permutation(np.linspace(0, 3, 25)), np.linspace(0, 1, 16)
+    velocity = np.stack(plane(*np.meshgrid(x, y)), axis=-1)
+    try:
+        field = FlowField.from_arrays((x, y), velocity)
+    except FieldError as error:
+        assert "x" in str(error)
+        return
+    check(field, in_plane(x, y))
+    assert (np.diff(field.points[0, :, 0]) > 0).all()
 
 
 def test_check_finds_each_kind_of_fault() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from form_table import form, variants
 from known_flow import dates, earth, in_plane, lab, on_earth
@@ -173,7 +174,7 @@ def text_that_is_no_date() -> Any:
     return retimed(series(), ["first", "second", "third"])
 
 
-@form(options={"time": "2024-01-01T06:00"})
+@form(options={"sel": {"time": "2024-01-01T06:00"}})
 def a_chosen_time_of_v_in_another_order() -> Any:
     u, v = parts(series())
     return [u, v.isel(time=BACK)], on_earth(LON, LAT, HOURS[1:2])
@@ -196,11 +197,35 @@ def first_step_zero_everywhere() -> Any:
 @form()
 def gaps_that_vary_in_time() -> Any:
     """As radars leave them: a node without data at one time has data at another."""
-    ds = earth(LON, LAT, FOUR)
+    ds = earth(LON, LAT, HOURS)
     known = np.random.default_rng(3).random(ds.u.shape) > 0.2
     known[0] |= ~known.any(axis=0)
-    missing = ~known.reshape(len(FOUR), -1)
-    return ds.where(xr.DataArray(known, dims=ds.u.dims)), on_earth(LON, LAT, FOUR, absent=missing)
+    missing = ~known.reshape(len(HOURS), -1)
+    return ds.where(xr.DataArray(known, dims=ds.u.dims)), replace(SERIES, absent=missing)
+
+
+@form()
+def times_of_v_with_errors_of_rounding() -> Any:
+    u, v = parts(series())
+    return [u, retimed(v, v.time.values + np.timedelta64(1, "ms"))], SERIES
+
+
+@form()
+def steps_of_a_forecast() -> Any:
+    """As cfgrib has them: a date, spans since then, and the dates of the steps beside."""
+    ds = series().rename(time="step")
+    valid = ds.step.values
+    spans = (HOURS * 3600e9).astype("m8[ns]")
+    return ds.assign_coords(
+        step=("step", spans),
+        time=((), dates(0.0), {"standard_name": "forecast_reference_time"}),
+        valid_time=("step", valid, {"standard_name": "time"}),
+    ), SERIES
+
+
+@form()
+def dates_of_python() -> Any:
+    return retimed(series(), pd.DatetimeIndex(dates(HOURS)).to_pydatetime()), SERIES
 
 
 # --- in the plane -------------------------------------------------------------------------------

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from form_table import form, variants
-from known_flow import EAST, NORTH, Truth, earth, in_plane, lab, on_earth, plane, without
-from label_forms import BACK, LAT, LON, SERIES, STEADY, parts, series
+from known_flow import EAST, NORTH, Truth, at_points, earth, in_plane, lab, plane, without
+from label_forms import BACK, LAT, LON, SERIES, STEADY, series
 
 L, B = np.meshgrid(LON, LAT)
 LAND = (L > 20) & (B > 4)
@@ -26,6 +26,15 @@ ON_LAND = xr.DataArray(LAND, dims=("lat", "lon"))
 def land_without_declaration(value: float) -> Any:
     """Land has one value in both components, and no attribute says so."""
     return earth(LON, LAT).where(~ON_LAND, value), SEA
+
+
+@form(says="mask|fill")
+def land_without_declaration_and_a_date_as_text() -> Any:
+    """(time, longitude, latitude), whose units are unknown."""
+    ds = earth(LON, LAT).where(~ON_LAND, -999.0).expand_dims(time=["2024-01-01"])
+    for name in ds.variables:
+        ds[name].attrs = {"units": "m s-1"} if name in ("u", "v") else {}
+    return ds.rename(lon="longitude", lat="latitude").transpose("time", "longitude", ...), SEA
 
 
 @form(says="mask|fill")
@@ -122,7 +131,7 @@ def flagged(meaning: str, *, apart: bool = False) -> xr.Dataset:
             "flag_values": np.array([1, 4], "i1"),
             "flag_meanings": f"good {meaning}",
         }
-        ds[name] = xr.where(ON_LAND, 4, 1).astype("i1").assign_attrs(flags)
+        ds[name] = (1 + 3 * ON_LAND).astype("i1").assign_attrs(flags)
         ds[component].attrs = {**attrs, "ancillary_variables": name}
     return ds
 
@@ -259,7 +268,7 @@ LABORATORY = {
 @variants(LABORATORY)
 def unit_in_the_plane(kind: str) -> Any:
     length, speed = LABORATORY[kind]
-    ds = lab(X, Y, **({"units": speed} if speed else {}))
+    ds = lab(X, Y, units=speed) if speed else lab(X, Y)
     for name in "xy" if length else "":
         ds[name].attrs["units"] = length
     return ds, in_plane(X, Y, unit=length, speed_unit=speed)
@@ -383,7 +392,7 @@ def names_in_capitals_with_numbers() -> Any:
 def integers() -> Any:
     ds = earth(LON, LAT)
     for name, attrs in (("u", EAST), ("v", NORTH)):
-        ds[name] = np.round(ds[name] * 1e6).astype("i4").assign_attrs(attrs, units="um/s")
+        ds[name] = (ds[name] * 1e6).round().astype("i4").assign_attrs(attrs, units="um/s")
     return ds, STEADY
 
 
@@ -433,4 +442,4 @@ def rows_of_points() -> Any:
     p = np.random.default_rng(0).uniform(-1, 1, (600, 2))
     x, y = p[~((p[:, 0] > 0) & (p[:, 1] > 0))].T
     u, v = plane(x, y)
-    return pd.DataFrame({"x": x, "y": y, "u": u, "v": v}), in_plane(x, y)
+    return pd.DataFrame({"x": x, "y": y, "u": u, "v": v}), at_points(np.stack([x, y], axis=-1))
