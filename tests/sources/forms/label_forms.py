@@ -115,6 +115,16 @@ def pacific_on_a_map_around_greenwich() -> Any:
     return pacific()
 
 
+def any_projection() -> Any:
+    """The same nodes and the same flow on any map, of components in opposite directions."""
+    u, v = parts(series())
+    return [u, v.isel(lat=BACK)], SERIES
+
+
+for projection in ("globe", "platecarree", "robinson", "mercator", "lambert", "EPSG:3857"):
+    form(name=projection.replace(":", "_"), options={"projection": projection})(any_projection)
+
+
 @form()
 def v_with_rounded_places() -> Any:
     """float32 beside float64, of values that neither has exactly."""

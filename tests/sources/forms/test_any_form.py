@@ -237,7 +237,7 @@ def in_files(parts: list[xr.Dataset], form: Form) -> list[xr.Dataset]:
     return found[turn:] + found[:turn]
 
 
-@property_test(40)
+@property_test(40, fuzz=400)
 @given(FORMS)
 def test_a_combination_is_right_or_one_error(form: Form) -> None:
     datasets, truth = made(form)

@@ -156,7 +156,7 @@ TEXTS = {
 }
 
 
-@variants(TEXTS, error="time|date", never="astype")
+@variants(TEXTS)
 def dates_as_text(kind: str) -> Any:
     hours = HOURS * 4 if kind == "date" else HOURS
     texts = xr.DataArray(dates(hours), dims="time").dt.strftime(TEXTS[kind]).values
@@ -208,6 +208,15 @@ def gaps_that_vary_in_time() -> Any:
 def times_of_v_with_errors_of_rounding() -> Any:
     u, v = parts(series())
     return [u, retimed(v, v.time.values + np.timedelta64(1, "ms"))], SERIES
+
+
+@form()
+def letters_of_wrf() -> Any:
+    """Dates are the text of a variable beside the data, and the axis has no coordinate."""
+    ds = series().rename(time="Time").drop_vars("Time")
+    hours = dates(HOURS).astype("datetime64[s]").astype(str)
+    letters = [text.replace("T", "_").encode() for text in hours]
+    return ds.assign(Times=("Time", np.array(letters))), SERIES
 
 
 @form()

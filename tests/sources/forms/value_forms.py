@@ -337,6 +337,12 @@ def speed_and_direction(kind: str) -> Any:
 
 
 @form()
+def direction_in_a_dataset_of_its_own_from_north_to_south() -> Any:
+    ds, truth = speed_and_direction("from")
+    return [ds[["wspd"]], ds[["wdir"]].isel(lat=BACK)], truth
+
+
+@form()
 def sea_water_speed_and_direction_in_radians() -> Any:
     ds = earth(LON, LAT)
     speed = np.hypot(ds.u, ds.v) * 100
@@ -355,7 +361,7 @@ def speed_and_direction_of_unknown_meaning() -> Any:
     return ds, STEADY
 
 
-@variants(["rad", "degrees"], error="component|v_r|polar")
+@variants(["rad", "degrees"], error="polar|radial|r and phi")
 def components_along_r_and_phi(unit: str) -> Any:
     r, a = np.geomspace(0.1, 1, 20), np.linspace(0, 2 * np.pi, 48, endpoint=False)
     R, A = np.meshgrid(r, a, indexing="ij")
