@@ -17,6 +17,8 @@ from flowtex._util.array_types import AnyArray, Floats
 
 EAST = {"units": "m s-1", "standard_name": "eastward_wind"}
 NORTH = {"units": "m s-1", "standard_name": "northward_wind"}
+EAST_AT_SEA = {"units": "m s-1", "standard_name": "eastward_sea_water_velocity"}
+NORTH_AT_SEA = {"units": "m s-1", "standard_name": "northward_sea_water_velocity"}
 DEGREES = {"lat": {"units": "degrees_north"}, "lon": {"units": "degrees_east"}}
 #: The date at hour 0.
 EPOCH = datetime.datetime(2024, 1, 1)
@@ -197,13 +199,13 @@ def _value_faults(
     scale = float(np.broadcast_to(truth.scale, len(truth.times))[step])
     u, v = (scale * part for part in truth.flow(*places.T, time))
     velocity = np.asarray(found.velocity[step])[found.valid]
+    unit = f"{found.length_unit}/{found.time_unit or 'second'}" if found.length_unit else ""
+    velocity = velocity * ratio(unit, truth.speed_unit)
     if truth.on_earth:
         assert found.projection is not None
         a, b = found.projection.components(places[:, 0], places[:, 1], velocity)
     else:
-        unit = f"{found.length_unit}/{found.time_unit or 'second'}" if found.length_unit else ""
-        factor = ratio(unit, truth.speed_unit)
-        a, b = (factor * velocity[:, axis] for axis in truth.axes)
+        a, b = (velocity[:, axis] for axis in truth.axes)
     faults = []
     most = max(float(np.hypot(u, v).max()), 1e-12) * truth.tolerance
     there = np.ones(len(u), dtype=bool)
@@ -255,6 +257,12 @@ def earth(
     else:
         coords["time"] = dates(times)
     return xr.Dataset({"u": (names, u, EAST), "v": (names, v, NORTH)}, coords)
+
+
+def current(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose u and v are a current, for which land is no place."""
+    attrs = {"u": EAST_AT_SEA, "v": NORTH_AT_SEA}
+    return ds.assign({n: ds[n].assign_attrs(attrs[n]) for n in ("u", "v") if n in ds})
 
 
 def dates(hours: Any) -> AnyArray:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from form_table import form, variants
-from known_flow import DEGREES, earth, on_earth, wind, without
+from known_flow import DEGREES, EAST_AT_SEA, NORTH_AT_SEA, earth, on_earth, wind, without
 
 LON, LAT = np.arange(2.0, 38, 2), np.arange(-30.0, 31, 4)
 HOURS = np.array([0.0, 6.0, 12.0])
@@ -110,7 +110,7 @@ def pacific() -> Any:
     return earth(lon, LAT), on_earth(lon, LAT)
 
 
-@form(options={"projection": "robinson"})
+@form(options={"projection": "+proj=robin"})
 def pacific_on_a_map_around_greenwich() -> Any:
     return pacific()
 
@@ -242,7 +242,7 @@ def two_dimensional_places_beside_index_axes(kind: str) -> Any:
     line = {"count": (0, 1.0, {}), "one to n": (1, 1.0, {"units": "1"}), "metres": (0, 5e3, {})}
     first, step, attrs = line[kind]
     return xr.Dataset(
-        {"uo": (("y", "x"), u, EAST_OF_MAP), "vo": (("y", "x"), v, NORTH_OF_MAP)},
+        {"uo": (("y", "x"), u, EAST_AT_SEA), "vo": (("y", "x"), v, NORTH_AT_SEA)},
         {
             "x": ("x", first + step * np.arange(columns), attrs),
             "y": ("y", first + step * np.arange(rows), attrs),
@@ -250,10 +250,6 @@ def two_dimensional_places_beside_index_axes(kind: str) -> Any:
             "lat": (("y", "x"), lat, DEGREES["lat"]),
         },
     ), on_earth(lon, lat)
-
-
-EAST_OF_MAP = {"units": "m s-1", "standard_name": "eastward_sea_water_velocity"}
-NORTH_OF_MAP = {"units": "m s-1", "standard_name": "northward_sea_water_velocity"}
 
 
 def curved() -> tuple[Any, Any]:
@@ -313,9 +309,9 @@ def two_dimensional_longitudes_from_0_to_360_in_v() -> Any:
     counted = {"lon": (dims, (lon - 20) % 360, DEGREES["lon"])}
     return [
         xr.Dataset(
-            {"uo": (dims, u, EAST_OF_MAP)}, {**places, "lon": (dims, lon - 20, DEGREES["lon"])}
+            {"uo": (dims, u, EAST_AT_SEA)}, {**places, "lon": (dims, lon - 20, DEGREES["lon"])}
         ),
-        xr.Dataset({"vo": (dims, v, NORTH_OF_MAP)}, {**places, **counted}),
+        xr.Dataset({"vo": (dims, v, NORTH_AT_SEA)}, {**places, **counted}),
     ], on_earth(lon - 20, lat)
 
 

@@ -12,7 +12,18 @@ import xarray as xr
 from form_table import read
 from hypothesis import given
 from hypothesis import strategies as st
-from known_flow import AVERAGED, DEGREES, EXACT, Truth, check, dates, earth, on_earth, without
+from known_flow import (
+    AVERAGED,
+    DEGREES,
+    EXACT,
+    Truth,
+    check,
+    current,
+    dates,
+    earth,
+    on_earth,
+    without,
+)
 from strategies import property_test
 
 from flowtex._util.array_types import Bools, Floats
@@ -169,6 +180,7 @@ def masked(parts: list[xr.Dataset], kind: str) -> tuple[list[xr.Dataset], Bools]
             ds[name].attrs["_FillValue"] = MARKS[kind]
         found.append(ds)
     if kind in MASKS:
+        found = [current(ds) for ds in found]
         found[0] = found[0].assign({kind: (over if MASKS[kind] else ~over).astype("i1")})
     return found, land
 

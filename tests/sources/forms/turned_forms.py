@@ -12,7 +12,9 @@ from known_flow import (
     AVERAGED,
     DEGREES,
     EAST,
+    EAST_AT_SEA,
     NORTH,
+    NORTH_AT_SEA,
     Truth,
     dates,
     in_plane,
@@ -20,7 +22,7 @@ from known_flow import (
     plane,
     wind,
 )
-from label_forms import BACK, EAST_OF_MAP, NORTH_OF_MAP, curved, parts
+from label_forms import BACK, curved, parts
 
 #: Error of directions that follow from differences between nodes.
 TURNED = 1e-2
@@ -100,7 +102,7 @@ def x_and_y_on_a_turned_grid_with_decreasing_y() -> Any:
 
 @form(says="east")
 def eastward_on_a_turned_grid() -> Any:
-    return on_curved(("uo", "vo"), OF_EARTH, (EAST_OF_MAP, NORTH_OF_MAP)), ON_GRID
+    return on_curved(("uo", "vo"), OF_EARTH, (EAST_AT_SEA, NORTH_AT_SEA)), ON_GRID
 
 
 @form(says="east")
@@ -109,7 +111,7 @@ def eastward_on_a_bent_grid() -> Any:
     u, v = wind(lon, lat)
     dims = ("y", "x")
     return xr.Dataset(
-        {"uo": (dims, u, EAST_OF_MAP), "vo": (dims, v, NORTH_OF_MAP)},
+        {"uo": (dims, u, EAST_AT_SEA), "vo": (dims, v, NORTH_AT_SEA)},
         {"lon": (dims, lon, DEGREES["lon"]), "lat": (dims, lat, DEGREES["lat"])},
     ), on_earth(lon, lat)
 
@@ -246,7 +248,7 @@ def projected_with_eastward_wind(unit: str) -> Any:
 @form()
 def projected_from_north_to_south_in_v() -> Any:
     ds, truth = on_mapping("lambert", geographic=False, unit="m")
-    u, v = parts(ds)
+    u, v = parts(ds.drop_vars("crs"))
     return [u.assign(crs=ds.crs), v.assign(crs=ds.crs).isel(y=BACK)], truth
 
 

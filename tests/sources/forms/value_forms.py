@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from form_table import form, variants
-from known_flow import EAST, NORTH, Truth, at_points, earth, in_plane, lab, plane, without
+from known_flow import EAST, NORTH, Truth, at_points, current, earth, in_plane, lab, plane, without
 from label_forms import BACK, LAT, LON, SERIES, STEADY, series
 
 L, B = np.meshgrid(LON, LAT)
@@ -87,7 +87,8 @@ def masked(name: str) -> xr.Dataset:
     on_land, standard_name = MASKS[name]
     values = ON_LAND.astype("i1") if on_land else (~ON_LAND).astype("i1")
     attrs = {"standard_name": standard_name} if standard_name else {}
-    return earth(LON, LAT).where(~ON_LAND, 0.341).assign({name: values.assign_attrs(attrs)})
+    ds = current(earth(LON, LAT)).where(~ON_LAND, 0.341)
+    return ds.assign({name: values.assign_attrs(attrs)})
 
 
 @variants(MASKS, says="mask")
@@ -104,9 +105,27 @@ def land_in_a_dataset_of_its_own_from_north_to_south(name: str) -> Any:
 
 @form(says="mask")
 def land_with_an_axis_of_time() -> Any:
-    ds = series().where(~ON_LAND, 0.341)
+    ds = current(series()).where(~ON_LAND, 0.341)
     lsm = ON_LAND.astype("f4").expand_dims(time=ds.time)
     return ds.assign(lsm=lsm), without(SERIES, LAND)
+
+
+@form()
+def land_beside_a_wind() -> Any:
+    """Air moves over land: the mask of a weather model is about something else."""
+    return earth(LON, LAT).assign(lsm=ON_LAND.astype("f4")), STEADY
+
+
+@variants(["mask", "lsm", "land_binary_mask"], says="mask")
+def land_of_a_wind_with_one_value(name: str) -> Any:
+    """As satellites measure it over the sea: the one value on land is no wind."""
+    ds = masked(name)
+    return ds.assign(u=ds.u.assign_attrs(EAST), v=ds.v.assign_attrs(NORTH)), SEA
+
+
+@form(options={"mask": False})
+def mask_that_is_not_wanted() -> Any:
+    return current(earth(LON, LAT)).assign(lsm=ON_LAND.astype("i1")), STEADY
 
 
 @form(says="mask")
@@ -117,7 +136,7 @@ def land_as_flags() -> Any:
         "flag_meanings": "sea land lake",
     }
     mask = ON_LAND.astype("i1").assign_attrs(flags)
-    return earth(LON, LAT).where(~ON_LAND, 0.341).assign(mask=mask), SEA
+    return current(earth(LON, LAT)).where(~ON_LAND, 0.341).assign(mask=mask), SEA
 
 
 def flagged(meaning: str, *, apart: bool = False) -> xr.Dataset:
