@@ -62,7 +62,7 @@ def u_reversed_in_all_directions() -> Any:
     return [u.isel(lat=BACK, lon=BACK, time=BACK), v], SERIES
 
 
-@form(says="reverse")
+@form()
 def scalar_reversed() -> Any:
     ds = earth(LON, LAT)
     t = (280 + 0.3 * ds.lat + 0 * ds.lon).rename("T").to_dataset().isel(lat=BACK)
@@ -70,7 +70,7 @@ def scalar_reversed() -> Any:
     return [ds, t], on_earth(LON, LAT, scalars=warm)
 
 
-@variants(["u", "v", "u v"], says="longitude")
+@variants(["u", "v", "u v"])
 def counted_from_0_to_360(names: str) -> Any:
     """The longitudes of some components are 342, ..., 358, 0, ..., 18."""
     ds = earth(AROUND_ZERO, LAT)
@@ -79,7 +79,7 @@ def counted_from_0_to_360(names: str) -> Any:
     return [*found, *kept] if kept else xr.merge(found), on_earth(AROUND_ZERO, LAT)
 
 
-@form(says="longitude")
+@form(says="align")
 def v_sorted_from_0_to_360() -> Any:
     """Greenwich is in the middle of u, and v begins there."""
     u, v = parts(earth(AROUND_ZERO, LAT))
@@ -87,7 +87,7 @@ def v_sorted_from_0_to_360() -> Any:
     return [u, v], on_earth(AROUND_ZERO, LAT)
 
 
-@form(says="longitude")
+@form(says="align")
 def whole_circle_from_minus_180_in_v() -> Any:
     u, v = parts(earth(ALL, LAT))
     return [u, with_lines(v, lon=(ALL + 180) % 360 - 180).sortby("lon")], on_earth(ALL, LAT)
@@ -186,7 +186,7 @@ def shuffled_latitudes() -> Any:
     return earth(LON, lat), STEADY
 
 
-@form(says="sort")
+@form(says="align|sort")
 def shuffled_longitudes_of_v() -> Any:
     u, v = parts(earth(LON, LAT))
     return [u, v.isel(lon=np.random.default_rng(1).permutation(len(LON)))], STEADY

@@ -57,7 +57,7 @@ def declared_and_not_decoded(name: str) -> Any:
     return ds, SEA
 
 
-@variants(["valid_min", "valid_max", "valid_range", "both"], says="valid")
+@variants(["valid_min", "valid_max", "valid_range", "both"], says="valid|outside")
 def outside_the_valid_values(name: str) -> Any:
     value = -60.0 if name == "valid_min" else 60.0
     ds = earth(LON, LAT).where(~ON_LAND, value)
