@@ -185,12 +185,12 @@ def ring_told_in_the_plane() -> Any:
 
 @form(options={"components": "grid"})
 def ring_told_along_the_grid() -> Any:
-    """u is along columns, which turn around, and v along rows, which leave the middle."""
+    """u is along i, around the middle, and v along j, away from it."""
     x, y, _, a = ring()
     u, v = plane(x, y)
     around, outward = v * np.cos(a) - u * np.sin(a), u * np.cos(a) + v * np.sin(a)
     truth = in_plane(x, y, unit="m", speed_unit="m/s", tolerance=0.1)
-    return on_ring(around, outward, **PLAIN), truth
+    return on_ring(around, outward, **PLAIN).rename_dims(r="j", theta="i"), truth
 
 
 # --- projected ----------------------------------------------------------------------------------
