@@ -21,7 +21,10 @@ from known_flow import (
     current,
     dates,
     earth,
+    in_plane,
     on_earth,
+    plane,
+    ratio,
     without,
 )
 from strategies import property_test
@@ -277,3 +280,94 @@ def test_a_combination_is_right_or_one_error(form: Form) -> None:
             return
         assert truth is not None, f"drawn as {field!r}, of components without common labels"
         check(field, truth)
+
+
+# --- in the plane -------------------------------------------------------------------------------
+
+LENGTHS, SPEEDS = ("m", "mm", "km", "inch"), ("m/s", "cm/s", "knot", "mm/s", "km/h")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The form of a flow in the plane."""
+
+    count: tuple[int, int, int]  #: Of times, rows and columns; one time is none.
+    lengths: tuple[str, str]  #: Units of x and y.
+    speeds: tuple[str, str]  #: Units of the components.
+    bare: str  #: What has no unit: ``"positions"``, ``"velocity"``, ``"both"``, or nothing.
+    time: str  #: Unit of the times.
+    bent: bool  #: Whether x and y have two dimensions.
+    axis: bool  #: Whether components lie along an axis.
+    names: tuple[str, str]
+    order: tuple[str, ...]
+    reverse: frozenset[str]
+    single: bool
+
+
+SHEETS = st.builds(
+    Sheet,
+    count=st.tuples(st.integers(1, 4), st.integers(6, 11), st.integers(5, 12)),
+    lengths=st.tuples(st.sampled_from(LENGTHS), st.sampled_from(LENGTHS)),
+    speeds=st.tuples(st.sampled_from(SPEEDS), st.sampled_from(SPEEDS)),
+    bare=mostly("", "positions", "velocity", "both"),
+    time=st.sampled_from(["s", "ms", "min", ""]),
+    bent=mostly(False, True),
+    axis=mostly(False, True),
+    names=st.sampled_from([("u", "v"), ("vx", "vy"), ("U", "V"), ("u_x", "u_y")]),
+    order=st.permutations(["t", "y", "x", "component"]).map(tuple),
+    reverse=st.frozensets(st.sampled_from(["t", "y", "x", "component"])),
+    single=mostly(False, True),
+)
+
+
+def laid_out(sheet: Sheet) -> tuple[xr.Dataset | xr.DataArray, Truth]:
+    """Return the data of a form in the plane, and the truth in metres and seconds."""
+    steps, rows, columns = sheet.count
+    x, y = np.meshgrid(np.linspace(0, 3, columns), np.linspace(0.2, 2, rows))
+    if sheet.bent:
+        x, y = x + 0.2 * y, y - 0.1 * x
+    times = 0.3 * np.arange(steps)
+    values = np.stack([np.stack(plane(x, y, t)) for t in times], axis=1)
+    no_length, no_speed = (sheet.bare in (kind, "both") for kind in ("positions", "velocity"))
+    lengths = ("", "") if no_length else sheet.lengths
+    if no_speed or sheet.axis:  # one unit for both
+        lengths = lengths[:1] * 2
+    speeds = ("", "") if no_speed else sheet.speeds[:1] * 2 if sheet.axis else sheet.speeds
+    # Other names are those of a velocity only where the unit is one.
+    names = ("u", "v") if no_speed else sheet.names
+    dims = ("t", "j", "i") if sheet.bent else ("t", "y", "x")
+    data: Any = xr.Dataset()
+    for name, value, unit in zip(names, values, speeds, strict=True):
+        data[name] = (dims, value * ratio("m/s", unit), {"units": unit} if unit else {})
+    data = data.astype("f4", keep_attrs=True) if sheet.single else data
+    for name, place, unit in zip("xy", (x, y), lengths, strict=True):
+        line = (dims[1:], place) if sheet.bent else (name, place[0] if name == "x" else place[:, 0])
+        data[name] = (line[0], line[1] * ratio("m", unit), {"units": unit} if unit else {})
+    attrs = {"units": sheet.time} if sheet.time else {}
+    data = data.set_coords(["x", "y"]).assign_coords(t=("t", times * ratio("s", sheet.time), attrs))
+    data = data.isel(t=0, drop=True) if steps == 1 else data
+    if sheet.axis:
+        attrs = data[names[0]].attrs
+        data = data.to_dataarray("component", name="velocity").assign_attrs(attrs)
+        data = data.assign_coords(component=["x", "y"])
+    mine = dict(zip(("t", "y", "x"), dims, strict=True)) | {"component": "component"}
+    present = [mine[d] for d in sheet.order if mine[d] in data.dims]
+    reverse = {mine[d]: slice(None, None, -1) for d in sheet.reverse if mine[d] in data.dims}
+    data = data.transpose(*present).isel(reverse)
+    truth = in_plane(
+        x,
+        y,
+        times,
+        unit=lengths[0] and "m",
+        speed_unit=speeds[0] and "m/s",
+        undated=not sheet.time,
+        tolerance=1e-5 if sheet.single else 1e-9,
+    )
+    return data, truth
+
+
+@property_test(30, fuzz=400)
+@given(SHEETS)
+def test_a_form_in_the_plane_is_right(sheet: Sheet) -> None:
+    data, truth = laid_out(sheet)
+    check(read(data), truth)
