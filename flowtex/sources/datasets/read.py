@@ -40,6 +40,8 @@ from flowtex.sources.datasets.masks import (
 )
 from flowtex.sources.datasets.regions import Regions, Words, region_lines
 from flowtex.sources.datasets.select import (
+    Pair,
+    choose_pair,
     find_pairs,
     other_velocities,
     variable,
@@ -100,9 +102,13 @@ def read_datasets(
         if is_section(datasets, u, v):
             return read_section(datasets, u, v, name=name, sel=sel, isel=isel or {})
         options: dict[str, Any] = {"mask": mask, "components": components}
-        flow, spread = read_flow(datasets, u, v, record, sel=sel, isel=isel, **options), None
+        options |= {"sel": sel, "isel": isel}
+        spread: Callable[[int], Floats] | None = None
         if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
-            flow, spread = _averaged(flow, uncertainty, sel, isel, options)
+            pair = choose_pair(datasets, u, v)
+            flow, spread = _averaged(datasets, pair, uncertainty, record, options)
+        else:
+            flow = read_flow(datasets, u, v, record, **options)
         for note in other_velocities(datasets, flow.pair) if u is None else ():
             record("select", note, notable=True)
         if not flow.places.is_earth and projection is not None:
@@ -200,15 +206,11 @@ def _note_rest(read: Callable[[int], tuple[Floats, Floats]], count: int, flow: F
 
 
 def _averaged(
-    flow: Flow,
-    dim: str,
-    sel: Mapping[str, Any],
-    isel: Mapping[str, Any] | None,
-    options: Mapping[str, Any],
+    datasets: Datasets, pair: Pair, dim: str, record: Record, options: Mapping[str, Any]
 ) -> tuple[Flow, Callable[[int], Floats]]:
     """Return the mean over a dimension, and a reader of the spread."""
-    datasets, chosen = flow.datasets, {**sel, **(isel or {})}
-    u, v = (variable(datasets, str(a.name)) for a in (flow.pair.u, flow.pair.v))
+    u, v, isel = pair.u, pair.v, options["isel"] or {}
+    chosen = {**options["sel"], **isel}
     if dim in horizontal_dims(u) or dim not in {*u.dims} & {*v.dims}:
         names = [str(d) for d in u.dims if d not in horizontal_dims(u)]
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
@@ -218,21 +220,18 @@ def _averaged(
             f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
         )
         raise FieldError(msg)
-    pair = str(u.name), str(v.name)
     members = [
         read_flow(
             datasets,
-            pair[0],
-            pair[1],
-            Record(),
-            sel=sel,
-            isel={**(isel or {}), dim: number},
-            **options,
+            str(u.name),
+            str(v.name),
+            record,
+            **{**options, "isel": {**isel, dim: number}},
         )
         for number in range(u.sizes[dim])
     ]
     mean, spread = mean_and_spread([member.components for member in members])
-    flow.record("select", f"mean over {dim}", caption=f"mean over {dim}")
+    record("select", f"mean over {dim}", caption=f"mean over {dim}")
     drawn = members[0].drawn
     if axis_kind(u, dim) == TIME:
         drawn = replace(drawn, times=None)
@@ -242,7 +241,7 @@ def _averaged(
     ]
     kept = Datasets(others, opened=datasets.opened)
     changes: dict[str, Any] = {"mean": mean, "drawn": drawn, "datasets": kept}
-    return replace(members[0], record=flow.record, **changes), spread
+    return replace(members[0], **changes), spread
 
 
 def _on_grid(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
