@@ -271,27 +271,24 @@ def _on_mesh(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]
 
 def _units(flow: Flow) -> dict[str, str]:
     """Return the units of positions and times, and record those that are assumed."""
-    record, unit, pair = flow.record, flow.unit, flow.pair
-    names = f"{pair.u.name} and {pair.v.name} have"
-    time = flow.drawn.time_unit if flow.drawn.steps > 1 else ""
-    if flow.drawn.times is not None and np.asarray(flow.drawn.times).dtype.kind in "mMO":
-        time = "s"
-    length = "m" if flow.places.is_earth else flow.places.unit
-    if flow.places.is_earth and unit and units.factor(unit, "m/s") is None:
-        msg = f"the unit of {names[:-5]} is {unit!r}; expected one such as m/s on the Earth"
+    record, unit = flow.record, flow.unit
+    names = f"{flow.pair.u.name} and {flow.pair.v.name}"
+    times = flow.drawn.times
+    is_date = times is not None and np.asarray(times).dtype.kind in "mMO"
+    time = "s" if is_date else flow.drawn.time_unit
+    if not flow.places.is_earth:
+        length = flow.places.unit
+        if not unit and length and time:
+            record("units", f"{names} have no unit; {length}/{time} is assumed", notable=True)
+        return {"length_unit": length, "time_unit": time}
+    if unit and units.factor(unit, "m/s") is None:
+        msg = f"the unit of {names} is {unit!r}; expected one such as m/s on the Earth"
         raise FieldError(msg)
-    if not unit and flow.places.is_earth:
-        record("units", f"{names} no unit; m/s is assumed", notable=True)
-    elif not unit and length:
-        record("units", f"{names} no unit; {length}/s is assumed", notable=True)
-    if unit and not length:
-        length = units.part(unit, units.LENGTHS) or "m"
-        record("units", f"{flow.places.why} have no unit; {length} is assumed", notable=True)
-    if not time and (unit or length):
-        time = units.part(unit, units.IMAGE_TIMES) or "s"
-        if flow.drawn.steps > 1:
-            record("units", f"times have no unit; {time} is assumed", notable=True)
-    return {"length_unit": length, "time_unit": time}
+    if not unit:
+        record("units", f"{names} have no unit; m/s is assumed", notable=True)
+    if not time and flow.drawn.steps > 1:
+        record("units", "times have no unit; s is assumed", notable=True)
+    return {"length_unit": "m", "time_unit": time or "s"}
 
 
 def _regions(
@@ -308,7 +305,7 @@ def _regions(
     if lines.projection is not None and not lines.projection.is_globe:
         others.pop("speed", None)
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
-    inner = f"{named['length_unit']}/{named['time_unit']}"
+    inner = units.speed_unit(named["length_unit"], named["time_unit"])
     return Regions(
         Words(
             length_unit=named["length_unit"],
