@@ -164,8 +164,7 @@ def _whole(
     scale = factor if flat else 1.0
 
     def vectors(step: int) -> Floats:
-        u, v = (nodes.at(part) * scale for part in read(step))
-        return nodes.vectors(u, v)
+        return nodes.vectors(*map(nodes.at, read(step))) * scale
 
     if spread is not None:
         extra[spread_name(uncertainty)] = later(partial(value, spread))
