@@ -9,8 +9,7 @@ from typing import BinaryIO
 
 from flowtex.errors import FieldError
 from flowtex.sources.inspection import grib, hdf5, netcdf, vtk_legacy, vtk_xml
-from flowtex.sources.inspection.ensight import check_ensight
-from flowtex.sources.inspection.surfaces import check_obj, check_ply, check_stl
+from flowtex.sources.inspection.surfaces import check_ply, check_stl
 from flowtex.sources.inspection.zarr_folder import DOCUMENTS, check_zarr
 
 #: Bytes that identify most files.
@@ -20,8 +19,6 @@ GRIB_SUFFIXES = (".grib", ".grb")
 MOST_MEMBERS = 100_000
 #: Checks by suffix, whatever the content, as the reader is chosen by the suffix.
 BY_SUFFIX: dict[str, Callable[[Path], None]] = {
-    ".case": check_ensight,
-    ".obj": check_obj,
     ".ply": check_ply,
     ".stl": check_stl,
     ".vtk": vtk_legacy.check_vtk_legacy,
