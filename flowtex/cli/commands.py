@@ -24,8 +24,7 @@ from flowtex.cli.console import complain
 from flowtex.cli.formula import formula
 from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
-from flowtex.cli.pyramid import pyramid
-from flowtex.cli.serve import serve
+from flowtex.cli.serve import pyramid, serve
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
 

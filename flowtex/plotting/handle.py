@@ -11,9 +11,8 @@ import pyvista as pv
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
-from flowtex.plotting.map_overlay import MapOverlay
+from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
-from flowtex.plotting.structure_overlay import StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene.attributes import AppearanceAttributes

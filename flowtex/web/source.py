@@ -9,7 +9,7 @@
 
 A widget sends them in messages, the application as files, and an exported page holds them;
 ``client/src/sources`` is the other side. A store has the same parts in its own files, which
-:mod:`flowtex.pyramid.client_parts` writes and a browser reads without a server.
+:mod:`flowtex.pyramid.tasks` writes and a browser reads without a server.
 """
 
 from __future__ import annotations

@@ -35,8 +35,7 @@ from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import browser_options, web_views
 from flowtex.widget.display import Displayed
-from flowtex.widget.panel import make_panel
-from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
+from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError, make_panel
 from flowtex.widget.views import HEADERS, Views
 
 

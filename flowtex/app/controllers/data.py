@@ -22,7 +22,7 @@ from flowtex.app.controllers.loading import LoadRequest, announced, without_fold
 from flowtex.app.server.uploads import Uploads
 from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
-from flowtex.field.formula.line import is_line, with_parameter
+from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
 from flowtex.sources.mesh_source import Source
 from flowtex.textures.tiles import coarsened_field

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.topology import normals_at_corners
-from flowtex.rendering.cpu.places import Places, TrianglePlaces, coordinates_by
+from flowtex.rendering.cpu.path import Places, TrianglePlaces, coordinates_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet, TriangleGeometry
 

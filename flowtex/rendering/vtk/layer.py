@@ -31,10 +31,9 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 )
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
-from flowtex.rendering.mesh_levels import MeshLevels
+from flowtex.rendering.mesh_levels import MeshLevels, TriangleBlocks, mesh_levels_of
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
-from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
     ViewState,

@@ -20,7 +20,7 @@ from flowtex._util.array_types import Floats, Ints
 from flowtex._util.notices import notify
 from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS
-from flowtex.rendering.mesh_levels import MeshLevels, Region, join
+from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_levels_of
 from flowtex.rendering.tile_choice import (
     TileView,
     cell_pixels,
@@ -29,7 +29,6 @@ from flowtex.rendering.tile_choice import (
     finer_part,
     wanted_tiles,
 )
-from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.vtk.arrows import SurfaceArrows
 from flowtex.rendering.vtk.layer import FlowLayer, corrects_places, weak_callback

@@ -25,10 +25,9 @@ from flowtex.field.derived import speed_unit
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
-from flowtex.rendering.mesh_levels import mesh_limits
+from flowtex.rendering.mesh_levels import mesh_levels_of, mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
-from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.bodies import Bodies

@@ -19,7 +19,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
-from flowtex.trace.structure.isolation import Isolation
+from flowtex.trace.structure.orbits import Isolation
 from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.trace import paths
 

@@ -18,7 +18,7 @@ import flowtex
 from flowtex import FieldError
 from flowtex.field.formula import KNOWN, FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
-from flowtex.field.formula.line import is_line, line_field, line_python, with_parameter
+from flowtex.field.formula.make import is_line, line_field, line_python, with_parameter
 from flowtex.rendering.webgl.formula import client_formula
 from flowtex.scene.scene import Scene
 
