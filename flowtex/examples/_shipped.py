@@ -17,7 +17,7 @@ from flowtex._util.array_types import AnyArray, Floats
 
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
-CYLINDER, VORTEX = "cylinder.npz", "vortex.npz"
+CYLINDER, VORTEX, OCEAN = "cylinder.npz", "vortex.npz", "ocean.npz"
 #: Names of the liquid-oxygen post's grid and solution.
 POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
@@ -103,11 +103,13 @@ def load(name: str) -> dict[str, AnyArray]:
         return dict(file)
 
 
-def unpack(differences: NDArray[np.int16], step: float, axis: int) -> Floats:
-    """Return numbers whose whole-numbered differences along an axis, modulo 2^16, were stored."""
+def unpack(differences: NDArray[np.int16], step: float, axis: int | tuple[int, ...]) -> Floats:
+    """Return numbers whose whole-numbered differences along axes, modulo 2^16, were stored."""
     # Unsigned numbers wrap around by definition.
-    whole = np.cumsum(differences.view(np.uint16), axis=axis, dtype=np.uint16).view(np.int16)
-    return whole.astype(np.float64) * step
+    whole = differences.view(np.uint16)
+    for each in np.atleast_1d(axis):
+        whole = np.cumsum(whole, axis=each, dtype=np.uint16)
+    return whole.view(np.int16).astype(np.float64) * step
 
 
 def find_post(folder: str | Path | None = None) -> Path:

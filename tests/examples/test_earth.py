@@ -75,7 +75,8 @@ def test_the_currents_are_in_balance_with_the_height(ocean: Dataset) -> None:
     north, east = np.gradient(z.values, axis=(0, 1))
     east /= np.cos(np.radians(z.latitude.values))[:, None]
     u, v = (ocean[name].isel(time=3).values for name in ("uo", "vo"))
-    across = (u * east + v * north) / (np.hypot(u, v) * np.hypot(east, north))
+    with np.errstate(invalid="ignore"):  # the sea is level at some nodes
+        across = (u * east + v * north) / (np.hypot(u, v) * np.hypot(east, north))
     known = np.isfinite(across)
     assert known.mean() > 0.7
     assert np.median(np.abs(across[known])) < 1e-6

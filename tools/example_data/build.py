@@ -1,7 +1,7 @@
 """Make the shipped files of the examples again: ``python tools/example_data/build.py``.
 
-The vortices take about half a minute, the cylinder five. A folder may be named; by default the
-files replace those of the package.
+The vortices take about half a minute, the cylinder five, the ocean a second. A folder may be named;
+by default the files replace those of the package.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cylinder_run
+import ocean_run
 import vortex_run
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -60,9 +61,16 @@ def _build_cylinder(progress: Progress, folder: Path | None) -> None:
     )
 
 
+def _build_ocean(progress: Progress, folder: Path | None) -> None:
+    task = progress.add_task("ocean", total=1)
+    ocean_run.write(folder)
+    progress.advance(task)
+
+
 BUILDERS: dict[str, Callable[[Progress, Path | None], None]] = {
     "vortex": _build_vortex,
     "cylinder": _build_cylinder,
+    "ocean": _build_ocean,
 }
 
 if __name__ == "__main__":

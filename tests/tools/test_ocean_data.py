@@ -1,0 +1,29 @@
+"""The sea of the example ``ocean``: the file against the computation."""
+
+from __future__ import annotations
+
+import numpy as np
+import ocean_run
+import packing
+import pytest
+
+from flowtex.examples import _shipped
+
+pytest.importorskip("pyproj")
+
+
+def test_the_file_is_the_computation() -> None:
+    file = _shipped.load(_shipped.OCEAN)
+    longitude, latitude, land, height = ocean_run.run()
+    stored = _shipped.unpack(file["height"], float(file["step"]), axis=(0, 1, 2))
+    assert np.abs(stored - height).max() <= file["step"] * 0.5001
+    np.testing.assert_array_equal(file["land"], land)
+    np.testing.assert_allclose(file["longitude"], longitude)
+    np.testing.assert_allclose(file["latitude"], latitude)
+
+
+@pytest.mark.parametrize("axis", [0, 1, (0, 1), (1, 0)])
+def test_differences_along_any_axes_add_up_again(axis: int | tuple[int, ...]) -> None:
+    values = np.random.default_rng(0).normal(size=(7, 9))
+    packed, step = packing.pack(values, axis)
+    assert np.abs(_shipped.unpack(packed, step, axis) - values).max() <= step * 0.5001
