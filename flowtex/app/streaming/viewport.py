@@ -16,7 +16,6 @@ import pyvista as pv
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.cache import WeakCache
-from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
@@ -47,11 +46,6 @@ class Pane:
     def size(self) -> tuple[int, int]:
         """Width and height of a whole picture, in pixels."""
         return self._viewport.pane_size
-
-    def plane_view(self) -> Floats | None:
-        """Return the affine map from a flat surface to the view, (3, 3); ``None`` for others."""
-        surface = self.handle.scene.whole.surface
-        return plane_to_view(surface, self._viewport.camera, self._viewport.aspect)
 
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
