@@ -17,12 +17,12 @@ from flowtex.app.controllers.appearance import ANOTHER_FILE, ANOTHER_TIME, BACKG
 from flowtex.app.controllers.context import Context, State
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.controllers.sharing import FORMATS
+from flowtex.app.server.files import UPLOAD_SUFFIXES
 from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions.local import MakeApp, opener
 from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
-from flowtex.app.server.uploads import UPLOAD_SUFFIXES
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.stream import FrameStream

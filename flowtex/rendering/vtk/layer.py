@@ -46,8 +46,13 @@ from flowtex.rendering.uniforms import (
     uniforms,
     variants,
 )
-from flowtex.rendering.vtk.colours import MappedColours
-from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, set_triangles, vertex_attributes
+from flowtex.rendering.vtk.mesh import (
+    ATTRIBUTES,
+    MappedColours,
+    set_position,
+    set_triangles,
+    vertex_attributes,
+)
 from flowtex.settings import Settings
 from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
 
