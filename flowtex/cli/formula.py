@@ -12,15 +12,7 @@ from cyclopts import Parameter
 from flowtex._util.written import UnreadableError, numbers
 from flowtex.cli.checks import check_page_file, check_picture_file, drawing, writing
 from flowtex.cli.console import describe, say
-from flowtex.cli.options import (
-    FLAT,
-    FLOW,
-    FrameFlags,
-    LookFlags,
-    SettingFlags,
-    UsageError,
-    pixels,
-)
+from flowtex.cli.options import FLAT, FLOW, FrameFlags, LookFlags, SettingFlags, UsageError, pixels
 from flowtex.cli.write import write_picture
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -55,8 +47,7 @@ def formula(
         ),
     ],
     output: Annotated[
-        Path | None,
-        Parameter(name=["--output", "-o"], help="Page (.html) or picture to write."),
+        Path | None, Parameter(name=["--output", "-o"], help="Page (.html) or picture to write.")
     ] = None,
     x: Annotated[str | None, _flag(_RANGE)] = None,
     y: Annotated[str | None, _flag(_RANGE)] = None,

@@ -150,8 +150,7 @@ def export(
         str | None, Parameter(group=PICTURE, help="Title of the page; the file's name by default.")
     ] = None,
     store: Annotated[
-        str | None,
-        Parameter(help="Address from which browsers read the pyramid, https://… or ./…"),
+        str | None, Parameter(help="Address from which browsers read the pyramid, https://… or ./…")
     ] = None,
     basemap: Annotated[
         str | None,

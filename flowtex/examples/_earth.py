@@ -116,10 +116,7 @@ def weather() -> xr.Dataset:
     level = {"standard_name": "air_pressure", "units": "hPa", "positive": "down", "axis": "Z"}
     return _dataset(
         xarray,
-        {
-            "u": (winds[0], "eastward_wind", "m s-1"),
-            "v": (winds[1], "northward_wind", "m s-1"),
-        },
+        {"u": (winds[0], "eastward_wind", "m s-1"), "v": (winds[1], "northward_wind", "m s-1")},
         {
             "time": ((), np.datetime64("2024-01-15T12", "ns"), {"standard_name": "time"}),
             "level": ("level", np.array(list(LEVELS)), {"long_name": "pressure level", **level}),
@@ -139,11 +136,7 @@ def _dataset(
         key: (
             dims,
             values,
-            {
-                "standard_name": word,
-                "long_name": word.replace("_", " "),
-                "units": unit,
-            },
+            {"standard_name": word, "long_name": word.replace("_", " "), "units": unit},
         )
         for key, (values, word, unit) in data.items()
     }

@@ -16,14 +16,7 @@ from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.vectors import norm
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.checks import About
-from flowtex.pyramid.layout import (
-    SHARD_CHUNKS,
-    TILE_CELLS,
-    Arrays,
-    Part,
-    create_array,
-    parts_along,
-)
+from flowtex.pyramid.layout import SHARD_CHUNKS, TILE_CELLS, Arrays, Part, create_array, parts_along
 from flowtex.textures.tiles import ends_of
 
 if TYPE_CHECKING:

@@ -22,12 +22,7 @@ from flowtex.field.locate import locate
 from flowtex.rendering.camera import Camera, can_share_camera
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.attributes import AppearanceAttributes
-from flowtex.scene.options import (
-    Appearance,
-    FieldOptions,
-    ViewOptions,
-    accepts_options,
-)
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.textures.images import load_image

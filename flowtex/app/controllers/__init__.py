@@ -66,11 +66,7 @@ class Controllers:
     """
 
     def __init__(
-        self,
-        context: Context,
-        name: str,
-        choice: Choice,
-        restore_state: Callable[[State], None],
+        self, context: Context, name: str, choice: Choice, restore_state: Callable[[State], None]
     ) -> None:
         self.context = context
         self.data = Data(context, name, choice)

@@ -76,12 +76,7 @@ class FlowArea(AppearanceAttributes):
     """
 
     def __init__(
-        self,
-        flow: Any,
-        *,
-        server: Any,
-        state: PageState | None = None,
-        **options: Any,
+        self, flow: Any, *, server: Any, state: PageState | None = None, **options: Any
     ) -> None:
         self.server = server
         self.state = state or PageState(server)

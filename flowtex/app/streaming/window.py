@@ -90,8 +90,7 @@ class OffscreenWindow:
         left, top, width, height = part
         whole_width, whole_height = self.size
         camera.SetWindowCenter(
-            (2 * left + width - whole_width) / width,
-            (whole_height - 2 * top - height) / height,
+            (2 * left + width - whole_width) / width, (whole_height - 2 * top - height) / height
         )
         share = height / whole_height
         camera.SetParallelScale(camera.GetParallelScale() * share)

@@ -24,11 +24,7 @@ from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkMapper
-from vtkmodules.vtkRenderingOpenGL2 import (
-    vtkOpenGLRenderWindow,
-    vtkShaderProgram,
-    vtkTextureObject,
-)
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
 from flowtex.rendering.mesh_levels import MeshLevels, TriangleBlocks, mesh_levels_of

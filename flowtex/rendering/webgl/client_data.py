@@ -57,10 +57,7 @@ SHADERS = {
     "probe": "webgl2/probe.glsl",
 }
 #: Those of a client that traces.
-TRACE_SHADERS = {
-    "trace": "webgl2/trace.glsl",
-    "layers": "webgl2/layers.glsl",
-}
+TRACE_SHADERS = {"trace": "webgl2/trace.glsl", "layers": "webgl2/layers.glsl"}
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5
