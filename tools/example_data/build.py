@@ -1,7 +1,7 @@
 """Make the shipped files of the examples again: ``python tools/example_data/build.py``.
 
-The vortices take about half a minute, the cylinder five, the ocean a second. A folder may be named;
-by default the files replace those of the package.
+The vortices take about half a minute, the cylinder five, the others a second. A folder may be
+named; by default the files replace those of the package.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 import cylinder_run
 import ocean_run
 import vortex_run
+import weather_run
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -62,15 +63,20 @@ def _build_cylinder(progress: Progress, folder: Path | None) -> None:
 
 
 def _build_ocean(progress: Progress, folder: Path | None) -> None:
-    task = progress.add_task("ocean", total=1)
-    ocean_run.write(folder)
-    progress.advance(task)
+    for _ in progress.track(range(1), description="ocean"):
+        ocean_run.write(folder)
+
+
+def _build_weather(progress: Progress, folder: Path | None) -> None:
+    for _ in progress.track(range(1), description="weather"):
+        weather_run.write(folder)
 
 
 BUILDERS: dict[str, Callable[[Progress, Path | None], None]] = {
     "vortex": _build_vortex,
     "cylinder": _build_cylinder,
     "ocean": _build_ocean,
+    "weather": _build_weather,
 }
 
 if __name__ == "__main__":

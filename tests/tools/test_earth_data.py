@@ -1,4 +1,4 @@
-"""The sea of the example ``ocean``: the file against the computation."""
+"""The sea of the example ``ocean``, and the winds of ``weather``: files against computations."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 import ocean_run
 import packing
 import pytest
+import weather_run
 
 from flowtex.examples import _shipped
 
-pytest.importorskip("pyproj")
 
-
-def test_the_file_is_the_computation() -> None:
+def test_the_file_of_the_sea_is_the_computation() -> None:
+    pytest.importorskip("pyproj")
     file = _shipped.load(_shipped.OCEAN)
     longitude, latitude, land, height = ocean_run.run()
     stored = _shipped.unpack(file["height"], float(file["step"]), axis=(0, 1, 2))
@@ -20,6 +20,16 @@ def test_the_file_is_the_computation() -> None:
     np.testing.assert_array_equal(file["land"], land)
     np.testing.assert_allclose(file["longitude"], longitude)
     np.testing.assert_allclose(file["latitude"], latitude)
+
+
+def test_the_file_of_the_winds_is_the_computation() -> None:
+    file = _shipped.load(_shipped.WEATHER)
+    longitude, latitude, winds = weather_run.run()
+    stored = _shipped.unpack(file["winds"], float(file["step"]), axis=(2, 3))
+    assert np.abs(stored - winds).max() <= file["step"] * 0.5001
+    np.testing.assert_allclose(file["longitude"], longitude)
+    np.testing.assert_allclose(file["latitude"], latitude)
+    assert file["level"].tolist() == list(weather_run.LEVELS)
 
 
 @pytest.mark.parametrize("axis", [0, 1, (0, 1), (1, 0)])
