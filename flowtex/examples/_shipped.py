@@ -17,7 +17,8 @@ from flowtex._util.array_types import AnyArray, Floats
 
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
-CYLINDER, VORTEX, OCEAN, WEATHER = "cylinder.npz", "vortex.npz", "ocean.npz", "weather.npz"
+CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
+OCEAN, WEATHER = "ocean.npz", "weather.npz"
 #: Names of the liquid-oxygen post's grid and solution.
 POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 

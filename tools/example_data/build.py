@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cylinder_run
+import delta_wing_run
 import ocean_run
 import vortex_run
 import weather_run
@@ -62,21 +63,22 @@ def _build_cylinder(progress: Progress, folder: Path | None) -> None:
     )
 
 
-def _build_ocean(progress: Progress, folder: Path | None) -> None:
-    for _ in progress.track(range(1), description="ocean"):
-        ocean_run.write(folder)
+def _builder(name: str, write: Callable[[Path | None], None]) -> Callable[..., None]:
+    """Return the builder of an example that takes a moment."""
 
+    def build(progress: Progress, folder: Path | None) -> None:
+        for _ in progress.track([folder], description=name):
+            write(folder)
 
-def _build_weather(progress: Progress, folder: Path | None) -> None:
-    for _ in progress.track(range(1), description="weather"):
-        weather_run.write(folder)
+    return build
 
 
 BUILDERS: dict[str, Callable[[Progress, Path | None], None]] = {
     "vortex": _build_vortex,
     "cylinder": _build_cylinder,
-    "ocean": _build_ocean,
-    "weather": _build_weather,
+    "delta_wing": _builder("delta_wing", delta_wing_run.write),
+    "ocean": _builder("ocean", ocean_run.write),
+    "weather": _builder("weather", weather_run.write),
 }
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""The sea of the example ``ocean``, and the winds of ``weather``: files against computations."""
+"""The files of examples in closed form against what computes them."""
 
 from __future__ import annotations
 
+import delta_wing_run
 import numpy as np
 import ocean_run
 import packing
@@ -30,6 +31,14 @@ def test_the_file_of_the_winds_is_the_computation() -> None:
     np.testing.assert_allclose(file["longitude"], longitude)
     np.testing.assert_allclose(file["latitude"], latitude)
     assert file["level"].tolist() == list(weather_run.LEVELS)
+
+
+def test_the_file_of_the_wing_is_the_computation() -> None:
+    file = _shipped.load(_shipped.DELTA_WING)
+    for stored, computed in zip(
+        (file["points"], file["velocity"]), delta_wing_run.run(), strict=True
+    ):
+        np.testing.assert_allclose(stored, computed, atol=1e-7, rtol=1e-6)
 
 
 @pytest.mark.parametrize("axis", [0, 1, (0, 1), (1, 0)])
