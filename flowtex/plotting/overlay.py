@@ -34,7 +34,10 @@ from flowtex.rendering.map_overlay import (
     map_lines,
 )
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.structure_marks import (
+from flowtex.rendering.vtk import FlowSurface
+from flowtex.rendering.vtk.layer import weak_callback
+from flowtex.rendering.vtk.mesh import FlowMapper
+from flowtex.rendering.webgl.marks import (
     DOT_PX,
     KIND_MARKS,
     LINE_COLORS,
@@ -44,9 +47,6 @@ from flowtex.rendering.structure_marks import (
     RIM_COLOR,
     RIM_OPACITY,
 )
-from flowtex.rendering.vtk import FlowSurface
-from flowtex.rendering.vtk.layer import weak_callback
-from flowtex.rendering.vtk.mesh import FlowMapper
 from flowtex.scene.scene import Scene
 from flowtex.trace.structure import CriticalPoints
 

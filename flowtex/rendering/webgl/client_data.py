@@ -32,10 +32,16 @@ from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
-from flowtex.rendering.webgl.formula import client_formula, formula_header, parameter_rows
 from flowtex.rendering.webgl.marks import Marks
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
-from flowtex.rendering.webgl.velocity import Packing, half, packing_of
+from flowtex.rendering.webgl.velocity import (
+    Packing,
+    client_formula,
+    formula_header,
+    half,
+    packing_of,
+    parameter_rows,
+)
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
 from flowtex.textures.tiles import PATH_CELLS, Pyramid, TileKey
