@@ -60,7 +60,8 @@ def slice_level(coordinate: Varying, values: Values) -> Floats:
         return np.zeros(len(coordinate.value))
     size = np.asarray(values["u_slicesSize"])
     _, shortest = footprint(coordinate.dx * size, coordinate.dy * size)
-    return np.clip(np.log2(np.maximum(shortest, LEAST_TEXELS)), 0.0, values["u_deepest"])
+    levels = np.log2(np.maximum(shortest, LEAST_TEXELS))
+    return np.asarray(np.clip(levels, 0.0, values["u_deepest"]))
 
 
 def level_colour(level: Floats) -> Floats:

@@ -287,4 +287,4 @@ def _level(texels: Floats, values: Values) -> Floats:
     """Mip level at which a texel is as wide as that many of the finest level."""
     if not values["u_lod"]:
         return np.zeros(len(texels))
-    return np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0)
+    return np.asarray(np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0))
