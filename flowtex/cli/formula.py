@@ -10,8 +10,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from flowtex._util.written import UnreadableError, numbers
-from flowtex.cli.checks import check_page_file, check_picture_file, drawing, writing
-from flowtex.cli.console import describe, say
+from flowtex.cli.console import check_page_file, check_picture_file, describe, drawing, say, writing
 from flowtex.cli.options import FLAT, FLOW, FrameFlags, LookFlags, SettingFlags, UsageError, pixels
 from flowtex.cli.write import write_picture
 from flowtex.errors import FieldError

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex._util.child import FORKS, prepare
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import require_app
-from flowtex.cli.console import announcer, describe
+from flowtex.cli.console import announcer, describe, require_app
 from flowtex.cli.options import ServeFlags
 from flowtex.rendering import diagnostics
 

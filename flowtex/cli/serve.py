@@ -13,8 +13,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import drawing, require_app, writing
-from flowtex.cli.console import announcer, complain, describe, notices, say
+from flowtex.cli.console import (
+    announcer,
+    complain,
+    describe,
+    drawing,
+    notices,
+    require_app,
+    say,
+    writing,
+)
 from flowtex.cli.options import (
     FILE,
     FLAT,

@@ -11,8 +11,7 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_lines, drawing
-from flowtex.cli.console import load_field, notices
+from flowtex.cli.console import check_lines, drawing, load_field, notices
 from flowtex.cli.options import (
     FLAT,
     SIZE,

@@ -11,15 +11,17 @@ from cyclopts import Parameter
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.whole_file import whole_file
-from flowtex.cli.checks import (
+from flowtex.cli.console import (
     check_lines,
     check_movie_file,
     check_page_file,
     check_picture_file,
+    describe,
     drawing,
+    load_field,
+    say,
     writing,
 )
-from flowtex.cli.console import describe, load_field, say
 from flowtex.cli.options import (
     FILE,
     FLAT,

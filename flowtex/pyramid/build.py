@@ -29,7 +29,7 @@ from flowtex.pyramid.layout import (
     tiles_of,
 )
 from flowtex.pyramid.lease import Lease
-from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.levels import SAMPLES, Levels, create_samples, ranges_of
 from flowtex.pyramid.places import (
     DOCUMENT,
     ChangedError,
@@ -43,7 +43,6 @@ from flowtex.pyramid.places import (
     store_at,
     sync,
 )
-from flowtex.pyramid.samples import SAMPLES, create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
 from flowtex.pyramid.tasks import (
     TileTask,

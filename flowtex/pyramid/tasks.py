@@ -31,9 +31,8 @@ from flowtex.pyramid.layout import (
     to_write,
     value_names,
 )
-from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.levels import Levels, write_samples
 from flowtex.pyramid.places import ChangedError, DamageError, PyramidError, store_at, sync
-from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts

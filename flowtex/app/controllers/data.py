@@ -16,9 +16,15 @@ from typing import Any
 
 import numpy as np
 
-from flowtex.app.controllers.context import Context, Controller, State
+from flowtex.app.controllers.context import (
+    Context,
+    Controller,
+    LoadRequest,
+    State,
+    announced,
+    without_folder,
+)
 from flowtex.app.controllers.library import Choice, TracedFlow
-from flowtex.app.controllers.loading import LoadRequest, announced, without_folder
 from flowtex.app.server.files import Uploads
 from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField

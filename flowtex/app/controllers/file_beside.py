@@ -7,10 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, astuple
 from typing import Any
 
-from flowtex.app.controllers.context import Context, Controller, State
+from flowtex.app.controllers.context import Context, Controller, LoadRequest, State, announced
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.library import Choice, TracedFlow
-from flowtex.app.controllers.loading import LoadRequest, announced
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import steps_around
 

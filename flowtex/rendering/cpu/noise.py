@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Ints
 from flowtex.rendering import constants as const
 from flowtex.rendering.constants import LAST_HALF_LEVEL, LEAST_TEXELS
-from flowtex.rendering.cpu.fragments import Fragments, Varying
-from flowtex.rendering.cpu.levels import footprint, on_surface
+from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint, on_surface
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.rendering.uniforms import Values
