@@ -16,8 +16,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket, fill_blanked
-from flowtex.trace.charts import Charts, Numbers, Patch, cap
-from flowtex.trace.node_grid import LEAST_ROOM_CELLS, NodeGrid
+from flowtex.trace.charts import LEAST_ROOM_CELLS, Charts, NodeGrid, Numbers, Patch, cap
 
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED_SPEED = 1e-7

@@ -25,8 +25,7 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
-from flowtex.app.streaming.window import Rect
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.annotations import annotate

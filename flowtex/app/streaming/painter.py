@@ -19,8 +19,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes
 from flowtex.app.server.validation import clipped
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
-from flowtex.app.streaming.window import Rect
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1
