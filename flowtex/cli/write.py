@@ -1,4 +1,4 @@
-"""``flowtex render``, ``movie``, ``export`` and ``formula``: a picture, a movie or a page as a file."""
+"""``flowtex render``, ``movie``, ``export`` and ``formula``: a picture, a movie or a page."""
 
 from __future__ import annotations
 

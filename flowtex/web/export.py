@@ -46,8 +46,7 @@ from flowtex.web.linked import (
     map_pieces,
     store_header,
 )
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView, browser_options, web_views
+from flowtex.web.view import TileSource, WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75

@@ -32,8 +32,7 @@ from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_in
 from flowtex.scene.scene import Change
 from flowtex.textures.tiles import TileKey
 from flowtex.web import preview
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView
+from flowtex.web.view import TileSource, WebView
 
 #: A field of more nodes, at all times together, is shown coarse first.
 LARGE_NODES = 60_000

@@ -1,7 +1,7 @@
 """The Python side of ``<flowtex-view>``: the data sent to the page, and the user's actions there.
 
 The page asks for files of parts: of the whole surface, and of tiles, at some times;
-:mod:`flowtex.web.source` says what is in them. The page says which of two painters draws: the
+:mod:`flowtex.web.view` says what is in them. The page says which of two painters draws: the
 browser with WebGL2, or VTK here, whose pictures a stream sends. With VTK it has only the parts for
 controls and legend.
 """
@@ -35,8 +35,7 @@ from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
 from flowtex.textures.tiles import TileKey
 from flowtex.web.assets import client_module
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView
+from flowtex.web.view import TileSource, WebView
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)

@@ -27,9 +27,8 @@ from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.textures.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
-from flowtex.trace.charts import Charts
 from flowtex.trace.lags import drawn_lags
-from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
+from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
 
 #: Share of the typical speed by which that along the surface may differ from the whole one.
 SAME_SPEED_SHARE = 1e-3
