@@ -226,7 +226,7 @@ def test_a_second_run_makes_what_is_missing(tmp_path: Path, stores: Stores) -> N
 
 def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Though of themselves chunks of zeros are not written, and what is not there is missing."""
-    for name in ("layout", "samples"):
+    for name in ("layout", "levels"):
         monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "SHARD_CHUNKS", (1, 1))
     x, y = grid(40, 140)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
