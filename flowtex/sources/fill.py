@@ -12,7 +12,7 @@ from flowtex._util.array_types import Floats
 #: ranges of integers, and 1e10.
 _USUAL = re.compile(
     r"-99\.[09]+|-?9{3,}\.[09]+|-(7{3,}|8{3,})\.[078]+|-?3276[78]\.0|65535\.0"
-    r"|-?2147483600\.0|-?1e\+10"
+    r"|-?2\.1474836e\+09|-?1e\+10"
 )
 #: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data,
 #: if it exceeds the others by this factor. Below it an inlet or a moving wall may look the same.

@@ -10,20 +10,7 @@ from strategies import property_test
 
 from flowtex.sources.fill import undeclared_fill
 
-FILLS = (
-    -999.0,
-    -9999.0,
-    9999.0,
-    -99.99,
-    -999.9,
-    -32768.0,
-    -8888.0,
-    1e20,
-    9.96921e36,
-    -1e10,
-    1e35,
-    -(2.0**31),
-)
+FILLS = (-999.0, -9999.0, 9999.0, -99.99, -999.9, -32768.0, -8888.0, -(2.0**31), -1e10, 1e20, 1e35)
 
 
 def winds(seed: int, count: int = 2000, size: float = 10.0) -> np.ndarray:
