@@ -74,6 +74,8 @@ class FieldArrays:
     long_names: Mapping[str, str] = field(default_factory=dict)
     projection: Projection | None = None
     reading: Reading = NOTHING
+    #: Share of the flow normal to the surface from which on a notice says so.
+    notable_normal: float = 0.5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -115,7 +115,7 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
         (10, 12)
         """
-        from flowtex.sources.meshes.from_pyvista import read_meshes
+        from flowtex.sources.meshes.read import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}

@@ -18,7 +18,14 @@ from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.arrays import NOTHING, FieldArrays, Reading, SectionAxes, TriangleArrays
+from flowtex.field.arrays import (
+    NOTHING,
+    FieldArrays,
+    Reading,
+    ReadingStep,
+    SectionAxes,
+    TriangleArrays,
+)
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import as_seconds
 from flowtex.field.derived import (
@@ -50,8 +57,6 @@ _SHARED = ("surface", "index_velocity")
 #: Share of the flow normal to the surface from which on the speed in it has another name. A curved
 #: mesh alone has 1 or 2 %; at 5 % the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
-#: Share of the flow normal to a surface of triangles from which on a notice says so.
-MOST_LOST = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -151,12 +156,17 @@ class FlowField(FieldConstructors):
         on_triangles = isinstance(arrays, TriangleArrays)
         make: Any = cls.from_triangles if on_triangles else cls.from_arrays
         arguments = dict(vars(arrays))
+        notable = arguments.pop("notable_normal")
         kept = {name: arguments.pop(name, None) for name in ("section", "reading")}
         field: FlowField = make(**arguments).same_flow(**kept)
-        late = isinstance(field.velocity, LazySteps)
-        if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
-            notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")
-        return field
+        is_map = isinstance(field.velocity, LazySteps) or arrays.projection is not None
+        if is_map or (lost := field.normal_share) < NOTABLE_SHARE:
+            return field
+        text = f"{lost:.0%} of the flow is normal to the surface and is not drawn"
+        step = ReadingStep("surface", text, notable=lost > notable)
+        if step.notable:
+            notify(text)
+        return field.same_flow(reading=Reading((*field.reading, step)))
 
     @classmethod
     def from_arrays(

@@ -22,8 +22,8 @@ from flowtex.sources.datasets.regions import Regions
 from flowtex.sources.datasets.select import two_names
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.meshes import beside, plot3d
-from flowtex.sources.meshes.from_pyvista import read_meshes
 from flowtex.sources.meshes.parts import time_steps, times_of
+from flowtex.sources.meshes.read import read_meshes
 from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
 from flowtex.sources.reader_errors import errors_of_file
 

@@ -27,7 +27,7 @@ def undeclared_fill(values: Floats) -> float | None:
     It is the least or the greatest value, repeats exactly, and lies far outside the others: further
     from them than they extend, zero included. There may be another one once it is masked.
     """
-    finite = np.asarray(values, dtype=np.float64).ravel()
+    finite = np.ravel(values)
     known = np.isfinite(finite)
     finite = finite if known.all() else finite[known]
     if not finite.size:

@@ -275,13 +275,11 @@ class FlowSource(Source):
                 self.nbytes = sum(_bytes(grid) for grid in blocks.values())
             return [TimeStep(next(iter(blocks.values())), None, "the mesh")]
         steps: list[TimeStep] = []
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Notice)
-            for step in time_steps(mesh if series else first, self._block):
-                steps.append(step)
-                self.nbytes += _bytes(step.grid)
-                if self.nbytes > MAX_SERIES_BYTES:
-                    return steps[:1]
+        for step in time_steps(mesh if series else first, self._block):
+            steps.append(step)
+            self.nbytes += _bytes(step.grid)
+            if self.nbytes > MAX_SERIES_BYTES:
+                return steps[:1]
         self._mesh = steps[0].grid if len(steps) == 1 else steps
         self._block = None
         return steps
@@ -292,7 +290,7 @@ def _choices(mesh: Any, *, series: bool) -> Parts:
     if isinstance(mesh, (list, tuple)):
         return {}
     drawn, combination = drawn_parts(mesh, series=series)
-    if combination == "together" or (combination == "steps" and len(drawn) > 1):
+    if combination in ("together", "steps"):
         return {}
     others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
     parts = {**drawn, **others}

@@ -5,7 +5,6 @@ A cut is given as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or a
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Mapping
@@ -15,13 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import brief
-from flowtex._util.array_types import Indices
-from flowtex._util.notices import notify
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.triangles.arrays import solid_triangles
-from flowtex.field.triangles.topology import needle_edges
-from flowtex.sources.meshes.parts import hidden_nodes
-from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue
+from flowtex.field.triangles.arrays import nodal_means, solid_triangles
+from flowtex.field.triangles.topology import needle_edges, triangle_normals
+from flowtex.sources.meshes.masks import hidden_nodes
+from flowtex.sources.meshes.sheets import Sheet
+from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, near_name, values_of
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -45,10 +45,6 @@ class Slice:
     point: Vector | None
     text: str
 
-    def faults(self, mesh: pv.DataSet) -> list[str]:
-        """Return no faults: a plane is tested by the cut."""
-        return []
-
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the section of a volume."""
         # Polygons would be torn where some of their points nearly coincide.
@@ -71,20 +67,6 @@ class Contour:
     name: str
     value: float
     text: str
-
-    def faults(self, mesh: pv.DataSet) -> list[str]:
-        """Return the fault of an unknown array."""
-        names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
-        if self.name in names:
-            return []
-        near = difflib.get_close_matches(self.name, names, n=1)
-        hint = f'. Did you mean "{near[0]}"?' if near else ""
-        listed = ", ".join(dict.fromkeys(names))
-        expected = f"expected one of: {listed}" if listed else "it has only vectors, or no arrays"
-        return [
-            f"contour is {self.text}, but the mesh has no array {self.name!r} of one "
-            f"component{hint}; {expected}"
-        ]
 
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the contour in a volume whose array is on points."""
@@ -181,25 +163,57 @@ def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
     if dimension < 2:
         kind = "lines" if dimension else "points"
         return [f"the mesh has only {kind}; expected a surface, or a volume to cut"]
-    if cut is None:
-        return []
-    if dimension == 2:
+    if cut is not None and dimension == 2:
         name = type(cut).__name__.lower()
         return [
             f"{name} is {cut.text}, but the mesh is already a surface, of which a cut is only a "
             f"line; omit {name}"
         ]
-    return cut.faults(mesh)
+    names = dict.fromkeys(a.name for a in catalogue(mesh) if a.numeric and a.components == 1)
+    if not isinstance(cut, Contour) or cut.name in names:
+        return []
+    some = f"expected one of: {', '.join(names)}" if names else "it has only vectors, or no arrays"
+    return [
+        f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
+        f"{near_name(cut.name, names)}; {some}"
+    ]
 
 
-def surface_of(
-    mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
+def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record) -> Sheet:
+    """Return the nodes of the surface of a mesh, (N,), in which :func:`cut_faults` found none."""
+    surface, triangles = _surface_of(mesh, cut, velocity, record)
+    points = np.asarray(surface.points, dtype=np.float64)
+    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
+        msg = (
+            f"its cells refer to points {triangles.min()} to {triangles.max()}, but there are "
+            f"{len(points):,}; write or copy it again"
+        )
+        raise FieldError(msg)
+    areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
+
+    def nodes(array: MeshArray) -> Floats:
+        values = values_of(surface, array).astype(np.float64)
+        if array.where == "points":
+            return values
+        finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+        return nodal_means(values[None], triangles, areas, len(points), finite)[0]
+
+    return Sheet(
+        points=points,
+        shown=np.asarray(surface.point_data[HIDDEN]) <= 0,
+        arrays=[array for array in catalogue(surface) if array.name != HIDDEN],
+        nodes=nodes,
+        triangles=triangles,
+    )
+
+
+def _surface_of(
+    mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record
 ) -> tuple[pv.PolyData, Indices]:
     """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
 
     Arrays on the cells of a volume are interpolated to its points before a cut. :data:`HIDDEN` is
-    above zero at points that depend on hidden ones. ``tell`` issues a notice about automatic
-    choices; :func:`cut_faults` returned none before.
+    above zero at points that depend on hidden ones.
     """
     import pyvista as pv
 
@@ -207,14 +221,17 @@ def surface_of(
     if isinstance(mesh, pv.UnstructuredGrid):
         kinds = mesh.distinct_cell_types
         flat = cut is None and any(kind.dimension == 2 for kind in kinds)
-        if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
+        if cut is None and any(kind.dimension == 3 for kind in kinds):
             text = "cells of two dimensions are" if flat else "outer surface of the volume is"
-            notify(f"the {text} drawn; to cut the volume, use {_examples(mesh)}")
+            text = f"the {text} drawn; to cut the volume, use {_examples(mesh)}"
+            record("surface", text, notable=True)
         drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
         drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
-        mesh = cut.of(_exact(_on_points(mesh, vectors)))
+        name = "isosurface" if isinstance(cut, Contour) else "slice"
+        record("surface", f"{name} {cut.text.strip(chr(39))}")
+        mesh = cut.of(_exact(_on_points(mesh, velocity)))
     elif not isinstance(mesh, pv.PolyData):
         mesh = mesh.extract_surface(
             pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"

@@ -156,6 +156,7 @@ def test_vectors_on_cells_come_to_nodes_by_area() -> None:
 
 
 @pytest.mark.parametrize("where", ["points", "cells"])
+@pytest.mark.filterwarnings(ACROSS)
 def test_hidden_parts_are_blanked(where: str) -> None:
     mesh = uniform(pv.Plane(i_resolution=4, j_resolution=1))
     if where == "points":
