@@ -57,7 +57,7 @@ class Masks:
         hidden["of the cells are hidden: vtkGhostType"] = ~visible_cells(mesh)
         name, where = self._velocity.name, self._velocity.where
         values = values_of(mesh, self._velocity)
-        missing = np.isnan(values).any(axis=-1)
+        missing = np.asarray(np.isnan(values).any(axis=-1))
         hidden[f"of the {where} have no velocity: {name} is NaN"] = missing
         fills = dict.fromkeys(self._fills)
         left = np.where(np.isin(values, list(fills)), np.nan, values) if fills else values

@@ -186,7 +186,7 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
     spans = np.ptp(points, axis=0) if len(points) else np.zeros(3)
     in_plane = np.flatnonzero(spans > SAME_NODE_SHARE * spans.max()).tolist()
     named, is_sure = named_axes(parts)
-    if named and (is_sure or len(in_plane) != 2 or sorted(named) == in_plane):
+    if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
         axes = list(named)
     elif len(in_plane) == 2 and not solid:
         axes = in_plane

@@ -104,13 +104,13 @@ def _order(before: AnyArray, after: AnyArray, near: float, *data: Any) -> Indice
     for name in LABELS:
         if all(name in arrays for arrays in data):
             first, second = (np.asarray(arrays[name]) for arrays in data)
-            order = np.argsort(second)[np.argsort(np.argsort(first))]
-            same = np.array_equal(second[order], first) and len(np.unique(first)) == len(first)
-            if same and np.abs(after[order] - before).max() <= near:
-                return order
-    distances, order = cKDTree(after).query(before)
-    is_whole = len(np.unique(order)) == len(order)
-    return order if is_whole and distances.max(initial=0.0) <= near else None
+            labelled: Indices = np.argsort(second)[np.argsort(np.argsort(first))]
+            same = np.array_equal(second[labelled], first) and len(np.unique(first)) == len(first)
+            if same and np.abs(after[labelled] - before).max() <= near:
+                return labelled
+    distances, order = (np.asarray(found) for found in cKDTree(after).query(before))
+    is_whole = distances.max(initial=0.0) <= near and len(np.unique(order)) == len(after)
+    return order if is_whole else None
 
 
 def _is_sorted(order: Indices) -> bool:
