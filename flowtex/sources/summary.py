@@ -10,7 +10,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.sources.files import OpenFile, open_file
-from flowtex.sources.meshes.masks import hidden_nodes
+from flowtex.sources.meshes.nodes import hidden_nodes
 from flowtex.sources.meshes.parts import (
     drawn_parts,
     is_reader,
@@ -113,19 +113,13 @@ def _cells(mesh: Any) -> dict[str, int]:
     """Count the cells of each kind of an unstructured mesh, by names such as ``"tetra"``."""
     import pyvista as pv
 
-    if isinstance(mesh, pv.UnstructuredGrid):
-        types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
-        names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
-        return {name: int(count) for name, count in zip(names, counts, strict=True)}
-    if not isinstance(mesh, pv.PolyData):
+    if isinstance(mesh, pv.PolyData):
+        mesh = mesh.cast_to_unstructured_grid()
+    if not isinstance(mesh, pv.UnstructuredGrid):
         return {}
-    kinds = (
-        ("triangle" if mesh.is_all_triangles else "polygon", mesh.GetNumberOfPolys()),
-        ("triangle strip", mesh.GetNumberOfStrips()),
-        ("line", mesh.GetNumberOfLines()),
-        ("vertex", mesh.GetNumberOfVerts()),
-    )
-    return {name: int(count) for name, count in kinds if count}
+    types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
+    names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
+    return dict(zip(names, map(int, counts), strict=True))
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
@@ -140,12 +134,9 @@ def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
 
 
 def _array(mesh: Any, array: MeshArray) -> ArraySummary:
-    low = high = float("nan")
-    if array.numeric:
-        values = values_of(mesh, array).astype(np.float64)
-        if array.components > 1:
-            values = np.linalg.norm(values.reshape(len(values), -1), axis=1)
-        values = values[np.isfinite(values)]
-        if len(values):
-            low, high = float(values.min()), float(values.max())
-    return ArraySummary(array.name, array.where, array.components, low, high, array.parts)
+    values = values_of(mesh, array).astype(np.float64) if array.numeric else np.empty(0)
+    if array.components > 1:
+        values = np.linalg.norm(values.reshape(-1, array.components), axis=1)
+    values = values[np.isfinite(values)]
+    ends = (float(values.min()), float(values.max())) if len(values) else (np.nan, np.nan)
+    return ArraySummary(array.name, array.where, array.components, *ends, array.parts)

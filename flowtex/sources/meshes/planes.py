@@ -29,8 +29,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex.field.grids.periodic import find_closure
 from flowtex.field.grids.signs import axes, products
-from flowtex.sources.meshes.masks import hidden_nodes, visible_cells
-from flowtex.sources.meshes.sheets import Sheet
+from flowtex.sources.meshes.nodes import Sheet, hidden_nodes, visible_cells
 from flowtex.sources.meshes.vectors import MeshArray, catalogue, values_of
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)

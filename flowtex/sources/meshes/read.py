@@ -22,7 +22,7 @@ from flowtex.field.arrays import GridArrays, TriangleArrays
 from flowtex.field.field import NOTABLE_SHARE
 from flowtex.sources.meshes.components import named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
-from flowtex.sources.meshes.masks import Masks
+from flowtex.sources.meshes.nodes import Masks, Sheet
 from flowtex.sources.meshes.parts import SAME_NODE_SHARE, TimeStep, is_structured, time_steps
 from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
 from flowtex.sources.meshes.series import (
@@ -32,7 +32,6 @@ from flowtex.sources.meshes.series import (
     common_scalars,
     ordered_times,
 )
-from flowtex.sources.meshes.sheets import Sheet
 from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity
 from flowtex.sources.record import Record
 

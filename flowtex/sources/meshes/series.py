@@ -12,9 +12,9 @@ from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.sources.meshes.nodes import Sheet
 from flowtex.sources.meshes.parts import SAME_NODE_SHARE, TimeStep, is_structured, part_size
 from flowtex.sources.meshes.planes import count_nodes
-from flowtex.sources.meshes.sheets import Sheet
 from flowtex.sources.meshes.vectors import MeshArray, catalogue, missing_arrays
 from flowtex.sources.record import Record
 

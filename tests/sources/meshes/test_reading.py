@@ -167,7 +167,7 @@ def test_the_record_tells_each_step() -> None:
     field, _ = read(mesh, slice="x=0.5")
     assert str(field.reading).splitlines()[:5] == [
         'select: the velocity is "u,v,w", the only cell array with 3 components',
-        "mask: 10% of the nodes are hidden: IBlank == 0",
+        "mask: 10% of the nodes are hidden by IBlank",
         "components: u, v, w combined",
         "surface: slice x=0.5",
         "surface: cell data averaged to the nodes",
@@ -240,7 +240,7 @@ def test_cells_that_are_hidden_are_recorded() -> None:
     mesh["U"] = np.ones((mesh.n_points, 2))
     mesh.cell_data["vtkGhostType"] = np.r_[np.full(6, 32), np.zeros(24)].astype(np.uint8)
     assert read(mesh, vectors="U")[0].reading.of("mask") == (
-        "20% of the cells are hidden: vtkGhostType",
+        "20% of the cells are hidden by vtkGhostType",
     )
 
 
