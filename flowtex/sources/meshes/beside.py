@@ -39,15 +39,10 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
         problem = f"{path.name} has shape {vectors.shape}"
     if problem:
         corners = f", ({3 * cells}, 3) for the corners of the faces" if is_stl else ""
-        return (
-            mesh,
-            None,
-            (
-                f"{problem}; expected them in {path.name} in the same folder, written by numpy.save: "
-                f"numbers of shape ({points}, 3) for the points, ({cells}, 3) for the faces{corners}, "
-                f"or (T, {points}, 3) for times, in the order of the file"
-            ),
-        )
+        places = f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}"
+        text = f"{problem}; expected them in {path.name} in the same folder, written by numpy.save"
+        text += f": numbers of shape {places}, or (T, {points}, 3) for times, in the order of the"
+        return mesh, None, f"{text} file"
 
     def with_vectors(step: AnyArray) -> Any:
         copy = mesh.copy(deep=False)

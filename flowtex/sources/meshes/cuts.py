@@ -25,7 +25,6 @@ from flowtex.sources.record import Record
 if TYPE_CHECKING:
     import pyvista as pv
 
-_NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
 #: Flags of VTK's ghost arrays for cells that are not drawn, also of other pieces, which would
 #: coincide with these.
@@ -50,11 +49,9 @@ class Slice:
         middle = self.point or mesh.center
         cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
         if not cut.n_cells:
-            ends = np.reshape(mesh.bounds, (3, 2))
-            spans = (
-                f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends, strict=True)
-            )
-            msg = f"slice is {self.text}, which does not cut the mesh; it has {', '.join(spans)}"
+            ends = zip("xyz", np.reshape(mesh.bounds, (3, 2)), strict=True)
+            spans = ", ".join(f"{axis} from {low:g} to {high:g}" for axis, (low, high) in ends)
+            msg = f"slice is {self.text}, which does not cut the mesh; it has {spans}"
             raise FieldError(msg)
         return cut
 
@@ -71,11 +68,9 @@ class Contour:
         """Return the contour in a volume whose array is on points."""
         cut = mesh.contour([self.value], scalars=self.name)
         if not cut.n_cells:
-            values = np.asarray(mesh.point_data[self.name], dtype=np.float64)
-            low, high = np.nanmin(values), np.nanmax(values)
-            msg = (
-                f"contour is {self.text}; expected a value of {self.name} from {low:g} to {high:g}"
-            )
+            low, high = mesh.get_data_range(self.name)
+            span = f"expected a value of {self.name} from {low:g} to {high:g}"
+            msg = f"contour is {self.text}; {span}"
             raise FieldError(msg)
         return cut
 
@@ -94,37 +89,33 @@ def find_cut(slice: Any, contour: Any) -> Cut | None:
 
 
 def _slice(raw: Any) -> Slice:
-    normal: Any = None
-    point: Any = None
+    normal, point = raw, None
     if isinstance(raw, str):
+        normal, through, place = raw.partition("through")
+        normal, point = normal.split(","), place.split(",") if through else None
         if match := _AXIS.fullmatch(raw):
-            axis = match["axis"].lower()
-            normal, at = _NORMALS[axis], match["at"]
-            point = None if at is None else [float(a == axis) * _number(at) for a in "xyz"]
-        else:
-            first, through, second = raw.partition("through")
-            normal = first.split(",")
-            point = second.split(",") if through else None
-    elif isinstance(raw, (list, tuple, np.ndarray)):
-        normal, point = raw if len(raw) == 2 else (raw, None)
-        normal = _NORMALS.get(normal, normal) if isinstance(normal, str) else normal
-    direction, place = _vector(normal), None if point is None else _vector(point)
-    if direction is None or not any(direction) or (point is not None and place is None):
+            normal = [float(axis == match["axis"].lower()) for axis in "xyz"]
+            point = match["at"] and [_number(match["at"]) * on for on in normal]
+    elif isinstance(raw, (list, tuple, np.ndarray)) and len(raw) == 2:
+        normal, point = raw
+        if isinstance(normal, str) and normal in "xyz":
+            normal = np.arange(3) == "xyz".index(normal)
+    direction, middle = _vector(normal), None if point is None else _vector(point)
+    if direction is None or not any(direction) or (point is not None and middle is None):
         msg = (
             f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
             '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
             "point) of three numbers each"
         )
         raise FieldError(msg)
-    return Slice(direction, place, repr(raw))
+    return Slice(direction, middle, repr(raw))
 
 
 def _example(raw: Any) -> str:
     """Return a slice as a text, that of ``("z", 1)`` and ``{"z": 1}`` if these are given."""
     pair = next(iter(raw.items()), ()) if isinstance(raw, Mapping) else raw
-    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
-        return f"{pair[0]}={pair[1]}"
-    return "x=0.5"
+    is_pair = isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str)
+    return f"{pair[0]}={pair[1]}" if is_pair else "x=0.5"
 
 
 def _contour(raw: Any) -> Contour:
@@ -133,15 +124,14 @@ def _contour(raw: Any) -> Contour:
         name, value = pair[0].strip(), _number(pair[1])
         if name and math.isfinite(value):
             return Contour(name, value, repr(raw))
-    msg = (
-        f'contour is {brief(raw)}; expected an array and its value, as in contour="pressure=101325"'
-    )
+    expected = 'expected an array and its value, as in contour="pressure=101325"'
+    msg = f"contour is {brief(raw)}; {expected}"
     raise FieldError(msg)
 
 
 def _vector(raw: Any) -> Vector | None:
     try:
-        x, y, z = (_number(number) for number in raw)
+        x, y, z = map(_number, raw)
     except (TypeError, ValueError):
         return None
     return (x, y, z) if math.isfinite(x + y + z) else None
@@ -252,27 +242,26 @@ def _examples(mesh: pv.DataSet) -> str:
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
-    scalars = (a for a in catalogue(mesh) if a.real and a.components == 1)
-    names = [a.name for a in scalars if a.name != HIDDEN]
+    arrays = catalogue(mesh)
+    names = [a.name for a in arrays if a.real and a.components == 1 and a.name != HIDDEN]
     return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
     """Return a mesh without its hidden cells, and with the hidden points marked."""
     hidden = hidden_nodes(mesh)
-    ghosts = mesh.cell_data.get("vtkGhostType")
-    shown = None if ghosts is None else (np.asarray(ghosts) & _NOT_DRAWN) == 0
+    ghosts = mesh.cell_data.get("vtkGhostType", np.zeros(mesh.n_cells, np.uint8))
     mesh = mesh.copy(deep=False)
     for data in (mesh.point_data, mesh.cell_data):
-        for name in BLANKING:
-            if name in data:
-                del data[name]
+        for name in set(BLANKING) & set(data):
+            del data[name]
     mesh.point_data[HIDDEN] = hidden.astype(np.float64)
-    if shown is None or shown.all():
-        return mesh
+    shown = (np.asarray(ghosts) & _NOT_DRAWN) == 0
     if not shown.any():
         msg = "all cells of the mesh are hidden; show some of them"
         raise FieldError(msg)
+    if shown.all():
+        return mesh
     return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
 
 
@@ -283,27 +272,25 @@ def _exact(mesh: Any) -> pv.DataSet:
     if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
         mesh = mesh.cast_to_structured_grid()
     if np.asarray(mesh.points).dtype != np.float64:
-        mesh.points = np.asarray(mesh.points, dtype=np.float64)
+        # Not by assignment, which would change the positions of the user's mesh.
+        mesh.SetPoints(pv.vtk_points(np.asarray(mesh.points, dtype=np.float64)))
     return mesh
 
 
 def _on_points(mesh: pv.DataSet, vectors: MeshArray) -> pv.DataSet:
     """Return a volume with its arrays on its points, perhaps the changed mesh."""
     chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
-    names = [
-        a.name
-        for a in catalogue(mesh)
-        if a.where == "cells"
-        and a.numeric
-        and (a.name in chosen or (a.components == 1 and a.name not in mesh.point_data))
-    ]
-    if names:
+    for array in catalogue(mesh):
+        name, is_scalar = array.name, array.components == 1
+        wanted = name in chosen or (is_scalar and name not in mesh.point_data)
+        if array.where == "cells":
+            values = np.asarray(mesh.cell_data.pop(name))
+            if array.numeric and wanted:
+                mesh.cell_data[name] = values.astype(np.float64)
+    if len(mesh.cell_data):
         cells = mesh.copy(deep=False)
-        cells.clear_data()
-        for name in names:
-            cells.cell_data[name] = np.asarray(mesh.cell_data[name], dtype=np.float64)
-        points = cells.cell_data_to_point_data().point_data
-        for name in names:
-            mesh.point_data[name] = points[name]
+        cells.point_data.clear()
+        for name, values in cells.cell_data_to_point_data().point_data.items():
+            mesh.point_data[name] = values
     mesh.cell_data.clear()
     return mesh

@@ -78,7 +78,9 @@ class Masks:
         hidden = {f"of the nodes are hidden by {array}": at for array, at in _hidden(mesh).items()}
         hidden["of the cells are hidden by vtkGhostType"] = ~visible_cells(mesh)
         hidden[f"of the {where} have no velocity: {name} is NaN"] = np.isnan(values).any(axis=-1)
-        left = np.where(np.isin(values, list(self._fills)), np.nan, values)
+        left = values
+        for fill in self._fills:
+            left = np.where(left == fill, np.nan, left)
         while (fill := undeclared_fill(left)) is not None:
             text = f"{name} is {fill:g} there, which is taken for a fill value"
             self._fills[fill] = f"of the {where} are masked: {text}"

@@ -111,11 +111,9 @@ def drawn_parts(
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
-    flat, solid = (
-        {name: part for name, part in parts.items() if part.max_cell_dimensionality == dimension}
-        for dimension in (2, 3)
-    )
-    usable = {name: grid for name, grid in grids.items() if grid.max_cell_dimensionality > 1}
+    dimensions = {name: part.max_cell_dimensionality for name, part in parts.items()}
+    flat, solid = ({n: p for n, p in parts.items() if dimensions[n] == rank} for rank in (2, 3))
+    usable = {name: grid for name, grid in grids.items() if dimensions[name] > 1}
     drawn = (solid if cut else {}) or usable or grids or solid or flat or parts
     if len(drawn) < 2:
         return drawn, "one"
@@ -128,11 +126,8 @@ def _same_nodes(meshes: list[pv.DataSet]) -> bool:
     """Return whether meshes have the same nodes, judged by their sizes and bounds."""
     first = np.asarray(meshes[0].bounds)
     near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
-    return all(
-        part_size(mesh) == part_size(meshes[0])
-        and bool(np.all(np.abs(np.asarray(mesh.bounds) - first) <= near))
-        for mesh in meshes
-    )
+    same = (np.abs(np.asarray(mesh.bounds) - first).max() <= near for mesh in meshes)
+    return len({part_size(mesh) for mesh in meshes}) == 1 and all(same)
 
 
 def part_size(mesh: Any) -> str:
@@ -145,9 +140,7 @@ def part_size(mesh: Any) -> str:
 def several_fault(mesh: Any, label: str) -> str:
     """Return the message for a choice of several blocks."""
     parts = parts_of(mesh)
-    listed = [
-        f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
-    ]
+    listed = [f"{n} ({name}, {part_size(parts[name])})" for n, name in enumerate(parts)]
     more = ", ..." if len(listed) > MOST_LISTED else ""
     solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
@@ -224,21 +217,17 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
     """Return a PyVista mesh, also of a bare VTK one."""
     import pyvista as pv
 
-    if isinstance(source, pv.DataObject):
-        return source
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
-        return pv.wrap(source)
-    if (kind := type(source)).__module__.startswith("xarray."):
-        msg = (
-            f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components of "
-            "the velocity, as xr.Dataset({'u': u, 'v': v})"
-        )
-        raise FieldError(msg)
+        return source if isinstance(source, pv.DataObject) else pv.wrap(source)
+    kind = type(source)
     msg = (
-        f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
-        "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
+        f"{label} has type {kind.__name__}; expected a PyVista mesh or MultiBlock, a list of them, "
+        "or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
         "FlowField.from_triangles(points, triangles, velocity)"
     )
+    if kind.__module__.startswith("xarray."):
+        text = f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components"
+        msg = f"{text} of the velocity, as xr.Dataset({{'u': u, 'v': v}})"
     raise FieldError(msg)
 
 
@@ -249,7 +238,7 @@ def _time(mesh: pv.DataObject) -> float | None:
 
 
 def _no_mesh(mesh: pv.DataObject, label: str) -> str:
-    kinds = sorted({type(block).__name__ for _, block in leaves(mesh)})
-    if not kinds:
-        return f"{label} has no blocks; check the file or filter that made it"
-    return f"{label} is a {', '.join(kinds)}; expected a mesh, with points and cells"
+    kinds = ", ".join(sorted({type(block).__name__ for _, block in leaves(mesh)}))
+    is_mesh = "expected a mesh, with points and cells"
+    nothing = f"{label} has no blocks; check the file or filter that made it"
+    return f"{label} is a {kinds}; {is_mesh}" if kinds else nothing

@@ -83,16 +83,13 @@ def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:
 
 def candidates(mesh: pv.DataSet) -> list[MeshArray]:
     """Return possible velocities: arrays, or vectors of single components by their names."""
-    named = set()
-    for data in (mesh.GetPointData(), mesh.GetCellData()):
-        named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
+    parts = mesh.GetPointData(), mesh.GetCellData()
+    others = {a.GetName() for data in parts for a in (data.GetNormals(), data.GetTCoords()) if a}
     arrays = [
         array
         for array in catalogue(mesh)
-        if array.real
-        and array.components in (2, 3)
-        and array.name not in named
-        and not NO_VELOCITY.fullmatch(array.name)
+        if array.real and array.components in (2, 3)
+        if array.name not in others and not NO_VELOCITY.fullmatch(array.name)
     ]
     # Of arrays on points and cells one was computed from the other: those of points come first.
     by_name = {array.name: array for array in reversed(arrays)}
