@@ -89,10 +89,11 @@ def find_cut(slice: Any, contour: Any) -> Cut | None:
 
 
 def _slice(raw: Any) -> Slice:
-    normal, point = raw, None
+    normal: Any = raw
+    point: Any = None
     if isinstance(raw, str):
-        normal, through, place = raw.partition("through")
-        normal, point = normal.split(","), place.split(",") if through else None
+        first, through, second = raw.partition("through")
+        normal, point = first.split(","), second.split(",") if through else None
         if match := _AXIS.fullmatch(raw):
             normal = [float(axis == match["axis"].lower()) for axis in "xyz"]
             point = match["at"] and [_number(match["at"]) * on for on in normal]
@@ -114,8 +115,9 @@ def _slice(raw: Any) -> Slice:
 def _example(raw: Any) -> str:
     """Return a slice as a text, that of ``("z", 1)`` and ``{"z": 1}`` if these are given."""
     pair = next(iter(raw.items()), ()) if isinstance(raw, Mapping) else raw
-    is_pair = isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str)
-    return f"{pair[0]}={pair[1]}" if is_pair else "x=0.5"
+    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
+        return f"{pair[0]}={pair[1]}"
+    return "x=0.5"
 
 
 def _contour(raw: Any) -> Contour:

@@ -77,14 +77,16 @@ class Masks:
         values = values_of(mesh, self._velocity)
         hidden = {f"of the nodes are hidden by {array}": at for array, at in _hidden(mesh).items()}
         hidden["of the cells are hidden by vtkGhostType"] = ~visible_cells(mesh)
-        hidden[f"of the {where} have no velocity: {name} is NaN"] = np.isnan(values).any(axis=-1)
+        hidden[f"of the {where} have no velocity: {name} is NaN"] = np.asarray(
+            np.isnan(values).any(-1)
+        )
         left = values
         for fill in self._fills:
             left = np.where(left == fill, np.nan, left)
-        while (fill := undeclared_fill(left)) is not None:
-            text = f"{name} is {fill:g} there, which is taken for a fill value"
-            self._fills[fill] = f"of the {where} are masked: {text}"
-            left = np.where(left == fill, np.nan, left)
+        while (found := undeclared_fill(left)) is not None:
+            text = f"{name} is {found:g} there, which is taken for a fill value"
+            self._fills[found] = f"of the {where} are masked: {text}"
+            left = np.where(left == found, np.nan, left)
         hidden |= {text: (values == fill).any(axis=-1) for fill, text in self._fills.items()}
         for text, at in hidden.items():
             share = float(at.mean()) if at.size else 0.0

@@ -151,12 +151,10 @@ def _positions(grid: Any, plane: Plane) -> Floats:
 
 def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
     """Return whether the last line along (j, i) repeats the first one, so that cells go round."""
-    wrap = []
-    for letter, lines in (("j", points), ("i", np.swapaxes(points, 0, 1))):
-        closure = find_closure(lines)
-        allowed = periodic is None or letter in periodic
-        wrap.append(allowed and closure.periodic and closure.line is None)
-    return wrap[0], wrap[1]
+    ends = find_closure(points), find_closure(np.swapaxes(points, 0, 1))
+    allowed = [periodic is None or letter in periodic for letter in "ji"]
+    j, i = (end.periodic and end.line is None for end in ends)
+    return j and allowed[0], i and allowed[1]
 
 
 def _spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:

@@ -141,7 +141,7 @@ def _stacked(
         reordered += is_other
     assert start is not None
     kept, shown, cells, vectors, scalars = zip(*read, strict=True)
-    order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), times)
+    order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), None)
     if reordered:
         text = f"nodes or cells of {reordered} steps are in another order than those of the first"
         record("align", f"{text}, and were matched by their labels or places", notable=True)
@@ -152,10 +152,20 @@ def _stacked(
     if velocity.where == "cells":
         record("surface", "cell data averaged to the nodes")
     axes = _axes(velocity, start, record, solid=first.grid.max_cell_dimensionality == 3)
-    steps_of = np.zeros((len(order), *vectors[0].shape[:-1], 3))
+    flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
     for n, number in enumerate(order):
-        steps_of[n][..., axes] = vectors[number]
-    arrays = {"points": start.points, "velocity": steps_of, "times": moments, "valid": valid}
+        flow[n][..., axes] = vectors[number]
+    moving = np.flatnonzero(np.nan_to_num(flow).any(axis=tuple(range(1, flow.ndim))))
+    if len(moving) and moving[0]:
+        when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
+        text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
+        record("mask", text, notable=True)
+    arrays = {
+        "points": start.points,
+        "velocity": flow,
+        "times": moments if times is None else times,
+        "valid": valid,
+    }
     if start.triangles is not None:
         arrays["triangles"] = start.triangles
     return {**arrays, "scalars": common_scalars([scalars[n] for n in order], moments, record)}

@@ -27,19 +27,18 @@ PARTS = "If these are parts of one mesh and not time steps, give one of them, as
 
 def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
     """Raise a FieldError for a step of another kind than the first, or without its vectors."""
-    grid, before = step.grid, first.grid
-    if is_structured(before) and (
-        not is_structured(grid) or tuple(grid.dimensions) != tuple(before.dimensions)
-    ):
-        size = count_nodes(tuple(grid.dimensions)) if is_structured(grid) else part_size(grid)
+    sizes = [
+        count_nodes(tuple(grid.dimensions)) if is_structured(grid) else part_size(grid)
+        for grid in (step.grid, first.grid)
+    ]
+    if is_structured(first.grid) and sizes[0] != sizes[1]:
         msg = (
-            f"{step.label} has {size} and the first step has "
-            f"{count_nodes(tuple(before.dimensions))}; expected the same nodes in every step. "
-            f"{PARTS}"
+            f"{step.label} has {sizes[0]} and the first step has {sizes[1]}; expected the same "
+            f"nodes in every step. {PARTS}"
         )
         raise FieldError(msg)
-    if missing := missing_arrays(grid, velocity):
-        arrays = ", ".join(map(str, catalogue(grid))) or "none"
+    if missing := missing_arrays(step.grid, velocity):
+        arrays = ", ".join(map(str, catalogue(step.grid))) or "none"
         msg = (
             f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
             f"every step. Its arrays, with their numbers of components: {arrays}"
@@ -143,22 +142,18 @@ def _size(sheet: Sheet) -> str:
     return f"{len(sheet.points):,} nodes and {len(triangles):,} triangles"
 
 
-def ordered_times(
-    steps: Sequence[TimeStep], record: Record
-) -> tuple[list[int], list[float] | None]:
+def ordered_times(steps: Sequence[TimeStep], record: Record) -> tuple[list[int], Any]:
     """Return the order of steps by their times, and the times; ``None`` without them."""
     numbers = list(range(len(steps)))
-    times = [step.time for step in steps if step.time is not None]
-    if len(times) < len(steps):
-        lacking = next(step.label for step in steps if step.time is None)
-        text = f"{lacking} has no time, so the {len(steps)} steps are numbered from 0"
+    times = [np.nan if step.time is None else step.time for step in steps]
+    if lacking := [step.label for step in steps if step.time is None]:
+        text = f"{lacking[0]} has no time, so the {len(steps)} steps are numbered from 0"
         if len(steps) > 1:
-            record("align", text, notable=bool(times))
+            record("align", text, notable=len(lacking) < len(steps))
         return numbers, None
     if not np.isfinite(times).all():
         return numbers, times  # the field raises an error
     order = sorted(numbers, key=times.__getitem__)
-    moments = [times[n] for n in order]
     if order != numbers:
         record("align", "the steps are sorted by their times", notable=True)
     for n, following in pairwise(order):
@@ -168,6 +163,7 @@ def ordered_times(
                 "expected different times: leave out one of them, or give times=[...]"
             )
             raise FieldError(msg)
+    moments = [times[n] for n in order]
     lengths = np.diff(moments)
     if len(lengths) > 1 and lengths.max() > GAP_STEPS * (usual := float(np.median(lengths))) > 0:
         n = int(np.argmax(lengths))
@@ -184,12 +180,10 @@ def common_scalars(
     scalars: Sequence[dict[str, Floats]], times: Any, record: Record
 ) -> dict[str, Floats]:
     """Return the arrays that all steps have, (T, ...)."""
-    names = []
-    for name in scalars[0]:
-        lacking = [n for n, arrays in enumerate(scalars) if name not in arrays]
-        if not lacking:
-            names.append(name)
-            continue
-        when = f"step {lacking[0]}" if times is None else f"time {times[lacking[0]]:g}"
-        record("align", f"{name!r} is missing at {when}, so it is not read", notable=True)
-    return {name: np.stack([arrays[name] for arrays in scalars]) for name in names}
+    common = dict(scalars[0])
+    for n, arrays in enumerate(scalars):
+        for name in [name for name in common if name not in arrays]:
+            when = f"step {n}" if times is None else f"time {times[n]:g}"
+            record("align", f"{name!r} is missing at {when}, so it is not read", notable=True)
+            del common[name]
+    return {name: np.stack([arrays[name] for arrays in scalars]) for name in common}

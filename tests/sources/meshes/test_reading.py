@@ -368,3 +368,10 @@ def test_notices_name_the_line_that_calls() -> None:
     with pytest.warns(Notice, match="the plane is") as caught:
         FlowField.from_pyvista(mesh)
     assert caught[0].filename == __file__
+
+
+def test_a_first_step_at_rest_is_told() -> None:
+    _, notices = read([step("grid", time) for time in (0.0, 0.5, 1.0)])
+    assert notices == [
+        "the velocity is zero everywhere at the first step; it is not from time 0.5 on"
+    ]
