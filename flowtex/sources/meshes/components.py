@@ -79,7 +79,7 @@ def named_axes(parts: Sequence[str]) -> tuple[tuple[int, ...], bool]:
     parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES)) if parts else ()
     for before, alphabet, after in parses:
         whole = [before + token + after for token in alphabet]
-        if set(parts) <= set(whole):
+        if set(parts) <= set(whole) and len(set(parts)) == len(parts):
             axes = tuple(whole.index(part) for part in parts)
             return (axes, True) if alphabet in _AXES else (() if axes == (0, 1) else axes, False)
     return (), False

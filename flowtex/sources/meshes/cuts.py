@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -183,9 +183,9 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
 
     def nodes(array: MeshArray) -> Floats:
+        if array.where == "points" or cut is not None:
+            return values_of(surface, replace(array, where="points")).astype(np.float64)
         values = values_of(surface, array).astype(np.float64)
-        if array.where == "points":
-            return values
         finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), finite)[0]
 

@@ -71,8 +71,7 @@ def read_meshes(
             return plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
         return surface_sheet(grid, cut, velocity, record)
 
-    on_nodes = velocity if cut is None else replace(velocity, where="points")
-    arrays = _stacked(chain([first], steps), velocity, draw, times, on_nodes, record)
+    arrays = _stacked(chain([first], steps), velocity, draw, times, record)
     record.notify()
     arrays |= {"name": name, "reading": record.reading}
     if first.grid.max_cell_dimensionality < 3:
@@ -122,7 +121,6 @@ def _stacked(
     velocity: MeshArray,
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
-    on_nodes: MeshArray,
     record: Record,
 ) -> dict[str, Any]:
     """Return the arrays of all steps on the nodes of the first."""
@@ -135,7 +133,7 @@ def _stacked(
         sheet = draw(masks.masked(same.grid))
         start = sheet if start is None else start
         check_nodes(start, sheet, step.label)
-        values = sheet.nodes(on_nodes), _scalars(sheet)
+        values = sheet.nodes(velocity), _scalars(sheet)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
         reordered += is_other
@@ -155,20 +153,15 @@ def _stacked(
     flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
     for n, number in enumerate(order):
         flow[n][..., axes] = vectors[number]
-    moving = np.flatnonzero(np.nan_to_num(flow).any(axis=tuple(range(1, flow.ndim))))
-    if len(moving) and moving[0]:
+    moving = [n for n, step in enumerate(flow) if np.nan_to_num(step).any()]
+    if moving and moving[0]:
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
         record("mask", text, notable=True)
-    arrays = {
-        "points": start.points,
-        "velocity": flow,
-        "times": moments if times is None else times,
-        "valid": valid,
-    }
-    if start.triangles is not None:
-        arrays["triangles"] = start.triangles
-    return {**arrays, "scalars": common_scalars([scalars[n] for n in order], moments, record)}
+    common = common_scalars([scalars[n] for n in order], moments, record)
+    arrays = {"points": start.points, "velocity": flow, "valid": valid, "scalars": common}
+    triangles = {} if start.triangles is None else {"triangles": start.triangles}
+    return {**arrays, **triangles, "times": moments if times is None else times}
 
 
 def _scalars(sheet: Sheet) -> dict[str, Floats]:
@@ -219,5 +212,7 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
 
 def _is_flat(points: Floats) -> bool:
     """Return whether points lie in a plane."""
+    if len(points) < 3:
+        return False
     variances = np.linalg.eigvalsh(np.cov(points.T))
     return bool(variances[0] <= FLAT * variances[-1])

@@ -128,6 +128,15 @@ def test_two_components_of_a_volume_are_along_x_and_y(options: dict[str, str]) -
         assert not read(mesh, **level)[1]
 
 
+def test_two_components_without_a_plane() -> None:
+    mesh = pv.ImageData(dimensions=(4, 3, 1))
+    mesh["u"] = np.ones(12)
+    assert (read(mesh, vectors="u,u")[0].velocity == (1, 1, 0)).all()
+    mesh["IBlank"] = np.zeros(12, int)
+    with pytest.raises(FieldError, match="usable"):
+        read(mesh, vectors="u,u")
+
+
 # --- the normal component ------------------------------------------------------------------------
 
 THROUGH = r"^(\d+)% of the flow is normal to the surface and is not drawn$"
