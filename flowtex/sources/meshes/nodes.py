@@ -77,9 +77,9 @@ class Masks:
         values = values_of(mesh, self._velocity)
         hidden = {f"of the nodes are hidden by {array}": at for array, at in _hidden(mesh).items()}
         hidden["of the cells are hidden by vtkGhostType"] = ~visible_cells(mesh)
-        hidden[f"of the {where} have no velocity: {name} is NaN"] = np.asarray(
-            np.isnan(values).any(-1)
-        )
+        if values.size and np.isnan(values.min()):
+            missing = f"of the {where} have no velocity: {name} is NaN"
+            hidden[missing] = np.asarray(np.isnan(values).any(-1))
         left = values
         for fill in self._fills:
             left = np.where(left == fill, np.nan, left)

@@ -134,19 +134,17 @@ def _positions(grid: Any, plane: Plane) -> Floats:
     """Return positions of the nodes of a plane, (J, I, 3)."""
     import pyvista as pv
 
-    if isinstance(grid, pv.StructuredGrid):
-        return plane.nodes(np.asarray(grid.points)).astype(np.float64)
-    matrix = np.eye(4)
     if isinstance(grid, pv.RectilinearGrid):
-        lines = [np.asarray(a, dtype=np.float64) for a in (grid.x, grid.y, grid.z)]
+        lines = [grid.x, grid.y, grid.z]
+        lines[plane.axis] = lines[plane.axis][plane.index : plane.index + 1]
+        part: Any = pv.RectilinearGrid(*lines)
     else:
-        ends = np.reshape(grid.extent, (3, 2))
-        lines = [np.arange(first, last + 1.0) for first, last in ends]
-        matrix = np.asarray(grid.index_to_physical_matrix, dtype=np.float64)
-    lines[plane.axis] = lines[plane.axis][plane.index : plane.index + 1]
-    z, y, x = np.meshgrid(*lines[::-1], indexing="ij")
-    places = np.stack([x, y, z], axis=-1).squeeze(2 - plane.axis)
-    return np.asarray(places @ matrix[:3, :3].T + matrix[:3, 3])
+        bare, ends = grid.copy(deep=False), np.reshape(grid.GetExtent(), (3, 2))
+        bare.clear_data()
+        ends[plane.axis] = ends[plane.axis, 0] + plane.index
+        part = bare.extract_subset(ends.ravel().tolist())
+    points = np.asarray(part.points, dtype=np.float64)
+    return points.reshape(*np.delete(plane.dimensions, plane.axis)[::-1], 3)
 
 
 def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:

@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.arrays import GridArrays, TriangleArrays
-from flowtex.field.field import NOTABLE_SHARE
+from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.sources.meshes.components import named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.nodes import Masks, Sheet

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
@@ -107,7 +107,7 @@ def _order(before: AnyArray, after: AnyArray, near: float, *data: Any) -> Indice
             same = np.array_equal(second[labelled], first) and len(np.unique(first)) == len(first)
             if same and np.abs(after[labelled] - before).max() <= near:
                 return labelled
-    distances, order = (np.asarray(found) for found in cKDTree(after).query(before))
+    distances, order = (np.asarray(found) for found in scipy.spatial.cKDTree(after).query(before))
     is_whole = distances.max(initial=0.0) <= near and len(np.unique(order)) == len(after)
     return order if is_whole else None
 
