@@ -22,7 +22,7 @@ from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.sources.meshes.components import named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.nodes import Masks, Sheet
-from flowtex.sources.meshes.parts import SAME_NODE_SHARE, TimeStep, is_structured, time_steps
+from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps
 from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
 from flowtex.sources.meshes.series import (
     aligned,
@@ -31,7 +31,7 @@ from flowtex.sources.meshes.series import (
     common_scalars,
     ordered_times,
 )
-from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity
+from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity, thick_axes
 from flowtex.sources.record import Record
 
 #: Greatest ratio of the variances across and along a flat mesh.
@@ -184,8 +184,7 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
     if velocity.components == 3:
         return [0, 1, 2]
     points = sheet.points[sheet.shown & np.isfinite(sheet.points).all(axis=-1)]
-    spans = np.ptp(points, axis=0) if len(points) else np.zeros(3)
-    in_plane = np.flatnonzero(spans > SAME_NODE_SHARE * spans.max()).tolist()
+    in_plane = thick_axes(points)
     named, is_sure = named_axes(parts)
     if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
         axes = list(named)

@@ -28,6 +28,8 @@ VELOCITY = re.compile(
     r"((mean|avg|average)[ _.-]?)?(vel|velocity|velocities|u|flow|wind|current)([ _.-]?mean)?",
     re.IGNORECASE,
 )
+#: Share of the extent of a mesh below which it is flat along an axis.
+FLAT_SHARE = 1e-6
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 
@@ -99,7 +101,7 @@ def candidates(mesh: pv.DataSet) -> list[MeshArray]:
 def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
     """Return vectors of single components by their names; pairs on flat meshes."""
     arrays = catalogue(mesh)
-    thick = [axis for axis, span in enumerate(np.diff(np.reshape(mesh.bounds, (3, 2)))) if span > 0]
+    thick = thick_axes(np.reshape(mesh.bounds, (3, 2)).T)
     pair = (thick[0], thick[1]) if len(thick) == 2 else None
     return [
         MeshArray(name, where, len(parts), parts=parts)
@@ -107,6 +109,12 @@ def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
         for names in [[a.name for a in arrays if a.where == where and a.real and a.components == 1]]
         for name, parts in find_vectors(names, pair).items()
     ]
+
+
+def thick_axes(points: AnyArray) -> list[int]:
+    """Return the axes, 0 to 2, along which points (N, 3) extend."""
+    spans = np.ptp(points, axis=0) if len(points) else np.zeros(3)
+    return [axis for axis, span in enumerate(spans) if span > FLAT_SHARE * spans.max()]
 
 
 def missing_arrays(mesh: pv.DataSet, vectors: MeshArray) -> list[str]:
