@@ -80,19 +80,22 @@ class Masks:
         if values.size and np.isnan(values.min()):
             missing = f"of the {where} have no velocity: {name} is NaN"
             hidden[missing] = np.asarray(np.isnan(values).any(-1))
-        left = values
+        visible = visible_cells(mesh) if where == "cells" else ~hidden_nodes(mesh)
+        known = values if visible.all() else values[visible]
         for fill in self._fills:
-            left = np.where(left == fill, np.nan, left)
-        while (found := undeclared_fill(left)) is not None:
+            known = np.where(known == fill, np.nan, known)
+        while (found := undeclared_fill(known)) is not None:
             text = f"{name} is {found:g} there, which is taken for a fill value"
             self._fills[found] = f"of the {where} are masked: {text}"
-            left = np.where(left == found, np.nan, left)
-        hidden |= {text: (values == fill).any(axis=-1) for fill, text in self._fills.items()}
+            known = np.where(known == found, np.nan, known)
+        for fill, text in self._fills.items():
+            hidden[text] = (values == fill).any(axis=-1) & visible
         for text, at in hidden.items():
             share = float(at.mean()) if at.size else 0.0
             self._shares[text] = max(share, self._shares.get(text, 0.0))
         if not self._fills:
             return mesh
+        left = np.where(np.isin(values, list(self._fills)), np.nan, values)
         mesh = mesh.copy(deep=False)
         for array, column in zip(parts or (name,), left.T if parts else (left,), strict=True):
             data_of(mesh, where)[array] = column

@@ -128,14 +128,14 @@ def _stacked(
     read = []
     for step in chain([first], steps):
         check_arrays(step, first, velocity)
-        same, is_other = aligned(step, first)
+        same = aligned(step, first)
         sheet = draw(masks.masked(same.grid))
         start = sheet if start is None else start
         check_nodes(start, sheet, step.label)
         values = sheet.nodes(velocity), _scalars(sheet)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
-        reordered += is_other
+        reordered += same is not step
     assert start is not None
     kept, shown, cells, vectors, scalars = zip(*read, strict=True)
     order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), None)

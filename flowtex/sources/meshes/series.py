@@ -46,33 +46,30 @@ def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
         raise FieldError(msg)
 
 
-def aligned(step: TimeStep, first: TimeStep) -> tuple[TimeStep, bool]:
-    """Return a step in the order of nodes and cells of the first, and whether that is another.
+def aligned(step: TimeStep, first: TimeStep) -> TimeStep:
+    """Return a step in the order of nodes and cells of the first, itself if it has that order.
 
     Nodes are the same by their labels or places. A step with others remains as it is, and
     :func:`check_nodes` raises an error if they are drawn.
     """
     grid, before = step.grid, first.grid
     if (grid.n_points, grid.n_cells) != (before.n_points, before.n_cells) or _equal(grid, before):
-        return step, False
+        return step
     near = SAME_NODE_SHARE * before.length
     nodes = _order(before.points, grid.points, near, before.point_data, grid.point_data)
     if nodes is None:
-        return step, False
+        return step
     middles = before.cell_centers().points, grid.cell_centers().points
     cells = _order(*middles, near, before.cell_data, grid.cell_data)
-    is_other = cells is not None and not (_is_sorted(nodes) and _is_sorted(cells))
-    if cells is None or not is_other:
-        return step, False
+    if cells is None or (_is_sorted(nodes) and _is_sorted(cells)):
+        return step
     ordered = before.copy(deep=False)
     ordered.clear_data()
-    for data, into, order in (
-        (grid.point_data, ordered.point_data, nodes),
-        (grid.cell_data, ordered.cell_data, cells),
-    ):
-        for name in data:
-            into[name] = np.asarray(data[name])[order]
-    return replace(step, grid=ordered), True
+    for name in grid.point_data:
+        ordered.point_data[name] = np.asarray(grid.point_data[name])[nodes]
+    for name in grid.cell_data:
+        ordered.cell_data[name] = np.asarray(grid.cell_data[name])[cells]
+    return replace(step, grid=ordered)
 
 
 def _equal(grid: Any, before: Any) -> bool:

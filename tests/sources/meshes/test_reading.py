@@ -90,7 +90,9 @@ def test_components_in_a_plane_are_found_by_their_names(
     axis: str, names: tuple[str, str], kind: str
 ) -> None:
     mesh, axes = flat(axis, kind), list(AXES[axis])
-    for name, values in zip(names, flow(*np.float64(mesh.points.T[axes])).T, strict=True):
+    for name, values in zip(
+        names, flow(*np.asarray(mesh.points.T[axes], dtype=float)).T, strict=True
+    ):
         mesh[name] = values
     field, notices = read(mesh)
     expected = np.zeros((*field.shape, 3))
@@ -245,6 +247,16 @@ def test_a_fill_value_of_one_step_is_one_in_the_following_steps() -> None:
         steps.append(mesh)
     field, notices = read(steps)
     assert np.abs(field.velocity).max() < 10 and len(notices) == 1
+
+
+def test_fill_values_of_hidden_nodes_are_not_told() -> None:
+    mesh = pv.ImageData(dimensions=(20, 20, 1))
+    mesh["U"] = np.random.default_rng(0).normal(size=(400, 2))
+    mesh["U"][:40] = -999
+    mesh["IBlank"] = (np.arange(400) >= 40).astype(int)
+    field, notices = read(mesh)
+    assert not notices
+    assert field.reading.of("mask") == ("10% of the nodes are hidden by IBlank",)
 
 
 def test_cells_that_are_hidden_are_recorded() -> None:
