@@ -44,21 +44,20 @@ class RegionLines:
 
     a: Floats  #: Longitude of each column, (I,), or x.
     b: Floats  #: Latitude of each row, (J,), or y.
-    #: Longitudes on the map, where the last column may be the first one, a turn further.
-    shown: Floats
     rows: Indices  #: Numbers in the data.
-    columns: Indices
+    columns: Indices  #: Numbers in the data between which each column lies, (2, I).
+    share: Floats  #: Share of the way from the first to the second, (I,).
     projection: Projection | None  #: The map; ``None`` in a plane.
     closed: bool  #: Whether the last column repeats the first.
 
     @property
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
-        return len(self.rows), len(self.columns)
+        return len(self.rows), len(self.share)
 
     def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns."""
-        a, b = np.broadcast_arrays(self.shown[columns], self.b[rows][:, None])
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
         if self.projection is None:
             return np.stack([a, b, np.zeros(a.shape)], axis=-1)
         if self.projection.is_globe:
@@ -129,21 +128,32 @@ class Regions:
         return Nodes(points, valid, velocity, scalars)
 
     def _components(self, number: int, rows: Lines, columns: Lines) -> list[Floats]:
-        parts = [self.read(part, number, rows, columns) * self.factor for part in self.components]
+        parts = [self.read(part, number, rows, columns, self.factor) for part in self.components]
         if self.mask is None:
             return parts
         wet = self.read(self.mask, number, rows, columns) > 0
         return [np.where(wet, part, np.nan) for part in parts]
 
-    def read(self, variable: xr.Variable, number: int, rows: Lines, columns: Lines) -> Floats:
-        """Return some rows and columns of a variable, at a number in it."""
+    def read(
+        self, variable: xr.Variable, number: int, rows: Lines, columns: Lines, factor: float = 1.0
+    ) -> Floats:
+        """Return some rows and columns of a variable, at a number in it, times a factor."""
         step = variable[number] if variable.ndim > 2 else variable
-        below = []
-        for first in even_runs(self.lines.rows[rows]):
-            beside = [step[first, second] for second in even_runs(self.lines.columns[columns])]
-            # The reader may be a task of a cluster, which must not wait for other tasks.
-            below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
-        return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
+        numbers, share = self.lines.columns[:, columns], self.lines.share[columns]
+        values = _read(step, self.lines.rows[rows], numbers[0]) * factor
+        if (moved := np.flatnonzero(share)).size:
+            other = _read(step, self.lines.rows[rows], numbers[1][moved]) * factor
+            values[:, moved] = (1 - share[moved]) * values[:, moved] + share[moved] * other
+        return values
+
+
+def _read(step: xr.Variable, rows: Indices, columns: Indices) -> Floats:
+    below = []
+    for first in even_runs(rows):
+        beside = [step[first, second] for second in even_runs(columns)]
+        # The reader may be a task of a cluster, which must not wait for other tasks.
+        below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
+    return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
@@ -156,18 +166,19 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
         grids = [np.stack([*pair, np.zeros(pair[0].shape)], axis=-1) for pair in ends]
         if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
             return None
-        return RegionLines(a, b, a, np.arange(len(b)), np.arange(len(a)), None, closed=False)
-    projection, around = projection_of(places, name)
+        columns = np.tile(np.arange(len(a)), (2, 1))
+        return RegionLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, closed=False)
+    projection, _ = projection_of(places, name)
     if not (projection.is_globe or projection.family in CYLINDERS):
         return None
-    lines = lines_on_map(places, projection, around=around)
-    rows = np.arange(len(b))
+    lines = lines_on_map(places, projection)
+    if not (np.isfinite(lines.lon).all() and np.isfinite(lines.lat).all()):
+        return None
+    kept = slice(None)
     if not projection.is_globe:
-        rows = rows[shown_rows(shown_positions(projection, lines.shown[:1], b[:, None]))]
-    closed = lines.periodic == "i"
-    return RegionLines(
-        lines.lon, lines.lat[rows], lines.shown, rows, lines.columns, projection, closed
-    )
+        kept = shown_rows(shown_positions(projection, lines.lon[:1], lines.lat[:, None]))
+    closed, chosen = lines.periodic == "i", (lines.columns, lines.share)
+    return RegionLines(lines.lon, lines.lat[kept], lines.rows[kept], *chosen, projection, closed)
 
 
 def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
