@@ -28,6 +28,8 @@ from flowtex.field.surface import Surface
 BLOCK = 16384
 #: Tangents that differ by less than this share of the longest make a map linear.
 LINEAR = 1e-6
+#: Share of a cell by which a displacement may pass a node, by rounding.
+ROUNDING = 1e-3
 
 
 class NodeDisplacements:
@@ -49,14 +51,20 @@ class NodeDisplacements:
         self._shape = len(rows), len(columns)
         self._j, self._i = (a.ravel() for a in np.meshgrid(rows, columns, indexing="ij"))
         self._points = self._map.nodes[:, self._j * surface.shape[1] + self._i]
-        self._first = self._map.tangents[..., :1]
-        spread = np.abs(self._map.tangents - self._first).max()
+        known = surface.has_position
+        tangents = self._map.tangents[..., known.ravel()]
+        self._first = tangents[..., :1]
+        spread = np.abs(tangents - self._first).max(initial=0.0)
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
+
+        #: Number of nodes without a position before each, in its row and in its column.
+        self._unknown = None if known.all() else [np.cumsum(~known, axis=a) for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
 
-        Terms of the cubics may be left out up to ``error``.
+        Terms of the cubics may be left out up to ``error``. Beyond nodes without a position, as
+        between the parts of a map, the surface continues straight.
         """
         rows, columns = self._shape
         along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
@@ -69,6 +77,18 @@ class NodeDisplacements:
             start = self._i[block], self._j[block]
             result[:, block] = self._map.at(along_i[block], along_j[block], start, error)
         result -= self._points
+        if self._unknown is not None:
+            (j, i), (by_row, by_column) = (self._j, self._i), self._unknown
+            to_j, to_i = (
+                np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)
+                for at, along, count in zip((j, i), (along_j, along_i), by_row.shape, strict=True)
+            )
+            to_j, to_i = to_j.astype(np.intp), to_i.astype(np.intp)
+            apart = np.flatnonzero(
+                (by_row[j, to_i] != by_row[j, i]) | (by_column[to_j, to_i] != by_column[j, to_i])
+            )
+            p, q = np.moveaxis(self._map.tangents[..., (j * by_row.shape[1] + i)[apart]], 1, 0)
+            result[:, apart] = p * along_i[apart] + q * along_j[apart]
         return result.reshape(-1, rows, columns)
 
 

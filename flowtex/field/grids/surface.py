@@ -278,8 +278,11 @@ class CubicMap:
         self.tangents: AnyArray = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
         self._offset: AnyArray = (surface.offset @ frame.T).astype(dtype)
         nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
-        by_i = np.diff(nodes, 2, axis=2)
-        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], np.diff(nodes, 2, axis=1)[:, :, 1:-1])
+        # Beside a node without a position the surface is straight.
+        known = np.pad(surface.has_position, 1, mode="edge")
+        by_i = np.diff(nodes, 2, axis=2) * (known[:, 2:] & known[:, 1:-1] & known[:, :-2])
+        by_j = np.diff(nodes, 2, axis=1) * (known[2:] & known[1:-1] & known[:-2])
+        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], by_j[:, :, 1:-1])
         #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
         self._parts: list[AnyArray] = [
             np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
