@@ -57,8 +57,9 @@ class NodeDisplacements:
         spread = np.abs(tangents - self._first).max(initial=0.0)
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
 
-        #: Number of nodes without a position before each, in its row and in its column.
-        self._unknown = None if known.all() else [np.cumsum(~known, axis=a) for a in (1, 0)]
+        #: Twice the nodes without a position before each in its row, and in its column; and one more
+        #: at such a node itself.
+        self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
@@ -77,7 +78,7 @@ class NodeDisplacements:
             start = self._i[block], self._j[block]
             result[:, block] = self._map.at(along_i[block], along_j[block], start, error)
         result -= self._points
-        if self._unknown is not None:
+        if self._unknown:
             (j, i), (by_row, by_column) = (self._j, self._i), self._unknown
             to_j, to_i = (
                 np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)

@@ -40,7 +40,7 @@ SCATTERED, SPHERE_DEGREES = 0.125, 203.0
 LARGEST = 4.0
 #: Scale of a map along an edge between nodes, over its median, up to which it is not torn; and from
 #: which on it is not drawn, if it is longer than this share of the map.
-PLAIN, WIDE, FAR = 1.5, 4.0, 0.45
+PLAIN, WIDE, FAR = 1.5, 4.0, 0.5
 #: Degrees by which nodes on the edge of a map lie inside it, so that rounding does not move them.
 INSIDE = 1e-9
 #: Share of a cell on both sides of a tear's end, between which nodes beside it lie.
