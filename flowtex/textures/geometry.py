@@ -57,8 +57,8 @@ class NodeDisplacements:
         spread = np.abs(tangents - self._first).max(initial=0.0)
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
 
-        #: Twice the nodes without a position before each in its row, and in its column; and one more
-        #: at such a node itself.
+        #: Twice the nodes without a position before each, in its row and in its column; one more
+        #: at such a node.
         self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:

@@ -85,7 +85,9 @@ def test_columns_of_the_earth_reach_from_edge_to_edge(projection: str, first: fl
     beside = 1.0 if first % 4 == 0 else 0.5  # between two columns
     assert steps[[0, -1]] == pytest.approx(beside * np.ptp(x) / 90)
     assert field.projection is not None
-    assert x[[0, -1]] == pytest.approx(field.projection.positions(np.array([-180, 180]), 0.0)[:, 0])
+    assert x[[0, -1]] == pytest.approx(
+        field.projection.positions(np.array([-180, 180]), np.zeros(2))[:, 0]
+    )
 
 
 @pytest.mark.parametrize("west", [-180.0, -178.0])

@@ -18,17 +18,15 @@ from flowtex.textures.geometry import NodeDisplacements
 #: Maps, as flowtex names them or as cartopy's axes have them; their middle, and the degrees from
 #: there up to which they are drawn.
 MAPS: dict[str, tuple[float, float, float]] = {
-    "platecarree": (0, 0, 180),
     "robinson": (0, 0, 180),
     "+proj=eqc +lon_0=0": (0, 0, 180),
     "+proj=robin +lon_0=150": (150, 0, 180),
     "EPSG:3857": (0, 0, 85),
     "+proj=moll +lon_0=-20": (-20, 0, 180),
-    "+proj=igh +lon_0=0": (0, 0, 180),
     "+proj=igh +lon_0=-160": (-160, 0, 180),
     "+proj=stere +lat_0=90 +lon_0=0": (0, 90, 100),
     "+proj=ortho +lat_0=20 +lon_0=160": (160, 20, 75),
-    "+proj=laea +lat_0=-30 +lon_0=40": (40, -30, 120),
+    "+proj=laea +lat_0=-30 +lon_0=40": (40, -30, 100),
     "+proj=ob_tran +o_proj=eqc +o_lon_p=0 +o_lat_p=37.5 +lon_0=357.5": (0, 0, 180),
 }
 FINE, BAND = np.arange(-180.0, 180.0, 4.0), np.arange(-60.0, 61.0, 3.0)
@@ -37,7 +35,6 @@ PACIFIC, CAP = np.arange(120.0, 241.0, 3.0), np.arange(60.0, 91.0, 3.0)
 LINES: dict[str, tuple[Floats, Floats, tuple[float, float, float, float]]] = {
     "pacific": (PACIFIC, BAND, (120, 240, -60, 60)),
     "pacific from -180": ((PACIFIC + 181) % 360 - 180, BAND[::-1], (121, 241, -60, 60)),
-    "atlantic": (np.arange(-80.0, 20.0, 3.0), BAND, (-80, 19, -60, 60)),
     "polar cap": (FINE, CAP, (0, 360, 60, 91)),
     "sector": (np.arange(-60.0, 241.0, 5.0), np.arange(50.0, 81.0, 3.0), (-60, 240, 50, 80)),
     "sector at the pole": (np.arange(130.0, 221.0, 5.0), CAP, (130, 220, 60, 91)),
@@ -97,7 +94,7 @@ def data_of(name: str) -> tuple[xr.Dataset, Any, float]:
 
 def drawn_at(field: FlowField, places: Floats) -> tuple[Bools, Floats]:
     """Return which places (P, 2) are drawn, and the vectors there, NaN elsewhere."""
-    j, i = np.nonzero(field.surface.cells)  # type: ignore[union-attr]
+    j, i = np.nonzero(field.surface.cells)
     corners = (j, i), (j, i + 1), (j + 1, i + 1), (j + 1, i)
     (a, va), (b, vb), (c, vc) = (
         [
@@ -138,9 +135,9 @@ def test_a_map_shows_the_data_and_nothing_else(name: str, region: str) -> None:
         return np.stack(change.transform(lon, lat, errcheck=False), axis=-1)
 
     rng = np.random.default_rng(1)
-    lon, lat = rng.uniform(-180, 180, 400), np.degrees(np.arcsin(rng.uniform(-0.99, 0.99, 400)))
+    lon, lat = rng.uniform(-180, 180, 250), np.degrees(np.arcsin(rng.uniform(-0.99, 0.99, 250)))
     places = to_map(lon, lat)
-    middle = (MAPS[name][0] + (shift if name in ("robinson", "platecarree") else 0), MAPS[name][1])
+    middle = (MAPS[name][0] + (shift if name in ("robinson",) else 0), MAPS[name][1])
     away = np.degrees(np.arccos(np.clip(on_sphere(lon, lat) @ on_sphere(*middle), -1, 1)))
     shown = np.isfinite(places).all(axis=1) & (away < MAPS[name][2])
     if name == "EPSG:3857":
