@@ -196,7 +196,10 @@ class GridSurface(Surface):
 
     @cached_property
     def tangents(self) -> Floats:
-        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
+        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell.
+
+        Nodes without a position have those of the nearest one.
+        """
         good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]
@@ -208,7 +211,7 @@ class GridSurface(Surface):
         for b in row_blocks(*self.shape):
             for out, (before, after, known, further) in zip(result, sides, strict=True):
                 _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
-        return result
+        return fill_blanked(result, self.has_position, axis=1)
 
     @cached_property
     def cell_size(self) -> Floats:
