@@ -45,9 +45,9 @@ PLAIN, WIDE, FAR = 1.5, 4.0, 0.5
 INSIDE = 1e-9
 #: Share of a cell on both sides of a tear's end, between which nodes beside it lie.
 BESIDE = 0.02
-#: Least blank lines between parts, so that a surface bends at an edge as it does inside. Up to how
-#: many nodes one of them remains where a coarser view leaves lines out.
-LEAST_BLANK, COARSE_NODES = 1, 20_000
+#: Up to how many nodes one of the blank lines between parts remains where a coarser view leaves
+#: lines out, if there is one.
+COARSE_NODES = 20_000
 #: Degrees beside the edge of a map where it is looked for, and latitudes there.
 STEP, EDGE_LATITUDES = 0.02, np.linspace(-75.0, 75.0, 31)
 
@@ -262,7 +262,7 @@ def _has_edge(projection: Projection) -> bool:
 
 def _blank_lines(nodes: int) -> int:
     """Return the number of blank lines between parts, of which a coarser view has at least one."""
-    return max(LEAST_BLANK, math.ceil(math.sqrt(nodes / COARSE_NODES)))
+    return math.ceil(math.sqrt(nodes / COARSE_NODES))
 
 
 def _gaps(steps: Floats) -> Bools:
@@ -319,7 +319,7 @@ def _parts(
         at = near[whole], number[whole]
         start[at] = np.maximum(sides[0][whole] - BESIDE, 0.0)
         stop[at] = np.minimum(sides[1][whole] + BESIDE, 1.0)
-    blank = min(_blank_lines(lon.size), max(lon.shape[1] // (4 * len(columns)), LEAST_BLANK))
+    blank = min(_blank_lines(lon.size), max(lon.shape[1] // (4 * len(columns)), 1))
     copies = np.ones(lon.shape[1], dtype=int)
     copies[columns] += blank
     chosen, first = np.repeat(np.arange(len(copies)), copies), np.cumsum(copies) - copies
