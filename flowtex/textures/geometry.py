@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,12 @@ from flowtex.field.triangles.topology import normals_at_corners
 BLOCK = 16384
 #: Tangents that differ by less than this share of the longest make a map linear.
 LINEAR = 1e-6
+#: Share of a cell by which a displacement may pass a node, by rounding.
+ROUNDING = 1e-3
+#: Places on the way of a displacement where the surface is looked for.
+STEPS = 64
+#: How many times as far as on a straight surface a displacement leads at most.
+FARTHER = 3.0
 
 
 class NodeDisplacements:
@@ -52,14 +59,22 @@ class NodeDisplacements:
         self._shape = len(rows), len(columns)
         self._j, self._i = (a.ravel() for a in np.meshgrid(rows, columns, indexing="ij"))
         self._points = self._map.nodes[:, self._j * surface.shape[1] + self._i]
-        self._first = self._map.tangents[..., :1]
-        spread = np.abs(self._map.tangents - self._first).max()
+        known = surface.has_position
+        tangents = self._map.tangents[..., known.ravel()]
+        self._first = tangents[..., :1]
+        spread = np.abs(tangents - self._first).max(initial=0.0)
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
+
+        self._cells = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
+        #: Twice the nodes without a position before each, in its row and in its column; one more
+        #: at such a node.
+        self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
 
-        Terms of the cubics may be left out up to ``error``.
+        Terms of the cubics may be left out up to ``error``. Beyond nodes without a position, as
+        between the parts of a map, the surface continues straight.
         """
         rows, columns = self._shape
         along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
@@ -72,7 +87,53 @@ class NodeDisplacements:
             start = self._i[block], self._j[block]
             result[:, block] = self._map.at(along_i[block], along_j[block], start, error)
         result -= self._points
+        if self._unknown:
+            apart = self._parted(along_i, along_j)
+            straight, inside = self._straight(apart, along_i[apart], along_j[apart])
+            # A bent path may lead around such nodes, but not as far away as the next part.
+            inside &= np.linalg.norm(result[:, apart], axis=0) <= FARTHER * np.linalg.norm(
+                straight, axis=0
+            )
+            result[:, apart] = np.where(inside, result[:, apart], straight)
         return result.reshape(-1, rows, columns)
+
+    def _parted(self, along_i: Floats32, along_j: Floats32) -> Indices:
+        """Return numbers of the nodes between which and their displaced places some are unknown."""
+        (j, i), (by_row, by_column) = (self._j, self._i), self._unknown
+        to_j, to_i = (
+            np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)
+            for at, along, count in zip((j, i), (along_j, along_i), by_row.shape, strict=True)
+        )
+        to_j, to_i = to_j.astype(np.intp), to_i.astype(np.intp)
+        apart = (by_row[j, i] != by_row[j, to_i]) | (by_column[j, i] != by_column[to_j, i])
+        apart |= by_row[to_j, i] != by_row[to_j, to_i]
+        apart |= by_column[j, to_i] != by_column[to_j, to_i]
+        return np.flatnonzero(apart)
+
+    def _straight(
+        self, nodes: Indices, along_i: Floats32, along_j: Floats32
+    ) -> tuple[Floats32, Bools]:
+        """Return displacements (C, N) on a surface that is straight where positions are unknown.
+
+        It continues from the last place on the way there whose cell is known. The second value is
+        whether the cell at the end of the way is.
+        """
+        start, along = np.stack([self._j, self._i])[:, nodes], np.stack([along_j, along_i])
+        most = np.array(self._cells.shape)[:, None] - 1
+        share = np.zeros(len(nodes), np.float32)
+        is_known = np.ones(len(nodes), dtype=bool)
+        for part in np.linspace(0, 1, STEPS + 1, dtype=np.float32)[1:]:
+            place, inside = start + part * along, np.zeros(len(nodes), dtype=bool)
+            for beside in product((-ROUNDING, ROUNDING), repeat=2):  # on a line between cells
+                cell = np.clip(np.floor(place + np.array(beside)[:, None]), 0, most).astype(np.intp)
+                inside |= self._cells[tuple(cell)]
+            is_known &= inside
+            share[is_known] = part
+        j, i = np.clip(np.rint(start + share * along), 0, most + 1).astype(np.intp)
+        p, q = np.moveaxis(self._map.tangents[..., j * (most[1, 0] + 2) + i], 1, 0)
+        first = self._map.at(share * along_i, share * along_j, (start[1], start[0]))
+        first -= self._points[:, nodes]
+        return first + (1 - share) * (p * along_i + q * along_j), inside
 
 
 #: Most mip levels of a texture besides its finest one, and those of a tile.
