@@ -14,13 +14,17 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
+from flowtex.field.units import LENGTHS, factor, measures
 from flowtex.sources.datasets.axes import FACES, NODES
-from flowtex.sources.datasets.coordinates import DEGREES, LENGTHS
+from flowtex.sources.datasets.coordinates import DEGREES
 from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.models.points import join_points
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: The kind of a mesh whose faces are triangles between neighbours.
+POINTS = "points"
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
 LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
@@ -42,6 +46,8 @@ class Mesh:
     @property
     def dims(self) -> tuple[str, str]:
         """Names of the dimensions of nodes and of faces in the files."""
+        if self.kind == POINTS:
+            return str(self.x.dims[0]), ""
         if self.corners is None:
             return "", str(self.x.dims[0])
         return _dim(self.x, NODES), _dim(self.corners, FACES)
@@ -64,7 +70,7 @@ class Mesh:
         unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
         if DEGREES.match(unit) or RADIANS.match(unit):
             return True
-        if unit.lower() in LENGTHS:
+        if measures(unit, LENGTHS):
             return False
         description = str(self.x.attrs.get("standard_name", "")) or name
         if "projection" in description:
@@ -74,6 +80,12 @@ class Mesh:
             x, y = (np.abs(c) for c in self._raw)
             return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
         return bool(LONGITUDES.search(description)) or name == "nodes"
+
+    @property
+    def unit(self) -> str:
+        """Unit of positions in a plane: metres for all lengths; empty where it is not known."""
+        unit = str(self.x.attrs.get("units", ""))
+        return "m" if factor(unit, "m") else unit if measures(unit, LENGTHS) else ""
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
@@ -97,8 +109,13 @@ class Mesh:
             if radians:
                 a, b = np.degrees(a), np.degrees(b)
         else:
-            factor = LENGTHS.get(str(self.x.attrs.get("units", "")).lower(), 1.0)
-            a, b = a * factor, b * factor
+            a, b = (
+                values * (factor(str(c.attrs.get("units", "")), "m") or 1.0)
+                for values, c in ((a, self.x), (b, self.y))
+            )
+        if self.kind == POINTS:
+            positions = _positions(a, b, self.is_earth)
+            return a, b, join_points(positions, on_sphere=self.is_earth)
         if self.corners is None:
             return _from_bounds(a, b)
         return a, b, _numbers(self, self.corners, len(a))
@@ -121,9 +138,7 @@ class Mesh:
     @cached_property
     def positions(self) -> Floats:
         """Positions of the nodes, (N, 3): on the globe, or in the plane."""
-        if not self.is_earth:
-            return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
-        return Projection(GLOBE).positions(self.a, self.b)
+        return _positions(self.a, self.b, self.is_earth)
 
     @cached_property
     def middles(self) -> tuple[Floats, Floats]:
@@ -185,10 +200,19 @@ class Mesh:
     @property
     def words(self) -> str:
         """Words for the mesh and its size."""
+        if self.kind == POINTS:
+            return f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
         edges = (self.faces >= 0).sum(axis=1)
         kinds = {3: "triangles", 4: "quadrilaterals"}
         name = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
+
+
+def _positions(a: Floats, b: Floats, is_earth: bool) -> Floats:  # noqa: FBT001
+    """Return positions, (N, 3), on the globe or in the plane."""
+    if is_earth:
+        return Projection(GLOBE).positions(a, b)
+    return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
 
 def _dim(array: xr.DataArray, ours: str) -> str:

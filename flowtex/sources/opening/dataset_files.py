@@ -17,15 +17,17 @@ from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
 from flowtex.sources.opening.series import are_steps, joined, of_tree
+from flowtex.sources.opening.tables import read_csv, read_vec
 from flowtex.sources.opening.wind_json import read_winds
 
 if TYPE_CHECKING:
     import xarray as xr
 
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
-ZARR, JSON = (".zarr",), (".json",)
+ZARR, JSON = (".zarr",), (".json", ".geojson")
+TABLES = {".csv": read_csv, ".vec": read_vec}
 #: Suffixes of files that are opened by xarray.
-SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 #: The newest Python for which the wheels of eccodes have its library.
 ECCODES_UNTIL = (3, 13)
 
@@ -95,6 +97,8 @@ def open_files(path: Path) -> list[xr.Dataset]:
         warnings.simplefilter("ignore")
         if suffix in JSON:
             return [read_winds(path)]
+        if suffix in TABLES:
+            return [TABLES[suffix](path)]
         if suffix in GRIB:
             return list(import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""}))
         options: dict[str, Any] = {"decode_timedelta": False}

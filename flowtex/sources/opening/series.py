@@ -17,6 +17,8 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
+from flowtex.sources.opening.components import split_components
+from flowtex.sources.opening.tables import as_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,13 +43,9 @@ def as_datasets(data: Any) -> Datasets:
     xarray = import_extra("xarray", "xarray")
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
-        if not isinstance(ds, (xarray.Dataset, xarray.DataTree)):
-            msg = (
-                f"data has type {type(ds).__name__}; expected an xarray Dataset or DataTree, or a "
-                "list of them"
-            )
-            raise FieldError(msg)
-        result.append(_decoded(of_tree(ds) if isinstance(ds, xarray.DataTree) else ds))
+        several = isinstance(data, (list, tuple)) and len(data) > 1
+        part = of_tree(ds) if isinstance(ds, xarray.DataTree) else as_dataset(ds, several=several)
+        result.append(split_components(_decoded(part)))
     if len(result) > 1 and are_steps(result) and _times_differ(result):
         with suppress(FieldError):  # such as domains of different sizes
             result = [joined(result)]
