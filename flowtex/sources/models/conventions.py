@@ -5,6 +5,7 @@ Its dimensions, levels and times then get a form in which the axes are recognise
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,9 +13,10 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVELS, NODES
+from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.models.mesh import Mesh
-from flowtex.sources.models.scattered import points_in, with_points
+from flowtex.sources.models.scattered import NAMED, points_in, with_points
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -141,6 +143,7 @@ def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     dimension are at scattered points.
     """
     datasets = [_completed(ds) for ds in datasets]
+    _check_classes(datasets)
     mesh = find_mesh(datasets)
     if mesh is None:
         return with_points(datasets)
@@ -176,10 +179,28 @@ def _completed(ds: xr.Dataset) -> xr.Dataset:
         ds = ds.assign_coords({str(time.dims[0]): time.variable})
     if {"cell_node", "idx3"} <= set(ds.variables) and "NumCells3D" in ds.dims:
         # Cells of a column follow each other from the top.
-        ds = ds.isel(NumCells3D=ds["idx3"] - 1)
+        ds = ds.isel(NumCells3D=ds["idx3"] - 1).drop_vars(["idx2", "idx3", "NL"], errors="ignore")
     if "cell_node" in ds and "stat" in ds:
         ds = ds.assign(wet_cells=(ds["stat"] != 0).astype("i1")).drop_vars("stat")
     return ds
+
+
+def _check_classes(datasets: Sequence[xr.Dataset]) -> None:
+    """Raise a FieldError for speeds and directions that are numbers of classes."""
+    classes = {
+        str(name): str(array.attrs["flag_bounds"])
+        for ds in datasets
+        for name, array in ds.data_vars.items()
+        if "flag_bounds" in array.attrs
+        and re.search("speed|direction", str(array.attrs.get("standard_name", "")))
+    }
+    if classes and not any(pair.rank <= NAMED for pair in find_pairs(datasets)):
+        msg = (
+            f"{' and '.join(classes)} store classes of the speed and the direction, not their "
+            f"values; their bounds are in {' and '.join(classes.values())}. Replace each number "
+            "by the middle of its class, compute the components, and pass the dataset with both"
+        )
+        raise FieldError(msg)
 
 
 def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:

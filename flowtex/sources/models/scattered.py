@@ -34,7 +34,7 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     for x, y in _positions(datasets):
         along = [a for ds in datasets for a in ds.data_vars.values() if set(x.dims) <= set(a.dims)]
         values = [a for a in along if a.dtype.kind in "fiu" and a.name not in (x.name, y.name)]
-        if len(values) < 2 or any(not set(x.dims) <= set(pair.u.dims) for pair in pairs):
+        if not values or any(not set(x.dims) <= set(pair.u.dims) for pair in pairs):
             continue
         times = [d for d in map(str, x.dims) if axis_kind(x, d) == TIME]
         dim = next((str(d) for d in x.dims if d not in times), "")
@@ -43,7 +43,7 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         if is_section and (times or not _is_surface(x, y)):
             continue
         kind = next((str(k) for ds in datasets if (k := ds.attrs.get("featureType"))), "")
-        if times or kind.lower() in PATHS:
+        if (times and len(values) > 1) or kind.lower() in PATHS:
             why = f"along {', '.join(times)}" if times else f"of the type {kind!r}"
             msg = (
                 f"{x.name} and {y.name} are positions {why}: a trajectory, or points that move. "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +30,28 @@ TABLES = {".csv": read_csv, ".vec": read_vec}
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 #: The newest Python for which the wheels of eccodes have its library.
 ECCODES_UNTIL = (3, 13)
+
+
+class OpenDatasets(list["xr.Dataset"]):
+    """Datasets of files, which can be closed as often as one likes.
+
+    Arrays that are not read yet stay valid, as xarray opens a closed file for the next reading.
+    """
+
+    def __init__(self, datasets: Iterable[xr.Dataset], opened: Iterable[Any] = ()) -> None:
+        super().__init__(datasets)
+        # The method close of a dataset forgets how to close it.
+        self._closers = [part._close for part in opened if part._close is not None]
+
+    def joined(self, others: Sequence[OpenDatasets]) -> OpenDatasets:
+        """Return the same datasets, which close the files of others."""
+        self._closers += [close for other in others for close in other._closers]
+        return self
+
+    def close(self) -> None:
+        """Close the files, so that other programs can replace them."""
+        for close in self._closers:
+            close()
 
 
 def is_dataset_file(path: Path) -> bool:
@@ -76,16 +98,17 @@ def belong_together(paths: Sequence[Path]) -> bool:
     return series or not all(find_pairs(parts) for parts in opened)
 
 
-def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
+def open_datasets(paths: Sequence[Path]) -> OpenDatasets:
     """Open files that belong together: parts of one model's output, or steps of a series."""
     opened = [open_files(path) for path in paths]
     if len(opened) == 1:
         return opened[0]
     parts = [ds for datasets in opened for ds in datasets]
-    return [joined(parts)] if len(parts) == len(opened) and are_steps(parts) else parts
+    series = len(parts) == len(opened) and are_steps(parts)
+    return OpenDatasets([joined(parts)] if series else parts).joined(opened)
 
 
-def open_files(path: Path) -> list[xr.Dataset]:
+def open_files(path: Path) -> OpenDatasets:
     """Open one file; GRIB has a dataset for each group of messages with common axes."""
     xarray = import_extra("xarray", "xarray")
     # Its library must be loaded before those of other readers, which contain another PROJ.
@@ -96,11 +119,12 @@ def open_files(path: Path) -> list[xr.Dataset]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:
-            return [read_winds(path)]
+            return OpenDatasets([read_winds(path)])
         if suffix in TABLES:
-            return [TABLES[suffix](path)]
+            return OpenDatasets([TABLES[suffix](path)])
         if suffix in GRIB:
-            return list(import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""}))
+            parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
+            return OpenDatasets(parts, parts)
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
@@ -114,13 +138,13 @@ def open_files(path: Path) -> list[xr.Dataset]:
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
-            return [ds]
+            return OpenDatasets([ds], [ds])
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             msg = f"the group {group!r} does not exist; expected {groups}"
             raise FieldError(msg)
-        return [of_tree(tree[group] if group else tree, path)]
+        return OpenDatasets([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
 
 
 def import_cfgrib() -> Any:
