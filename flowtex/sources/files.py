@@ -80,8 +80,8 @@ class _CGNSReader:
 
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or data by xarray and pandas (.nc, "
-    ".zarr, .grib, .json, .geojson, .csv, .vec)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or arrays and tables (.nc, .zarr, "
+    ".grib, .json, .geojson, .csv, .vec)"
 )
 
 

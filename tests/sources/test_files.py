@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 
 KNOWN = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or data of the Earth (.nc, .zarr, .grib, "
-    ".json)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or arrays and tables (.nc, .zarr, "
+    ".grib, .json, .geojson, .csv, .vec)"
 )
 
 

@@ -54,6 +54,7 @@ from flowtex.sources.maps.grid_map import Nodes, PlaneNodes, on_map
 from flowtex.sources.maps.mesh_map import mesh_on_map
 from flowtex.sources.models.conventions import find_mesh
 from flowtex.sources.models.mesh import Mesh
+from flowtex.sources.models.scattered import check_faces
 from flowtex.sources.notices import notify
 from flowtex.sources.opening.series import Datasets, as_datasets
 
@@ -108,7 +109,7 @@ class Recognised:
 
 
 def read_datasets(
-    data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+    data: Any,
     u: str | None = None,
     v: str | None = None,
     *,
@@ -323,6 +324,7 @@ def recognise(
         raise FieldError(msg)
     factor = factors[0] if factors[0] is not None else 1.0
     choice = Choice(dict(sel or {}), dict(isel or {}))
+    check_faces(pair.u, pair.v, {**choice.sel, **choice.isel})
     one, two = sections([pair.u, pair.v], choice)
     surface = horizontal_dims(pair.u), horizontal_dims(pair.v)
     notes = list(one.notes)
@@ -431,7 +433,7 @@ def _on_mesh(
         is_earth=mesh.is_earth,
         is_line=False,
         why=mesh.coordinates,
-        unit="" if mesh.is_earth else "m",
+        unit=mesh.unit,
     )
     return Recognised(
         pair=pair,

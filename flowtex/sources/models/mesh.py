@@ -83,7 +83,9 @@ class Mesh:
 
     @property
     def unit(self) -> str:
-        """Unit of positions in a plane: metres for all lengths; empty where it is not known."""
+        """Unit of positions in a plane: metres for all lengths; empty where none is known."""
+        if self.is_earth:
+            return ""
         unit = str(self.x.attrs.get("units", ""))
         return "m" if factor(unit, "m") else unit if measures(unit, LENGTHS) else ""
 

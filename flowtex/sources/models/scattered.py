@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,9 +110,22 @@ def _is_surface(x: xr.DataArray, y: xr.DataArray) -> bool:
         return False
 
 
+def check_faces(u: xr.DataArray, v: xr.DataArray, chosen: Container[str]) -> None:
+    """Raise a FieldError for components along the rows of several faces of a globe."""
+    for dim in map(str, u.dims):
+        if FACES_OF_GLOBE.match(dim) and u.sizes[dim] > 1 and dim not in chosen:
+            msg = (
+                f"{u.name} and {v.name} lie along the rows and columns of each of {u.sizes[dim]} "
+                f"faces ({dim}), as no standard name says eastward and northward; compute these "
+                f"components, or select one face, as in isel={{{dim!r}: 0}}"
+            )
+            raise FieldError(msg)
+
+
 def _stacked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets with the faces of a cubed sphere along one dimension.
 
+    Components along the rows of each face stay as they are, so that one face can be selected.
     Coordinates along some of the dimensions only count the nodes, and are dropped.
     """
     arrays = [ds[name] for ds in datasets for name in ds.variables]
@@ -122,13 +136,7 @@ def _stacked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
             continue
         pairs = [pair for pair in find_pairs(datasets) if face in pair.u.dims]
         if pairs and pairs[0].along != "earth":
-            u, v = pairs[0].u.name, pairs[0].v.name
-            msg = (
-                f"{u} and {v} lie along the rows and columns of each face of {face!r}, as no "
-                "standard name says eastward and northward; compute these components, or select "
-                f"one face, as in ds.isel({face}=0)"
-            )
-            raise FieldError(msg)
+            return datasets
         return [_one_dimension(ds, dims) if set(dims) <= set(ds.dims) else ds for ds in datasets]
     return datasets
 
@@ -136,7 +144,11 @@ def _stacked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
 def _one_dimension(ds: xr.Dataset, dims: list[str]) -> xr.Dataset:
     face = set(dims)
     parts = [name for name, a in ds.variables.items() if face & {*a.dims} and face - {*a.dims}]
-    return ds.drop_vars(parts).stack(points_of_faces=dims, create_index=False)
+    ds = ds.drop_vars(parts)
+    if "source" in ds.encoding and not ds.chunks and find_spec("dask") is not None:
+        # Otherwise all of a file is read.
+        ds = ds.chunk({d: 1 if d not in face else -1 for d in ds.dims})
+    return ds.stack(points_of_faces=dims, create_index=False)
 
 
 def _with_centres(ds: xr.Dataset) -> xr.Dataset:
