@@ -272,6 +272,23 @@ def test_sections_along_stations_stay() -> None:
     assert FlowField.from_xarray(ds, "u", "w").shape == (10, 40)
 
 
+def test_stacked_grid_matches() -> None:
+    lon, lat = np.arange(0.0, 40, 2), np.arange(10.0, 50, 2)
+    u, v = components(*np.meshgrid(lon, lat))
+    dims = ("lat", "lon")
+    grid = xr.Dataset({"u": (dims, u, EAST), "v": (dims, v, NORTH)}, {"lon": lon, "lat": lat})
+    field = FlowField.from_xarray(grid.stack(cell=dims), globe=True)
+    assert field.triangles is not None and len(field.triangles) == 2 * 19 * 19
+    assert faults(field) < 1e-6
+
+
+def test_missing_positions_are_left_out() -> None:
+    lon, lat = reduced()
+    ds = along(lon, np.where(np.arange(lon.size) == 700, np.nan, lat))
+    field = FlowField.from_xarray(ds, globe=True)
+    assert field.shape == (1, 1599) and faults(field) < 1e-6
+
+
 def test_grid_is_described() -> None:
     known = recognise(along(*reduced()))
     assert known.grid == "1,600 points joined by 3,196 triangles; velocity at nodes"

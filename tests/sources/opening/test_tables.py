@@ -183,7 +183,8 @@ def test_swath_of_satellite() -> None:
     data = json.loads((FORMS / "ascat.geojson").read_text())["features"]
     lon, lat = np.array([f["geometry"]["coordinates"] for f in data]).T
     speed = np.array([np.hypot(f["properties"]["u"], f["properties"]["v"]) for f in data])
-    distance, at = cKDTree(EARTH_RADIUS * on_sphere(lon, lat)).query(field.points[0])
+    tree = cKDTree(EARTH_RADIUS * on_sphere(lon, lat))
+    distance, at = map(np.asarray, tree.query(field.points[0]))
     assert distance.max() < 10 and len(at) > 4880
     assert np.allclose(np.linalg.norm(field.velocity[0][0], axis=-1), speed[at])
     assert field.triangles is not None
