@@ -33,10 +33,13 @@ MISSING = [np.nan, np.nan, np.nan, np.inf, 0.0]
 BAD = [np.nan, np.inf, -np.inf, 1e300, -1e30, 9.96921e36, 0.0]
 
 
-def property_test(examples: int) -> Callable[[Any], Any]:
-    """Return the decorator of a test that takes so many examples in the suite."""
+def property_test(examples: int, *, fuzz: int = 0) -> Callable[[Any], Any]:
+    """Return the decorator of a test that takes so many examples in the suite.
+
+    ``make fuzz`` multiplies them, or ``fuzz`` where the suite has time for few.
+    """
     return hypothesis.settings(
-        max_examples=examples * max(FACTOR, 1),
+        max_examples=max(examples, fuzz) * FACTOR or examples,
         derandomize=not FACTOR,
         database=None,
         deadline=None,

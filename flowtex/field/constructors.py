@@ -141,6 +141,8 @@ class FieldConstructors:
         sel: Mapping[str, Any] | None = None,
         isel: Mapping[str, Any] | None = None,
         uncertainty: Any = None,
+        mask: str | bool | None = None,
+        components: str | None = None,
     ) -> Self:
         """Make a field from a file, or from several that belong together.
 
@@ -165,8 +167,8 @@ class FieldConstructors:
         block
             Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
             Numbers count from 0 and include only blocks with cells.
-        projection, globe, level, sel, isel
-            As for :meth:`from_xarray`, for data of the Earth.
+        projection, globe, level, sel, isel, mask, components
+            As for :meth:`from_xarray`, for gridded data and models.
         uncertainty
             As for :meth:`from_xarray`; of a mesh a scalar.
 
@@ -193,6 +195,7 @@ class FieldConstructors:
         options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
         options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
         options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
+        options |= {"mask": mask, "components": components}
         with errors_of(path):
             arrays = read_files(
                 path, vectors=vectors, time=time, uncertainty=uncertainty, **options
@@ -212,6 +215,8 @@ class FieldConstructors:
         sel: Mapping[str, Any] | None = None,
         isel: Mapping[str, Any] | None = None,
         uncertainty: Any = None,
+        mask: str | bool | None = None,
+        components: str | None = None,
         **selection: Any,
     ) -> Self:
         """Make a field from xarray datasets, arrays or tables, such as the output of a model.
@@ -247,6 +252,14 @@ class FieldConstructors:
             scalar, or an array of the nodes, with the standard deviation of the velocity over its
             magnitude; or a dimension, such as ``"number"`` of an ensemble: the mean over it is
             drawn, and its spread becomes a scalar.
+        mask
+            The variable that marks where there is data. By default those of CF's standard names and
+            of common names, quality flags, and values that stand for missing data without being
+            declared; ``False`` draws all of these.
+        components
+            Directions of the components: ``"earth"`` for eastward and northward, ``"grid"`` for
+            along rows and columns, ``"plane"`` for along x and y. By default the names of the
+            variables and the grid decide; ``field.reading`` tells how.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level
@@ -283,6 +296,7 @@ class FieldConstructors:
 
         options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
         options |= {"sel": sel, "isel": isel, "uncertainty": uncertainty, **selection}
+        options |= {"mask": mask, "components": components}
         field = cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
         return _with_uncertainty(field, uncertainty)
 

@@ -15,6 +15,8 @@ LENGTHS = ("[length]", "[printing_unit]")
 TIMES = ("[time]", "[frame]")
 PRESSURES = ("[mass] / [length] / [time] ** 2",)
 VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
+#: Units of images, which are counted.
+IMAGE_TIMES = ("[frame]",)
 #: Spellings that pint reads otherwise: its px is a length of web pages.
 SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))
 
@@ -70,3 +72,11 @@ def symbol(text: str) -> str:
     """Return the short form of a unit for legends, as ``"m/s"`` for ``"m s-1"``."""
     unit = parsed(text)
     return text if unit is None or not unit.dimensionality else f"{unit:~C}".replace("**", "^")
+
+
+def part(unit: str, dimensions: tuple[str, ...]) -> str:
+    """Return the part of a unit that has one of some dimensions, as ``"m"`` of ``"m/s"``."""
+    for name in dict(getattr(parsed(unit), "_units", {})):
+        if measures(name, dimensions):
+            return symbol(name)
+    return ""

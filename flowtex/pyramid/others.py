@@ -78,7 +78,10 @@ class OtherLevels:
     def _slow_properties(self) -> list[str]:
         """Return sentences about properties of a store that make it slow, with the remedy."""
         build = f"`flowtex pyramid {self.place} -o flow.zarr` builds a faster store"
-        component, shape = self._regions[0].components[0], self._regions[-1].lines.shape
+        component, shape = (
+            self._regions[0].values.components[0].variable,
+            self._regions[-1].lines.shape,
+        )
         chunks = component.encoding.get("chunks") or component.shape
         nbytes = math.prod(chunks) * component.dtype.itemsize
         words = []
@@ -114,7 +117,9 @@ class OtherLevels:
             if name not in finest.scalars:
                 return np.hypot(*self._components(step, level, rows, columns))
             regions = self._regions[self._nearest(level)]
-            return self._values(regions, [regions.scalars[name]], step, fine)[0]
+            return self._values(
+                regions, lambda rows, columns: (regions.scalar(name, step, rows, columns),), fine
+            )[0]
 
         return Nodes(
             points,
@@ -142,17 +147,18 @@ class OtherLevels:
     ) -> tuple[Floats, Floats]:
         """Return the components of the velocity, (J, I) each, NaN where there are no data."""
         regions, fine = self._regions[self._nearest(level)], self._lines(level, rows, columns)
-        variables = [*regions.components, *([] if regions.mask is None else [regions.mask])]
-        u, v, *mask = self._values(regions, variables, step, fine)
-        wet = np.isfinite(u) & np.isfinite(v)
-        if mask:
-            wet &= mask[0] > 0
-        return tuple(np.where(wet, part * regions.factor, np.nan) for part in (u, v))  # type: ignore[return-value]
+        u, v = self._values(regions, partial(regions.components, step), fine)
+        missing = np.isnan(u) | np.isnan(v)
+        u[missing] = v[missing] = np.nan
+        return u * regions.factor, v * regions.factor
 
     def _values(
-        self, regions: Regions, variables: list[Any], step: int, fine: tuple[Indices, Indices]
+        self,
+        regions: Regions,
+        read: Callable[[Indices, Indices], tuple[Floats, ...]],
+        fine: tuple[Indices, Indices],
     ) -> list[Floats]:
-        """Interpolate variables of a level of theirs at lines of the finest one."""
+        """Interpolate values at lines of a level of theirs at lines of the finest one."""
         lines, theirs = self._regions[0].lines, regions.lines
         turn = 360.0 if lines.projection is not None else None
         (below, down), (beside, across) = (
@@ -161,16 +167,13 @@ class OtherLevels:
         )
         rows, columns = np.unique(below), np.unique(beside)
         at = np.searchsorted(rows, below), np.searchsorted(columns, beside)
-        number, result = regions.numbers[step], []
-        for variable in variables:
-            try:
-                values = regions.read(variable, number, rows, columns)
-            except Exception as error:
-                words = str(error) if isinstance(error, ReadFault) else fault_words(error)
-                msg = f"{self.place} cannot be read: {words}"
-                raise PyramidError(msg) from None
-            result.append(_interpolated(values, at, (down, across)))
-        return result
+        try:
+            parts = read(rows, columns)
+        except Exception as error:
+            words = str(error) if isinstance(error, ReadFault) else fault_words(error)
+            msg = f"{self.place} cannot be read: {words}"
+            raise PyramidError(msg) from None
+        return [_interpolated(values, at, (down, across)) for values in parts]
 
 
 def _steps(count: int, read: Callable[[int], AnyArray]) -> Steps:

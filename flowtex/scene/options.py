@@ -58,7 +58,7 @@ LAND_COLOR = "#8f8b82"
 AXES = ("ticks", "scale", "none")
 
 #: Arguments for data of the Earth only, and for meshes only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel")
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
@@ -158,6 +158,17 @@ class FieldOptions:
         None,
         'The same by index from 0: ``{"number": 2}``.',
         Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
+    )
+    mask: str | bool | None = _option(
+        None,
+        "Variable of a dataset that marks where there is data; by default masks of common names, "
+        "quality flags and undeclared fill values count. ``False`` draws all values.",
+        Form(read=or_none(value=False)),
+    )
+    components: str | None = _option(
+        None,
+        'Directions of the components of a dataset: ``"earth"`` (eastward, northward), ``"grid"`` '
+        '(along rows and columns) or ``"plane"`` (along x and y); by default the names decide.',
     )
     uncertainty: ArrayLike | None = _option(
         None,

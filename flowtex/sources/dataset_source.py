@@ -10,15 +10,16 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
-from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, sections
-from flowtex.sources.datasets.read import recognise
-from flowtex.sources.datasets.select import find_pairs, two_names
+from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
+from flowtex.sources.datasets.flow import read_flow
+from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.maps.grid_map import projection_of
 from flowtex.sources.mesh_source import FlowSource, Source
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
 from flowtex.sources.opening.series import as_datasets
 from flowtex.sources.reader_errors import errors_of_file
+from flowtex.sources.record import Record
 
 
 class DatasetSource(Source):
@@ -29,9 +30,10 @@ class DatasetSource(Source):
         self._datasets = as_datasets(datasets)
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
-        first = likely[0] if pairs else None
-        u, v = (None, None) if first is None else (str(first.u.name), str(first.v.name))
-        flow = recognise(self._datasets, u, v)
+        pair = likely[0] if pairs else None
+        u, v = (None, None) if pair is None else (str(pair.u.name), str(pair.v.name))
+        flow = read_flow(self._datasets, u, v, Record())
+        first = variable(self._datasets, str(flow.pair.u.name))
         names = (f"{pair.u.name},{pair.v.name}" for pair in (flow.pair, *pairs))
         self.vectors = tuple(dict.fromkeys(names))
         if flow.places.is_earth:
@@ -39,16 +41,16 @@ class DatasetSource(Source):
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
         self.block_word, self.reads_late = "Map", True
-        self.axes = axis_values(flow.pair.u)
+        self.axes = axis_values(first)
         if name := next(iter(self.axes), ""):
-            self.default_plane = f"{name}={dict(flow.u.numbers).get(name, 0)}"
+            self.default_plane = f"{name}={flow.drawn.numbers.get(name, 0)}"
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, as :meth:`Source.plane_of` does."""
         names = two_names(self.vectors[0])
         array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
-        (section,) = sections([array], Choice({LEVEL: level}))
-        return f"{LEVEL}={section.numbers.get(LEVEL, 0)}"
+        drawn = choose(array, Choice({LEVEL: level}), Record())
+        return f"{LEVEL}={drawn.numbers.get(LEVEL, 0)}"
 
     def part(self, block: str | None = None) -> Source:
         """Return this source, which draws on any of the maps."""

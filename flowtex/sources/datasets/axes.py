@@ -3,46 +3,45 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
+from flowtex.sources.datasets import labels
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Names of axes that are vertical, and horizontal, where no attribute says so.
+#: Names of axes that are vertical, of time, and horizontal, where no attribute says so.
 LEVELS = re.compile(
     r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"
     r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc|"
     r"sig(lay|lev)|nz_?\d?|\w*layers?|\w*vgrid\w*|n?vert_?levels\w*)$",
     re.IGNORECASE,
 )
+TIMES = re.compile(r"^(t|n?times?|time_?\w*|\w+_time|dates?|frames?)$", re.IGNORECASE)
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
 COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
-#: Units of pressure, which is greatest at the surface, in pascals; all in small letters.
-PRESSURES = {**dict.fromkeys(("pa", "pascal", "pascals"), 1.0), "bar": 1e5}
-PRESSURES |= dict.fromkeys(("hpa", "mbar", "mb", "millibar", "millibars"), 100.0)
-#: Lengths of the units of time in seconds.
-SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0}
-SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
+#: Names of levels that are pressures.
+PRESSURE_NAMES = re.compile(r"^(p|plev\w*|pressure\w*|isobaric\w*)$", re.IGNORECASE)
 #: Names of levels that a model numbers from its top on.
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
-#: Variables that mark which of these are under water, and their value there.
-WET = {
-    **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
-    **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
-}
 #: Words for choices along an axis, beside its name.
 LEVEL, TIME = "level", "time"
+#: Levels of pressure that models of weather use, in hPa.
+USUAL_HPA = (1000, 950, 925, 900, 850, 800, 700, 600, 500, 400, 300, 250, 200, 150, 100, 50)
+#: Greatest pressure in hPa, beyond which numbers without a unit are pascals.
+MOST_HPA = 2000.0
 
 
 @dataclass
@@ -65,26 +64,98 @@ class Choice:
             raise FieldError(msg)
 
 
-@dataclass(frozen=True)
-class Section:
-    """The drawn part of a variable: two axes, and time where it has several steps."""
+class Axis(NamedTuple):
+    """An axis beside those of the surface, and what is drawn along it."""
 
-    #: ([time,] rows, columns), or ([time,] nodes or faces of a mesh); not read yet.
-    array: xr.DataArray
-    #: Dates, or seconds, one for each step; ``None`` where no time is known.
-    times: AnyArray | None
-    notes: tuple[str, ...]  #: Texts about automatic choices.
-    level: str  #: The level as text.
-    numbers: Mapping[str, int]  #: Drawn indices along axes with a choice, by name.
+    kind: str  #: ``"time"``, ``"level"``, or the name of another axis.
+    dim: str
+    line: AnyArray | None  #: Its labels; ``None`` where it has none.
+    drawn: int | list[int]  #: Number of the label that is drawn, or those of a series.
 
     @property
-    def is_series(self) -> bool:
-        """Whether there are several time steps."""
-        return bool(self.array.ndim > len(horizontal_dims(self.array)))
+    def length(self) -> int:
+        """Number of labels that are drawn."""
+        return len(self.drawn) if isinstance(self.drawn, list) else 1
 
-    def step(self, number: int) -> xr.DataArray:
-        """Return one time step, by its number."""
-        return self.array.isel({self.array.dims[0]: number}) if self.is_series else self.array
+
+@dataclass(frozen=True)
+class Drawn:
+    """What is drawn of a velocity along all axes beside those of the surface."""
+
+    axes: tuple[Axis, ...] = ()
+    times: AnyArray | None = None  #: Dates or numbers, one for each step; ``None`` if unknown.
+    time_unit: str = ""  #: Unit of times that are numbers.
+    level: str = ""  #: The level as text.
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps."""
+        return next((axis.length for axis in self.axes if axis.kind == TIME), 1)
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Drawn numbers along axes with a choice, by name."""
+        return {
+            axis.dim if axis.kind == TIME else axis.kind: axis.drawn
+            for axis in self.axes
+            if isinstance(axis.drawn, int) and axis.line is not None and len(axis.line) > 1
+        }
+
+    def of(self, array: xr.DataArray) -> xr.DataArray:
+        """Return the same of another variable, by its labels: ([time,] ...), not read yet.
+
+        Raises
+        ------
+        FieldError
+            When the variable has other labels.
+        """
+        known = {axis.kind: axis for axis in self.axes}
+        surface = horizontal_dims(array)
+        series: tuple[str, ...] = ()
+        for dim in map(str, array.dims):
+            if dim in surface:
+                continue
+            kind = axis_kind(array, dim)
+            axis = known.get(kind)
+            if axis is None:
+                if array.sizes[dim] > 1:
+                    msg = f"{array.name} has the axis {dim}, which the velocity lacks"
+                    raise FieldError(msg)
+                array = array.isel({dim: 0})
+                continue
+            picks = _same_labels(array, dim, axis)
+            if isinstance(picks, list):
+                series = (dim,)
+            array = array.isel({dim: picks if isinstance(picks, int) else as_slice(picks)})
+        return array.transpose(*series, *surface)
+
+
+def _same_labels(array: xr.DataArray, dim: str, axis: Axis) -> int | list[int]:
+    """Return the numbers of the drawn labels of an axis along that of another variable."""
+    own, count = line_of(array, dim), array.sizes[dim]
+    length = count if axis.line is None else len(axis.line)
+    if own is None or axis.line is None:
+        if count != length:
+            msg = f"{array.name} has {count} values along {dim}, and the velocity {length}"
+            raise FieldError(msg)
+        return axis.drawn
+    wanted = axis.line[np.atleast_1d(axis.drawn)]
+    found = labels.match(wanted, own)
+    if len(found.one) < len(wanted):
+        msg = f"{array.name} has {labels.text(own)} along {dim}, without {labels.text(wanted)}"
+        raise FieldError(msg)
+    numbers = [int(n) for n in found.other]
+    return numbers if isinstance(axis.drawn, list) else numbers[0]
+
+
+def as_slice(numbers: Sequence[int] | Indices) -> Indices | slice:
+    """Return numbers as a slice where they are one, which xarray reads faster."""
+    line = np.asarray(numbers, dtype=np.intp)
+    steps = np.diff(line)
+    if len(steps) and (steps == steps[0]).all() and steps[0] in (1, -1):
+        stop = int(line[-1]) + int(steps[0])
+        return slice(int(line[0]), None if stop < 0 else stop, int(steps[0]))
+    return line
 
 
 def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
@@ -93,66 +164,116 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
         if dim in array.dims:
             return (dim,)
     axes = array.cf.axes
-    dims = []
-    for kind, pattern, spare in (("Y", ROWS, -2), ("X", COLUMNS, -1)):
-        named = [str(d) for d in array.dims if d in axes.get(kind, ())]
-        alike = [str(d) for d in array.dims if pattern.match(str(d))]
-        dims.append((named or alike or [str(array.dims[spare])])[-1])
-    if dims[0] == dims[1]:
-        dims = [str(d) for d in array.dims[-2:]]
-    return dims[0], dims[1]
+    dims = [str(d) for d in array.dims]
+    if len(dims) < 2:
+        return tuple(dims)
+    # Where two axes remain they are those of the surface, also if they are called x and z.
+    free = [d for d in dims if axis_kind(array, d) != TIME]
+    free = free if len(free) == 2 else dims
+    rows, columns = (
+        [d for d in free if d in axes.get(kind, ())] or [d for d in free if pattern.match(d)]
+        for kind, pattern in (("Y", ROWS), ("X", COLUMNS))
+    )
+    if len(free) == 2 and (not rows or not columns or rows[-1] == columns[-1]):
+        if len(rows) == 1 and rows != columns:
+            return rows[0], next(d for d in free if d != rows[0])
+        if len(columns) == 1 and rows != columns:
+            return next(d for d in free if d != columns[0]), columns[0]
+        if all(line_of(array, d) is not None for d in free):  # such as x1 and x2
+            return max(free), min(free)
+        return free[0], free[1]
+    pair = (rows or [dims[-2]])[-1], (columns or [dims[-1]])[-1]
+    return pair if pair[0] != pair[1] else (dims[-2], dims[-1])
 
 
-def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
-    """Choose along the axes of variables that belong together, the same in all of them."""
-    rows = [horizontal_dims(array) for array in arrays]
-    others = [
-        [str(d) for d in array.dims if d not in pair]
-        for array, pair in zip(arrays, rows, strict=True)
-    ]
-    kinds = [
-        {axis_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)
-    ]
-    if len({tuple(k) for k in kinds}) > 1 or any(
-        len(k) < len(d) for k, d in zip(kinds, others, strict=True)
-    ):
-        listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in arrays)
-        msg = f"the components have different axes: {listed}. Select along these axes first"
+def axis_kind(array: xr.DataArray, dim: str) -> str:
+    """Return ``"time"``, ``"level"``, or the name of another axis."""
+    axes = array.cf.axes
+    named = array.coords[dim].attrs if dim in array.coords else {}
+    by_name = TIMES.match(dim) and not {*axes.get("X", ()), *axes.get("Y", ())} & {dim}
+    if dim in axes.get("T", ()) or _dates(array, dim) is not None or by_name:
+        return TIME
+    vertical = (*axes.get("Z", ()), *array.cf.coordinates.get("vertical", ()))
+    if dim in vertical or LEVELS.match(dim) or named.get("standard_name") == "air_pressure":
+        return LEVEL
+    on_axis = [name for name in vertical if array.coords[name].dims == (dim,)]
+    return LEVEL if on_axis else dim
+
+
+def further_axes(array: xr.DataArray) -> dict[str, str]:
+    """Return the dimensions beside those of the surface, by their kinds."""
+    surface = horizontal_dims(array)
+    dims = [str(d) for d in array.dims if d not in surface]
+    kinds = {axis_kind(array, d): d for d in dims}
+    if len(kinds) < len(dims):
+        times = [d for d in dims if axis_kind(array, d) == TIME and _dates(array, d) is not None]
+        first = times[0] if times else None
+        kinds = {
+            TIME if d == first else d if axis_kind(array, d) == TIME else axis_kind(array, d): d
+            for d in dims
+        }
+    if len(kinds) < len(dims):
+        msg = f"{array.name} has the axes {', '.join(dims)}, of one kind; select along one first"
         raise FieldError(msg)
-    for array in arrays:
-        if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
-            msg = (
-                f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "
-                "they were cut out, the axis may run the other way: slice(high, low)"
-            )
-            raise FieldError(msg)
-    chosen, notes, level = list(arrays), [], ""
-    numbers: dict[str, int] = {}
+    return kinds
+
+
+def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
+    """Choose along the axes of the first component, which the second one has as well."""
+    if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
+        msg = (
+            f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "
+            "they were cut out, the axis may run the other way: slice(high, low)"
+        )
+        raise FieldError(msg)
+    kinds, axes = further_axes(array), []
     times: AnyArray | None = None
-    for kind in kinds[0]:
-        dims = [k[kind] for k in kinds]
-        lines = [_values(array, d) for array, d in zip(arrays, dims, strict=True)]
-        picks, note = _picks(kind, dims, lines, arrays[0], choice)
-        if kind == TIME:
-            times = None if lines[0] is None else np.atleast_1d(np.asarray(lines[0])[picks[0]])
-        elif kind == LEVEL and lines[0] is not None and np.ndim(picks[0]) == 0:
-            level = _level_text(lines[0][picks[0]], arrays[0], dims[0])
-        if note:
-            notes.append(note)
-        if np.ndim(picks[0]) == 0 and picks[0] != slice(None) and arrays[0].sizes[dims[0]] > 1:
-            numbers[dims[0] if kind == TIME else kind] = int(picks[0])
-        chosen = [array.isel({d: p}) for array, d, p in zip(chosen, dims, picks, strict=True)]
-    order = [
-        (kind[TIME],) if kind.get(TIME) in a.dims else ()
-        for kind, a in zip(kinds, chosen, strict=True)
-    ]
-    chosen = [a.transpose(*t, *pair) for a, t, pair in zip(chosen, order, rows, strict=True)]
-    names = {str(d) for dims in others for d in dims} | set(kinds[0])
-    choice.check(names, {str(d) for pair in rows for d in pair})
+    level = unit = ""
+    for kind, dim in kinds.items():
+        line = line_of(array, dim)
+        drawn = _drawn(kind, dim, line, array, choice, record)
+        if kind == TIME and line is not None:
+            times, unit, drawn = _steps(line, array, dim, drawn, record)
+        elif kind == LEVEL and line is not None and isinstance(drawn, int):
+            level = _level_text(line[drawn], array, dim)
+        axes.append(Axis(kind, dim, line, drawn))
+    choice.check({*kinds, *kinds.values()}, set(horizontal_dims(array)))
     if times is None:
-        times = _time_beside(arrays[0])
-    level = level or _level_beside(arrays[0])
-    return [Section(array, times, tuple(notes), level, numbers) for array in chosen]
+        times = _time_beside(array)
+    level = level or _level_beside(array)
+    return Drawn(tuple(axes), times, unit, level)
+
+
+def _steps(
+    line: AnyArray, array: xr.DataArray, dim: str, drawn: int | list[int], record: Record
+) -> tuple[AnyArray | None, str, int | list[int]]:
+    """Return dates or numbers of the drawn steps, their unit, and their numbers, in order."""
+    chosen = np.atleast_1d(drawn)
+    times, unit = line[chosen], ""
+    if times.dtype.kind in "fiu":
+        unit = _unit(array, dim)
+        if (seconds := units.factor(unit, "s")) is not None:
+            times, unit = times * seconds, "s"
+        elif unit and not units.measures(unit, units.TIMES):
+            unit = ""
+    elif times.dtype.kind not in "mMO":
+        return None, "", drawn
+    unknown = np.asarray(times != times) if times.dtype.kind != "M" else np.isnat(times)
+    if unknown.any():
+        record("align", f"{dim}: {unknown.sum()} steps without a time are left out", notable=True)
+    chosen, times = chosen[~unknown], times[~unknown]
+    if not len(times):
+        msg = f"{dim} has no valid time; expected dates or numbers"
+        raise FieldError(msg)
+    order = np.argsort(times, kind="stable")
+    if (order != np.arange(len(order))).any():
+        record("align", f"{dim}: steps sorted by time")
+    chosen, times = chosen[order], times[order]
+    keep = np.concatenate([[True], times[1:] > times[:-1]])
+    if not keep.all():
+        record("align", f"{dim}: {(~keep).sum()} repeated times are left out", notable=True)
+    numbers = [int(n) for n in chosen[keep]]
+    return times[keep], unit, numbers if isinstance(drawn, list) else numbers[0]
 
 
 def _level_beside(array: xr.DataArray) -> str:
@@ -170,51 +291,12 @@ def _level_text(value: Any, array: xr.DataArray, dim: str) -> str:
     return text if " " in text else f"{dim} {text}"
 
 
-def wet_at(
-    section: Section, dim: str, datasets: Sequence[xr.Dataset], choice: Choice
-) -> Callable[[int], Bools] | None:
-    """Return the mask of nodes or faces under water at a step of a velocity."""
-    plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
-    for ds in datasets:
-        for name, water in WET.items():
-            if name in ds.data_vars and dim in ds[name].dims:
-                (flags,) = sections([ds[name]], plain)
-                if flags.is_series == section.is_series:
-                    return lambda number: np.asarray(flags.step(number).values) == water
-    return None
-
-
-def drawn_steps(section: Section, array: xr.DataArray) -> tuple[AnyArray | None, list[int]]:
-    """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
-    times = section.times
-    count = section.array.shape[0] if section.is_series else 1
-    numbers = list(range(count))
-    if times is None:
-        return None, numbers[:1]
-    times = np.asarray(times)
-    if times.dtype.kind in "fiu":
-        coordinate = array.coords.get(section.array.dims[0]) if section.is_series else None
-        unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-        seconds = seconds_in(unit)
-        if seconds is None:
-            return None, numbers[:1]
-        times = times * seconds
-    if count > 1:
-        order = np.argsort(times, kind="stable")
-        times = times[order]
-        keep = np.concatenate([[True], times[1:] > times[:-1]])
-        return times[keep], [int(n) for n in order[keep]]
-    return times, numbers
-
-
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
     """Return texts for the values along all axes with a choice except time, the level first."""
     texts: dict[str, tuple[str, ...]] = {}
-    surface = horizontal_dims(array)
-    for dim in map(str, array.dims):
-        kind = axis_kind(array, dim)
-        line = _values(array, dim)
-        if dim in surface or array.sizes[dim] < 2 or (kind == TIME and _is_time(array, dim, line)):
+    for kind, dim in further_axes(array).items():
+        line = line_of(array, dim)
+        if array.sizes[dim] < 2 or (kind == TIME and line is not None):
             continue
         values = range(array.sizes[dim]) if line is None else line
         texts[dim if kind == TIME else kind] = tuple(_value_text(v, array, dim) for v in values)
@@ -230,28 +312,10 @@ def axis_direction(array: xr.DataArray, dim: str) -> int:
     return -1 if last < first else 1
 
 
-def seconds_in(unit: str) -> float | None:
-    """Return the length of a unit of time in seconds, or ``None`` where it is not known."""
-    word = unit.strip().lower()
-    return SECONDS.get(word, SECONDS.get(word.removesuffix("s")))
-
-
-def axis_kind(array: xr.DataArray, dim: str) -> str:
-    """Return ``"time"``, ``"level"``, or the name of another axis."""
-    axes = array.cf.axes
-    if dim in axes.get("T", ()) or _dates(array, dim) is not None:
-        return TIME
-    vertical = (*axes.get("Z", ()), *array.cf.coordinates.get("vertical", ()))
-    if dim in vertical or LEVELS.match(dim):
-        return LEVEL
-    on_axis = [name for name in vertical if array.coords[name].dims == (dim,)]
-    return LEVEL if on_axis else dim
-
-
 def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
     """Return the dates along an axis, if a coordinate has them."""
     for name, coordinate in array.coords.items():
-        if coordinate.dims == (dim,) and _is_dates(coordinate):
+        if coordinate.dims == (dim,) and is_dates(coordinate):
             # Other dates, such as those of forecasts, may run along the same axis.
             named = name == dim or coordinate.attrs.get("standard_name") in ("time", None)
             if named:
@@ -259,15 +323,16 @@ def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
     return None
 
 
-def _is_dates(coordinate: xr.DataArray) -> bool:
+def is_dates(coordinate: xr.DataArray) -> bool:
+    """Return whether a coordinate has dates, of any calendar."""
     kind = coordinate.dtype.kind
     return kind == "M" or (
         kind == "O" and coordinate.size > 0 and hasattr(coordinate.values.flat[0], "isoformat")
     )
 
 
-def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
-    """Return the values along an axis: its dates, where it has them, or numbers."""
+def line_of(array: xr.DataArray, dim: str) -> AnyArray | None:
+    """Return the labels along an axis: its dates, where it has them, or numbers."""
     dates = _dates(array, dim)
     if dates is not None:
         return dates
@@ -280,26 +345,29 @@ def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
 
 def _time_beside(array: xr.DataArray) -> AnyArray | None:
     """Return the single date of a variable without a time axis."""
-    dates = [c for c in array.coords.values() if c.ndim == 0 and _is_dates(c)]
+    dates = [c for c in array.coords.values() if c.ndim == 0 and is_dates(c)]
     named = [c for c in dates if c.attrs.get("standard_name") == "time"] or dates
     return np.atleast_1d(named[0].values) if named else None
 
 
-def _picks(
-    kind: str, dims: list[str], lines: list[AnyArray | None], first: xr.DataArray, choice: Choice
-) -> tuple[list[Any], str]:
-    """Return the drawn indices along one axis, for each variable, and a note about a default."""
-    count, dim, line = first.sizes[dims[0]], dims[0], lines[0]
-    names = dict.fromkeys((*dims, kind))
-    for name in names:
+def _drawn(
+    kind: str,
+    dim: str,
+    line: AnyArray | None,
+    array: xr.DataArray,
+    choice: Choice,
+    record: Record,
+) -> int | list[int]:
+    """Return the drawn numbers along one axis, all of a time without a choice."""
+    count = array.sizes[dim]
+    for name in dict.fromkeys((dim, kind)):
         if name in choice.isel:
             choice.used.add(name)
             number = choice.isel[name]
             if not isinstance(number, (int, np.integer)) or not -count <= number < count:
                 msg = f"{name} has index {number!r} of {count}; expected 0 to {count - 1}"
                 raise FieldError(msg)
-            value = None if line is None else line[number]
-            return [_number_in(value, int(number) % count, other) for other in lines], ""
+            return int(number) % count
         if name in choice.sel:
             choice.used.add(name)
             target = choice.sel[name]
@@ -309,21 +377,18 @@ def _picks(
                 )
                 raise FieldError(msg)
             if kind == TIME and isinstance(target, slice):
-                numbers = _within(target, line, name)
-                return [[_number_in(line[n], n, other) for n in numbers] for other in lines], ""
-            number = _nearest(target, line, name)
-            return [_number_in(line[number], number, other) for other in lines], ""
+                return _within(target, line, name)
+            return _nearest(target, line, name)
+    if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
+        return list(range(count))
     if count == 1:
-        return [0 if kind != TIME else [0]] * len(dims), ""
-    if kind == TIME and _is_time(first, dim, line):
-        return [slice(None)] * len(dims), ""
+        return 0
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
-        number = _at_surface(lines, first.coords.get(dim))
-        reason = "the nearest to the surface"
+        number, reason = _at_surface(line, array.coords.get(dim)), "the nearest to the surface"
     else:
         number, reason = 0, "the first"
     value = None if line is None else line[number]
-    description = f"number {number}" if value is None else _value_text(value, first, dim)
+    description = f"number {number}" if value is None else _value_text(value, array, dim)
     other_number = 0 if number else count - 1
     if line is None:
         example = f"isel={{{dim!r}: {other_number}}}"
@@ -331,52 +396,43 @@ def _picks(
         other_value = line[other_number]
         text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
         example = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
-    note = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
-    return [_number_in(value, number, other) for other in lines], note
+    record(
+        "select",
+        f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}",
+        notable=True,
+    )
+    return number
 
 
-def _is_time(array: xr.DataArray, dim: str, line: AnyArray | None) -> bool:
-    """Return whether the values of an axis of time are dates, or spans of a known unit."""
-    coordinate = array.coords.get(dim)
-    if line is None or line.dtype.kind in "MmO":
-        return line is not None
-    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-    return seconds_in(unit) is not None
+def _at_surface(line: AnyArray, coordinate: xr.DataArray | None) -> int:
+    """Return the number of the level nearest to the surface."""
+    values = line.astype(float)
+    attrs = {} if coordinate is None else coordinate.attrs
+    falls = is_pressure(coordinate) or FROM_THE_TOP.search(str(attrs.get("long_name", "")))
+    return int(np.nanargmin(-values if falls else np.abs(values)))
 
 
-def _number_in(value: Any, number: int, line: AnyArray | None) -> int:
-    """Return the number of a value along the axis of another variable."""
-    if value is None or line is None or line.dtype.kind not in "fiuM":
-        return number
-    if number < len(line) and line[number] == value:
-        return number
-    near = np.flatnonzero(line == value)
-    if not len(near) and line.dtype.kind in "fiu":
-        near = np.flatnonzero(np.isclose(line.astype(float), float(value), rtol=1e-4))
-    if not len(near):
-        msg = (
-            f"only one of the components has the level or time {value}; choose one that both "
-            "components have"
-        )
-        raise FieldError(msg)
-    return int(near[0])
+def is_pressure(coordinate: xr.DataArray | None) -> bool:
+    """Return whether levels are pressures, by their unit, their name or their values."""
+    if coordinate is None:
+        return False
+    unit = str(coordinate.attrs.get("units", ""))
+    if units.parsed(unit) is not None:
+        return units.measures(unit, units.PRESSURES)
+    return _pressure_unit(coordinate) != ""
 
 
-def _at_surface(lines: list[Any], coordinate: xr.DataArray | None) -> int:
-    """Return the number of the level nearest to the surface that all variables have."""
-    line = lines[0].astype(float)
-    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-    named = "" if coordinate is None else str(coordinate.attrs.get("long_name", ""))
-    falls = unit.lower() in PRESSURES or FROM_THE_TOP.search(named)
-    height = -line if falls else np.abs(line)
-    for number in np.argsort(height, kind="stable"):
-        try:
-            [_number_in(lines[0][number], int(number), other) for other in lines[1:]]
-        except FieldError:
-            continue
-        return int(number)
-    msg = "the components have no level in common"
-    raise FieldError(msg)
+def _pressure_unit(coordinate: xr.DataArray) -> str:
+    """Return the unit of pressures without one, by their values; empty for other levels."""
+    values = np.atleast_1d(coordinate.values)
+    if values.dtype.kind not in "fiu":
+        return ""
+    named = PRESSURE_NAMES.match(str(coordinate.name))
+    declared = coordinate.attrs.get("standard_name") == "air_pressure"
+    unit = "hPa" if np.nanmax(np.abs(values), initial=0.0) <= MOST_HPA else "Pa"
+    usual = np.isin(values / (1.0 if unit == "hPa" else 100.0), USUAL_HPA)
+    by_values = values.size > 1 and usual.mean() > 0.5 and values.max() >= 100
+    return unit if named or declared or by_values else ""
 
 
 def _nearest(target: Any, line: AnyArray, name: str) -> int:
@@ -431,8 +487,14 @@ def _places(line: AnyArray, target: Any) -> tuple[Floats, tuple[float, float]]:
     return at, (float(target),) * 2
 
 
-def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
+def _unit(array: xr.DataArray, dim: str) -> str:
     coordinate = array.coords.get(dim)
-    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    return "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+
+
+def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
+    unit = _unit(array, dim)
+    if not unit and dim in array.coords and axis_kind(array, dim) == LEVEL:
+        unit = _pressure_unit(array.coords[dim])
     number = f"{value:.5g}" if isinstance(value, (int, float, np.number)) else str(value)
     return f"{number} {unit}".strip()

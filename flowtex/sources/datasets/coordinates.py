@@ -12,8 +12,12 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.field.earth import GLOBE, Projection
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, horizontal_dims
 from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,12 +31,17 @@ LATITUDE = re.compile(
 )
 ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
-DEGREES = re.compile(r"^degrees?(_?[NSEW]|_?(north|east))?$", re.I)
-#: Units of length, in metres.
-LENGTHS = {"m": 1.0, "meter": 1.0, "metre": 1.0, "meters": 1.0, "metres": 1.0, "km": 1000.0}
-LENGTHS |= {"kilometer": 1000.0, "kilometre": 1000.0, "kilometers": 1000.0, "kilometres": 1000.0}
+#: Names of polar coordinates: the distance from the centre, and the angle.
+RADII = re.compile(r"^(r|rho|radius|radial\w*|range)$", re.I)
+ANGLES = re.compile(r"^(phi|theta|azimuth|angle|az|polar_angle)$", re.I)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
+#: Spans of longitude and latitude without a unit that are those of the Earth in radians.
+RADIANS = (6.0, 2 * np.pi + 1e-3), (3.0, np.pi + 1e-3)
+#: Share of a cell by which positions may move in time, as by rounding.
+AT_REST = 1e-3
+#: Nodes along each axis whose positions are compared at all times.
+FEW_NODES = 5
 
 
 @dataclass(frozen=True)
@@ -46,6 +55,7 @@ class Places:
     is_line: bool
     why: str  #: Names of the coordinates.
     unit: str = ""  #: Unit of x and y.
+    angle: Floats | None = None  #: Angle of polar coordinates in radians.
 
     @property
     def lines(self) -> tuple[Floats, Floats]:
@@ -56,6 +66,13 @@ class Places:
     def on_sphere(self) -> Floats:
         """Positions of longitudes and latitudes on the globe, (J, I, 3)."""
         return Projection(GLOBE).positions(self.a, self.b)
+
+    def is_near(self, other: Places) -> bool:
+        """Return whether places are the same up to a hundredth of a degree."""
+        if self.a.shape != other.a.shape:
+            return False
+        turn = (self.a - other.a + 180.0) % 360.0 - 180.0
+        return bool(np.nanmax(np.abs(turn)) < 0.01 and np.nanmax(np.abs(self.b - other.b)) < 0.01)
 
     def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return components on the Earth, or along x and y, of those along rows and columns."""
@@ -68,30 +85,51 @@ class Places:
 
 
 def find_places(
-    array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
+    array: xr.DataArray,
+    dims: tuple[str, ...],
+    datasets: Sequence[xr.Dataset],
+    drawn: Drawn,
+    *,
+    any_axes: bool = True,
 ) -> Places:
-    """Return the places of values, by their coordinates, or by those of other datasets."""
+    """Return the places of values, by their coordinates, or by those of other datasets.
+
+    With ``any_axes`` the coordinates of the axes serve where these are neither longitude and
+    latitude nor x and y.
+
+    Coordinates with further axes, such as the time of a nest that moves, are those of what is drawn
+    along these axes.
+    """
     shape = tuple(_size(d, array, datasets) for d in dims)
+    found: Places | None = None
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
-        a, b = _at_nodes(lon, lat, dims, shape)
-        if a is None or b is None:
+        if found is not None and lon.ndim > 1:
             continue
-        if not _is_lonlat(a, b, lon, lat):
+        a, b = _at_nodes(lon, lat, dims, shape, drawn)
+        if a is None or b is None or (degrees := _in_degrees(a, b, lon, lat)) is None:
             continue
-        unset = (a == 0) & (b == 0) if lon.ndim > 1 else np.False_
+        a, b = degrees
+        unset = (a == 0) & (b == 0) if min(a.shape) > 1 else np.False_
         if unset.sum() > 1:  # where a model leaves out land
             a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
-        return Places(
-            *_over_nodes(_longitudes(a, str(lon.name)), b),
-            is_earth=True,
-            is_line=lon.ndim == 1,
-            why=f"{lon.name} and {lat.name}",
-        )
+        is_line = lon.ndim == 1
+        a, b = _over_nodes(np.unwrap(a, period=360.0) if is_line else a, b)
+        places = Places(a, b, is_earth=True, is_line=is_line, why=f"{lon.name} and {lat.name}")
+        if found is None:
+            found = places
+            if is_line:
+                break
+        elif is_line and places.is_near(found):
+            return places
+    if found is not None:
+        return found
     for x, y in _pairs(array, dims, datasets, (ACROSS, UPWARD), ("X", "Y")):
-        a, b = _at_nodes(x, y, dims, shape)
-        if a is None or b is None:
-            continue
-        return _plane(array, x, y, a, b, datasets)
+        a, b = _at_nodes(x, y, dims, shape, drawn)
+        if a is not None and b is not None:
+            return _plane(array, x, y, a, b, datasets)
+    lines = [_own_line(array, d, datasets) for d in dims]
+    if any_axes and lines[0] is not None and lines[1] is not None:
+        return _of_lines(lines[1], lines[0])
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     msg = (
         f"{array.name!r} with the dimensions {', '.join(dims)} has neither longitude and latitude "
@@ -100,6 +138,37 @@ def find_places(
         "them together with this one"
     )
     raise FieldError(msg)
+
+
+def ordered(array: xr.DataArray, record: Record) -> xr.DataArray:
+    """Return a variable whose axes of the surface are in order, by their labels."""
+    for dim in horizontal_dims(array):
+        line = array.coords.get(dim)
+        if line is None or line.dtype.kind not in "fiu" or line.size < 3:
+            continue
+        values = np.asarray(line.values, dtype=float)
+        if units.factor(str(line.attrs.get("units", "")), "degree") and LONGITUDE.match(dim):
+            values = np.unwrap(values, period=360.0)
+        steps = np.diff(values)
+        if (steps > 0).all() or (steps < 0).all() or not np.isfinite(values).all():
+            continue
+        if not _is_degrees(line):
+            keys = values
+        else:
+            around = np.sort(values % 360.0)
+            start = around[int(np.argmax(np.diff(around, append=around[0] + 360.0)))]
+            keys = (values - start - 1e-9) % 360.0
+        order = np.argsort(keys, kind="stable")
+        if (np.diff(keys[order]) <= 0).any():
+            msg = (
+                f"{dim} increases and decreases along its axis and repeats values "
+                f"({labels.text(line.values)}); expected each value once, as after "
+                f"ds.drop_duplicates({dim!r})"
+            )
+            raise FieldError(msg)
+        record("coordinates", f"{dim} is not in order, and was sorted", notable=True)
+        array = array.isel({dim: order})
+    return array
 
 
 def _directions(p: Floats, axis: int) -> Floats:
@@ -136,19 +205,21 @@ def _pairs(
     candidates: list[list[xr.DataArray]] = [[], []]
     for coordinates, pattern, word in zip(candidates, patterns, words, strict=True):
         declared = (*array.cf.coordinates.get(word, ()), *array.cf.axes.get(word, ()))
-        coordinates += [array.coords[name] for name in declared if name in array.coords]
-        coordinates += [c for c in array.coords.values() if pattern.match(str(c.name))]
+        named = [n for n in (*declared, *array.coords) if n in declared or pattern.match(str(n))]
+        coordinates += [array.coords[n] for n in dict.fromkeys(named) if n in array.coords]
         for ds in datasets:
-            of_dataset = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
-            coordinates += [ds[name] for name in of_dataset if name in ds.variables]
-            coordinates += [ds[n] for n in ds.variables if pattern.match(str(n))]
+            declared = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
+            named = [n for n in ds.variables if pattern.match(str(n))]
+            coordinates += [ds[n] for n in dict.fromkeys((*declared, *named)) if n in ds.variables]
     # Those in the middle of cells come before those on their sides.
     firsts = {id(c): n for n, c in enumerate(candidates[0])}
 
-    def order(c: xr.DataArray) -> tuple[int, int]:
+    def order(c: xr.DataArray) -> tuple[int, int, int]:
         letter = re.sub(r".*(lon|long|lam|x)_?", "", str(c.name).lower())
         middle = MIDDLES.index(letter) if letter in MIDDLES else len(MIDDLES)
-        return (0 if set(c.dims) <= set(dims) else 1, middle if c.ndim > 1 else -1)
+        # Positions in two dimensions come before lines that may be mere numbers of the nodes.
+        kind = 1 if c.ndim == 1 else 0 if units.parsed(str(c.attrs.get("units", ""))) else 2
+        return 0 if set(c.dims) <= set(dims) else 1, kind, middle if c.ndim > 1 else 0
 
     for a in sorted(candidates[0], key=lambda c: (order(c), firsts[id(c)])):
         partners = _partner_names(str(a.name))
@@ -165,7 +236,7 @@ def _partner_names(name: str) -> set[str]:
 
 
 def _at_nodes(
-    a: xr.DataArray, b: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...]
+    a: xr.DataArray, b: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...], drawn: Drawn
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
@@ -181,18 +252,59 @@ def _at_nodes(
         return _numbers(a)[None], _numbers(b)[:, None]
     flat = []
     for c in (a, b):
-        # Some files repeat them for every time.
-        other = {d: 0 for d in c.dims if c.sizes[d] == 1 or str(d).lower().startswith("t")}
-        other = {d: n for d, n in other.items() if d not in dims}
-        c = c.isel(other)
-        if c.ndim != 2:
+        at = _drawn_positions(c, dims, drawn)
+        if at is None or at.ndim != 2:
             return None, None
-        if set(c.dims) == set(dims):
-            c = c.transpose(*dims)
-        if c.shape != shape:
+        if set(at.dims) == set(dims):
+            at = at.transpose(*dims)
+        if at.shape != shape:
             return None, None
-        flat.append(_numbers(c))
+        flat.append(_numbers(at))
     return flat[0], flat[1]
+
+
+def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr.DataArray | None:
+    """Return a coordinate where the drawn values lie; ``None`` where it has other axes.
+
+    Raises
+    ------
+    FieldError
+        When the positions of a series move.
+    """
+    for dim in [str(d) for d in c.dims if d not in dims]:
+        kind = axis_kind(c, dim)
+        axis = next((axis for axis in drawn.axes if dim == axis.dim or kind == axis.kind), None)
+        if axis is not None and c.sizes[dim] == (1 if axis.line is None else len(axis.line)):
+            c = c.isel({dim: axis.drawn})
+        elif axis is None and c.ndim > 2 and (c.sizes[dim] == 1 or kind == TIME):
+            c = c.isel({dim: slice(None)})
+        else:
+            continue
+        if dim in c.dims:
+            _check_rest(c, dim)
+            c = c.isel({dim: 0})
+    return c
+
+
+def _check_rest(c: xr.DataArray, dim: str) -> None:
+    """Raise for a coordinate that differs between times."""
+    if c.sizes[dim] < 2:
+        return
+    few = {d: slice(None, None, max(n // FEW_NODES, 1)) for d, n in c.sizes.items() if d != dim}
+    lines = np.asarray(values_in(c.isel(few)), dtype=float)
+    axis = c.dims.index(dim)
+    first = np.take(lines, [0], axis=axis)
+    with np.errstate(invalid="ignore"):
+        moved = float(np.nanmax(np.abs(lines - first), initial=0.0))
+        size = float(np.nanmax(first, initial=-np.inf) - np.nanmin(first, initial=np.inf))
+    if moved > AT_REST * size / max(c.shape):
+        unit = str(c.attrs.get("units", ""))
+        msg = (
+            f"positions vary in time: {c.name} changes by up to {moved:.4g} {unit}".rstrip()
+            + f" along {dim}. Series on moving surfaces are not supported; draw one step, as in "
+            f"isel={{{dim!r}: 0}}"
+        )
+        raise FieldError(msg)
 
 
 def _numbers(c: xr.DataArray) -> Floats:
@@ -202,56 +314,83 @@ def _numbers(c: xr.DataArray) -> Floats:
     return np.asarray(values_in(c), dtype=float)
 
 
-def _is_lonlat(a: Floats, b: Floats, lon: xr.DataArray, lat: xr.DataArray) -> bool:
-    """Return whether coordinates are degrees; a name such as XC alone is not sufficient."""
-    units = [str(c.attrs.get("units", "")) for c in (lon, lat)]
-    is_declared = all(DEGREES.match(u) for u in units) or all(
-        "lon" in str(c.attrs.get("standard_name", c.name)).lower()
-        or "lat" in str(c.attrs.get("standard_name", c.name)).lower()
-        or re.match("glam|gphi", str(c.name))
-        for c in (lon, lat)
-    )
-    if not is_declared:
+def _is_degrees(c: xr.DataArray) -> bool:
+    """Return whether a coordinate is an angle on the Earth, by its unit, standard name or name."""
+    unit, name = str(c.attrs.get("units", "")), str(c.attrs.get("standard_name", c.name))
+    if name.startswith("grid_"):  # of a rotated pole
         return False
-    with np.errstate(invalid="ignore"):
-        far = np.nanmax(np.abs(b), initial=0.0)
-        wide = np.nanmax(np.abs(a), initial=0.0)
+    if units.is_angle(unit) and not ANGLES.match(str(c.name)):
+        return True
+    # Some models give a wrong unit.
+    return "lon" in name.lower() or "lat" in name.lower() or bool(re.match("glam|gphi", name))
+
+
+def _in_degrees(
+    a: Floats, b: Floats, lon: xr.DataArray, lat: xr.DataArray
+) -> tuple[Floats, Floats] | None:
+    """Return longitudes and latitudes in degrees; ``None`` for other coordinates, such as XC."""
+    if not (_is_degrees(lon) and _is_degrees(lat)):
+        return None
+    given = [str(c.attrs.get("units", "")) for c in (lon, lat)]
     # A line has values of one coordinate only.
     finite = np.isfinite(a), np.isfinite(b)
     usable = (finite[0] & finite[1]).any() if lon.ndim > 1 else all(f.any() for f in finite)
     if not usable:
         msg = f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
         raise FieldError(msg)
+    spans = [float(np.ptp(part[np.isfinite(part)])) for part in (a, b)]
+    by_span = all(low <= s <= high for s, (low, high) in zip(spans, RADIANS, strict=True))
+    if (by_span and not any(map(units.parsed, given))) or all(
+        unit.lower().startswith("rad") for unit in given
+    ):
+        return np.degrees(a), np.degrees(b)
+    with np.errstate(invalid="ignore"):
+        far = np.nanmax(np.abs(b), initial=0.0)
+        wide = np.nanmax(np.abs(a), initial=0.0)
     if far > 90.001 or wide > 720:
-        if all(DEGREES.match(u) for u in units):
+        if all(units.parsed(unit) is not None for unit in given):
             msg = (
                 f"{lat.name} reaches {far:g} and {lon.name} reaches {wide:g} in magnitude; "
                 "expected degrees, up to 90 and 360"
             )
             raise FieldError(msg)
-        return False
-    return True
-
-
-def _longitudes(lon: Floats, name: str) -> Floats:
-    """Return longitudes without jumps along a row; those of a line must be sorted."""
-    if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
-        return lon
-    line = np.unwrap(lon[0], period=360.0)
-    steps = np.diff(line)
-    if not ((steps > 0).all() or (steps < 0).all()):
-        msg = (
-            f"{name} increases and decreases along its axis; expected longitudes in one "
-            f"direction. Sort them, as in ds.sortby({name!r})"
-        )
-        raise FieldError(msg)
-    return np.broadcast_to(line, lon.shape)
+        return None
+    return a, b
 
 
 def _over_nodes(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Return coordinates (J, I), of lines (1, I) and (J, 1) as views of these."""
     shape = np.broadcast_shapes(a.shape, b.shape)
     return np.broadcast_to(a, shape), np.broadcast_to(b, shape)
+
+
+def _own_line(array: xr.DataArray, dim: str, datasets: Sequence[xr.Dataset]) -> Any:
+    """Return the coordinate of a dimension that is numbers, of any name; ``None`` without one."""
+    for holder in (array.coords, *datasets):
+        if dim in holder and holder[dim].dims == (dim,) and holder[dim].dtype.kind in "fiu":
+            return holder[dim]
+    return None
+
+
+def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
+    """Return positions on axes of any name, such as x1 and x2, or of polar coordinates."""
+    a, b = _numbers(x)[None], _numbers(y)[:, None]
+    for radius, angle, r, turn in ((x, y, a, b), (y, x, b, a)):
+        if not (RADII.match(str(radius.name)) and ANGLES.match(str(angle.name))):
+            continue
+        unit = str(angle.attrs.get("units", ""))
+        degrees = units.parsed(unit) is None and np.ptp(turn) > RADIANS[0][1]
+        turn = turn * (units.factor("degree" if degrees else unit, "radian") or 1.0)
+        unit = str(radius.attrs.get("units", ""))
+        return Places(
+            *_over_nodes(r * np.cos(turn), r * np.sin(turn)),
+            is_earth=False,
+            is_line=False,
+            why=f"{radius.name} and {angle.name}",
+            unit=units.symbol(unit) if units.parsed(unit) is not None else "",
+            angle=_over_nodes(r, turn)[1],
+        )
+    return _plane(x, x, y, a, b, ())
 
 
 def _plane(
@@ -263,37 +402,34 @@ def _plane(
     datasets: Sequence[xr.Dataset],
 ) -> Places:
     """Return positions in a plane, or on the Earth if the grid mapping gives them."""
-    units = [str(c.attrs.get("units", "")).strip() for c in (x, y)]
+    one, other = (str(c.attrs.get("units", "")).strip() for c in (x, y))
     why = f"{x.name} and {y.name}"
-    crs = _mapping(array, datasets)
-    if crs is not None:
-        a, b = _over_nodes(a, b)
+    if (crs := _mapping(array, datasets)) is not None:
         pyproj = import_extra("pyproj", "xarray")
         source = pyproj.CRS.from_cf(crs)
         geodetic = pyproj.CRS.from_user_input(source.geodetic_crs or 4326)
         if source.is_projected:
-            factor = LENGTHS.get(units[0].lower(), 1.0)
-            change = pyproj.Transformer.from_crs(source, geodetic, always_xy=True)
-            lon, lat = change.transform(a * factor, b * factor, errcheck=False)
+            a, b = a * (units.factor(one, "m") or 1.0), b * (units.factor(other, "m") or 1.0)
         else:
-            base = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
-            change = pyproj.Transformer.from_crs(source, base, always_xy=True)
-            lon, lat = change.transform(a, b)
+            geodetic = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
+            a, b = (c * (units.factor(u, "degree") or 1.0) for c, u in ((a, one), (b, other)))
+        change = pyproj.Transformer.from_crs(source, geodetic, always_xy=True)
+        lon, lat = change.transform(*_over_nodes(a, b), errcheck=False)
         bad = ~(np.isfinite(lon) & np.isfinite(lat))
         places = np.where(bad, np.nan, lon), np.where(bad, np.nan, lat)
         words = f"{why} by {crs.get('grid_mapping_name', 'its CRS')}"
         return Places(*places, is_earth=True, is_line=False, why=words)
-    unit = "m" if units[0].lower() in LENGTHS else units[0]
-    factor = LENGTHS.get(units[0].lower(), 1.0)
-    places = _over_nodes(a * factor, b * factor)
+    if one != other and (factor := units.factor(other, one)) is not None:
+        b = b * factor
+    places = _over_nodes(a, b)
+    unit = units.symbol(one) if units.parsed(one) is not None else ""
     return Places(*places, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
     """Return the attributes of the grid mapping of a variable."""
-    name = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping"))
-    for ds in datasets:
-        if name in ds.variables:
-            attrs = dict(ds[name].attrs)
-            return attrs if {"grid_mapping_name", "crs_wkt"} & set(attrs) else None
+    name = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping", "spatial_ref"))
+    for ds in ({**array.coords}, *datasets):
+        if name in ds and {"grid_mapping_name", "crs_wkt"} & set(attrs := dict(ds[name].attrs)):
+            return attrs
     return None

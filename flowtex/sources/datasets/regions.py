@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.blocks import even_runs
-from flowtex.errors import FieldError
+from flowtex.field.arrays import Reading
 from flowtex.field.earth import Projection
 from flowtex.field.grids.periodic import find_closure
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.datasets.values import Values, read_step
 from flowtex.sources.maps.grid_map import (
     CYLINDERS,
     lines_on_map,
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
 
 #: Rows or columns, by numbers or as a slice.
 Lines: TypeAlias = Indices | slice
-#: Values beyond this are missing data, even without an attribute.
-LARGEST_VALUE = 1e15
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +76,11 @@ class Words:
 
     name: str
     length_unit: str
+    time_unit: str
+    velocity_unit: str
     times: Floats
     start: Any
+    reading: Reading
     units: Mapping[str, str] = field(default_factory=dict)
     long_names: Mapping[str, str] = field(default_factory=dict)
 
@@ -91,12 +91,9 @@ class Regions:
 
     words: Words
     lines: RegionLines  #: Places of the nodes.
-    #: Variables of the velocity, ([time,] row, column).
-    components: tuple[xr.Variable, xr.Variable]
-    factor: float  #: Their unit in m/s.
-    mask: xr.Variable | None  #: Positive where there are data, (row, column).
+    values: Values  #: The velocity.
+    factor: float  #: From its unit to that of length and time.
     scalars: Mapping[str, xr.Variable]
-    numbers: tuple[int, ...]  #: Time steps in the variables.
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -107,43 +104,36 @@ class Regions:
 
     def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
-        number = self.numbers[step]
-        u, v = self._components(number, rows, columns)
-        velocity = self.lines.vectors(u, v, rows, columns)
+        u, v = self.components(step, rows, columns)
+        velocity = self.lines.vectors(u * self.factor, v * self.factor, rows, columns)
         finite = np.isfinite(velocity).all(axis=-1)
         if valid is None:
             valid = np.zeros_like(finite)
-            for other in typical_steps(len(self.numbers)):
+            for other in typical_steps(len(self.words.times)):
                 if valid.all():  # the others are read only where a step has gaps
                     break
                 if other != step:
-                    a, b = self._components(self.numbers[other], rows, columns)
-                    valid |= np.isfinite(self.lines.vectors(a, b, rows, columns)).all(axis=-1)
+                    parts = self.components(other, rows, columns)
+                    valid |= np.isfinite(self.lines.vectors(*parts, rows, columns)).all(axis=-1)
                 else:
                     valid |= finite
         velocity[~(valid & finite)] = 0.0
-        scalars = {k: self.read(s, number, rows, columns) for k, s in self.scalars.items()}
+        scalars = {name: self.scalar(name, step, rows, columns) for name in self.scalars}
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
         return Nodes(points, valid, velocity, scalars)
 
-    def _components(self, number: int, rows: Lines, columns: Lines) -> list[Floats]:
-        parts = [self.read(part, number, rows, columns) * self.factor for part in self.components]
-        if self.mask is None:
-            return parts
-        wet = self.read(self.mask, number, rows, columns) > 0
-        return [np.where(wet, part, np.nan) for part in parts]
+    def components(self, step: int, rows: Lines, columns: Lines) -> tuple[Floats, Floats]:
+        """Return the components of some rows and columns, NaN where there are no data."""
+        return self.values.read(step, self._numbers(rows, columns))
 
-    def read(self, variable: xr.Variable, number: int, rows: Lines, columns: Lines) -> Floats:
-        """Return some rows and columns of a variable, at a number in it."""
-        step = variable[number] if variable.ndim > 2 else variable
-        below = []
-        for first in even_runs(self.lines.rows[rows]):
-            beside = [step[first, second] for second in even_runs(self.lines.columns[columns])]
-            # The reader may be a task of a cluster, which must not wait for other tasks.
-            below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
-        return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
+    def scalar(self, name: str, step: int, rows: Lines, columns: Lines) -> Floats:
+        """Return some rows and columns of a scalar."""
+        return read_step(self.scalars[name], step, self._numbers(rows, columns))
+
+    def _numbers(self, rows: Lines, columns: Lines) -> tuple[Indices, Indices]:
+        return self.lines.rows[rows], self.lines.columns[columns]
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
@@ -168,18 +158,6 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
     return RegionLines(
         lines.lon, lines.lat[rows], lines.shown, rows, lines.columns, projection, closed
     )
-
-
-def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
-    """Return the values of a variable as float64; missing data are NaN."""
-    values = values_in(array)
-    if values.dtype.kind not in "fiub":
-        msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
-        raise FieldError(msg)
-    values = values.astype(float)
-    # Fill values that no attribute names.
-    values[np.abs(values) > LARGEST_VALUE] = np.nan
-    return values
 
 
 def _is_ordered(line: Floats) -> bool:

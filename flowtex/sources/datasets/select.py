@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.sources.datasets.axes import FACES, NODES
 
 if TYPE_CHECKING:
@@ -40,33 +41,24 @@ BARE = re.compile(
     r"hvel|dahv|horizontalvel|depthaveragevel|nod|ureconstruct)\d*m?$"
 )
 #: Names of components in models that do not follow any pattern.
-KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty"}
-#: Units of velocities in plain form, in metres per second.
-UNITS = {
-    "m/s": 1.0,
-    "cm/s": 0.01,
-    "mm/s": 0.001,
-    "km/h": 1 / 3.6,
-    "km/s": 1000.0,
-    "m/day": 1 / 86400,
-    "km/day": 1000 / 86400,
-    "knot": 1852 / 3600,
-    "ft/s": 0.3048,
-}
-WORDS = (
-    (r"\bmet(?:er|re)s?\b", "m"),
-    (r"\bcentimet(?:er|re)s?\b", "cm"),
-    (r"\bkilomet(?:er|re)s?\b", "km"),
-    (r"\bseconds?\b|\bsec\b", "s"),
-    (r"\bhours?\b|\bhr?\b", "h"),
-    (r"\bdays?\b|\bd\b", "day"),
-    (r"\bknots?\b|\bkts?\b|\bkn\b", "knot"),
-    (r"\bfeet\b|\bfoot\b", "ft"),
-    (r"\s*\bper\b\s*", "/"),
-    (r"[{}]", ""),
-    (r"\s*[\s.*]\s*(s|h|day)\s*\**\^?-1\b", r"/\1"),
-    (r"\s", ""),
+KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty", "uu": "vv"}
+#: Words for the components in a vertical plane.
+SECTION_PARTNERS = {"x": "z", "u": "w"}
+#: Modifiers of CF's standard names, which make other variables of these.
+MODIFIERS = re.compile(
+    r"\b(status_flag|standard_error|number_of_observations|detection_minimum)\b|quality_flag"
 )
+#: Names of speeds, and of the directions that they have.
+SPEEDS = re.compile(r"^(.*_)?(speed|magnitude)$|^(w|c)?(spd|spe)\d*m?$|^ws\d*m?$|^wspd\w*$", re.I)
+TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
+#: Names of components along polar coordinates, without the letters of the vector.
+RADIAL = re.compile(r"^[uvw]?_?(r|rad|radial)$|^radial_\w+$", re.I)
+AROUND = re.compile(
+    r"^[uvw]?_?(phi|theta|t|a|az|azimuth|azimuthal|tangential|angular)$|^(azimuthal|tangential)_\w+$",
+    re.I,
+)
+#: How the two variables of a velocity give its components.
+CARTESIAN, POLAR, FROM, TOWARDS = "cartesian", "polar", "direction from", "direction towards"
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +71,7 @@ class Pair:
     along: str
     why: str  #: The reason of the choice.
     rank: int = 0  #: How likely they are the velocity, 0 being the most likely.
+    kind: str = CARTESIAN  #: How the variables give the components.
 
     def __str__(self) -> str:
         return f"{self.u.name}, {self.v.name} ({self.why})"
@@ -92,6 +85,8 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
         one, other = (variable(datasets, name) for name in (u, v))
+        others = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
+        pairs = [*pairs, *_speeds(others), *_polar(others)]
         found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
         return found or Pair(one, other, _directions(one), "as named")
     if not pairs:
@@ -128,19 +123,56 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
     arrays = [
         array for ds in datasets for array in ds.data_vars.values() if _may_be_component(array)
     ]
+    for partners in (PARTNERS, SECTION_PARTNERS):
+        if pairs := _cartesian(arrays, partners):
+            return sorted(pairs, key=_preference)
+    return [*_speeds(arrays), *_polar(arrays)]
+
+
+def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> list[Pair]:
+    """Return pairs whose names differ by a word for the component."""
     pairs: dict[tuple[Any, Any], Pair] = {}
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
-            for word, rest, partner in _partners(_text(u, source), source):
+            for word, rest, partner in _partners(_text(u, source), source, partners):
                 for v in arrays:
                     key = (u.name, v.name)
                     if _text(v, source) != partner or key in pairs or not _match(u, v):
                         continue
                     rank = _rank(u, source, rest)
                     if rank is not None:
-                        why = f"{source.replace('_', ' ')} with {word!r} and {PARTNERS[word]!r}"
+                        why = f"{source.replace('_', ' ')} with {word!r} and {partners[word]!r}"
                         pairs[key] = Pair(u, v, _directions(u), why, rank)
-    return sorted(pairs.values(), key=_preference)
+    return list(pairs.values())
+
+
+def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
+    """Yield speeds with the directions that they have."""
+    for speed in arrays:
+        standard = str(speed.attrs.get("standard_name", speed.name))
+        if not SPEEDS.search(standard) or _is_velocity(speed) is False:
+            continue
+        first = re.sub(r"_?speed$", "", standard)
+        for turn in arrays:
+            named = str(turn.attrs.get("standard_name", turn.name))
+            unit = str(turn.attrs.get("units", ""))
+            is_angle = units.is_angle(unit) or units.parsed(unit) is None
+            if not TURNS.search(named) or not is_angle or turn.ndim != speed.ndim:
+                continue
+            if "standard_name" in speed.attrs and not named.startswith(first):
+                continue
+            wind = re.search(r"wind|^w", f"{standard} {named}") is not None
+            towards = "_to_" in named or ("_from_" not in named and not wind)
+            words = f"{speed.name} and {turn.name}, a direction {'to' if towards else 'from'}"
+            yield Pair(speed, turn, "earth", words, 5, TOWARDS if towards else FROM)
+
+
+def _polar(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
+    """Yield components along a radius and an angle."""
+    for u in arrays:
+        for v in arrays:
+            if RADIAL.match(str(u.name)) and AROUND.match(str(v.name)) and _match(u, v):
+                yield Pair(u, v, "plane", "components along a radius and an angle", 5, POLAR)
 
 
 def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:
@@ -161,31 +193,33 @@ def _preference(pair: Pair) -> tuple[int, int, bool]:
     return pair.rank, -pair.u.ndim, pair.along != "earth"
 
 
-def to_metres_per_second(array: xr.DataArray) -> float | None:
-    """Return a variable's unit in metres per second; ``None`` where it has no unit."""
-    unit, plain = str(array.attrs.get("units", "")).strip(), plain_unit(array)
-    if unit in ("", "1", "-", "None", "unknown"):
-        return None
-    if plain not in UNITS:
+def velocity_unit(array: xr.DataArray) -> str:
+    """Return a variable's unit of velocity; empty where it has no unit."""
+    unit = str(array.attrs.get("units", "")).strip()
+    if unit.lower() in units.NONE:
+        return ""
+    if not units.measures(unit, units.VELOCITIES):
         msg = (
-            f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity; expected "
-            f"{', '.join(UNITS)}. If it is wrong, set {array.name}.attrs['units']"
+            f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity, such as "
+            f"m/s, cm/s or knots. If it is wrong, set {array.name}.attrs['units']"
         )
         raise FieldError(msg)
-    return UNITS[plain]
+    return unit
 
 
-def plain_unit(array: xr.DataArray) -> str:
-    """Return a variable's unit in small letters and short words, such as ``"m/s"``."""
-    plain = str(array.attrs.get("units", "")).strip().lower()
-    for pattern, word in WORDS:
-        plain = re.sub(pattern, word, plain)
-    return plain
+def _is_velocity(array: xr.DataArray) -> bool | None:
+    """Return whether a variable has a unit of velocity; ``None`` where it has no unit."""
+    try:
+        return velocity_unit(array) != "" or None
+    except FieldError:
+        return False
 
 
 def _may_be_component(array: xr.DataArray) -> bool:
     fewest = 1 if _on_mesh(array) else 2
-    return array.ndim >= fewest and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
+    named = f"{array.name} {array.attrs.get('standard_name', '')}"
+    other = "bounds" in named or "_bnds" in named or MODIFIERS.search(named)
+    return array.ndim >= fewest and array.dtype.kind in "fiu" and not other
 
 
 def _on_mesh(array: xr.DataArray) -> bool:
@@ -214,16 +248,15 @@ def _partners(
 
 
 def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
-    """Return whether two variables have as many axes and the same unit."""
-    same_unit = u.attrs.get("units", "") == v.attrs.get("units", "")
-    return u.name != v.name and u.ndim == v.ndim and same_unit
+    """Return whether two variables have as many axes, and units of the same kind."""
+    kinds = {_is_velocity(u), _is_velocity(v)}
+    return u.name != v.name and u.ndim == v.ndim and (len(kinds) == 1 or False not in kinds)
 
 
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
     """Return the rank of a pair, 0 for the most likely velocity; ``None`` for other variables."""
-    try:
-        is_velocity = to_metres_per_second(u) is not None
-    except FieldError:
+    is_velocity = _is_velocity(u)
+    if is_velocity is False:
         return 6 if source == "standard_name" else None
     text = _text(u, source)
     if source != "name":
@@ -282,7 +315,7 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
             for _, _, partner in _partners(_text(u, source), source):
                 if any(_text(v, source) == partner and _match(u, v) for v in arrays):
                     try:
-                        to_metres_per_second(u)
+                        velocity_unit(u)
                     except FieldError as error:
                         return str(error)
     names = ", ".join(str(a.name) for a in arrays)

@@ -1,8 +1,7 @@
 """The grid that two components lie on: staggered or not, and the places of its nodes.
 
 On a staggered one (Arakawa C) they lie on the sides of cells, and become means in the middle. Along
-its direction a component has one value for each side. The sides beside cell c are numbered
-c + first and c + first + 1.
+its direction a component has one value for each side.
 """
 
 from __future__ import annotations
@@ -10,55 +9,318 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import GLOBE, Projection
-from flowtex.sources.datasets.axes import horizontal_dims
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.align import renamed
+from flowtex.sources.datasets.axes import Drawn, as_slice, horizontal_dims
 from flowtex.sources.datasets.coordinates import Places, find_places
-from flowtex.sources.datasets.select import Pair
 from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: Paddings of SGRID, and the first side that they mean.
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
-#: Names of masks in the middle of cells, 1 at sea.
-MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")
 #: Distance, as a share of a cell, up to which a line of a grid repeats another one.
 REPEATED = 0.01
+#: Offsets of a grid in cells: up to which it is the same, and how exactly it is half a cell.
+SAME_NODE, HALF = 0.03, 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """The cells along an axis that have a side before and after them, and these sides."""
+
+    cells: Indices
+    before: Indices
+    after: Indices
+
+    @classmethod
+    def counted(cls, first: int, sides: int, cells: int, *, wraps: bool = False) -> Sides:
+        """Return the sides of cells by numbers: those beside cell c are c + first and the next.
+
+        With ``wraps`` the axis goes around the Earth.
+        """
+        known = np.arange(cells)
+        if not wraps:
+            known = known[max(0, -first) : min(cells, sides - first - 1)]
+        return cls(known, (known + first) % sides, (known + first + 1) % sides)
+
+    @classmethod
+    def between(cls, cells: Floats, sides: Floats, period: float | None) -> Sides:
+        """Return the sides of cells by the positions of both along their axis."""
+        order = np.argsort(sides if period is None else sides % period, kind="stable")
+        line, at = sides[order], cells
+        if period is not None:
+            line, at = line % period, cells % period
+            line = np.concatenate([line[-1:] - period, line, line[:1] + period])
+            order = np.concatenate([order[-1:], order, order[:1]])
+        after = np.searchsorted(line, at)
+        inside = (after > 0) & (after < len(line))
+        after = np.where(inside, after, 1)
+        share = (at - line[after - 1]) / (line[after] - line[after - 1])
+        wide = line[after] - line[after - 1] > 1.5 * labels.spacing(sides)
+        inside &= (np.abs(share - 0.5) < HALF) & ~wide
+        known = np.flatnonzero(inside)
+        return cls(known, order[after[known] - 1], order[after[known]])
+
+
+class Grid(NamedTuple):
+    """Two components of a velocity on a grid, not read yet."""
+
+    u: xr.DataArray
+    v: xr.DataArray
+    places: Places  #: Places of the cells that have all sides.
+    rows: Sides | None  #: Sides of the cells along a column, which have the second component.
+    columns: Sides | None
+    words: str
+
+    @property
+    def staggered(self) -> bool:
+        """Whether the components lie on the sides of cells."""
+        return self.rows is not None or self.columns is not None
+
+
+def centred(
+    u: Floats, v: Floats, rows: Sides | None, columns: Sides | None
+) -> tuple[Floats, Floats]:
+    """Return components (J, I) in the middle of the cells that have all sides."""
+    if columns is not None:
+        u, v = _mean(u, 1, columns), v[:, columns.cells]
+    if rows is not None:
+        u, v = u[rows.cells], _mean(v, 0, rows)
+    return u, v
+
+
+def _mean(values: Floats, axis: int, sides: Sides) -> Floats:
+    """Return means of two sides at the known cells; a missing side, or NaN, is a wall."""
+    one, other = (np.take(values, part, axis=axis) for part in (sides.before, sides.after))
+    mean = (np.nan_to_num(one) + np.nan_to_num(other)) / 2
+    mean[np.isnan(one) & np.isnan(other)] = np.nan
+    return np.asarray(mean)
 
 
 def find_grid(
-    pair: Pair,
-    cells: tuple[str, str],
-    dims: tuple[tuple[str, str], tuple[str, str]],
+    u: xr.DataArray,
+    v: xr.DataArray,
     datasets: Sequence[xr.Dataset],
-) -> tuple[tuple[Sides | None, Sides | None], Places, str]:
-    """Return the sides along (rows, columns) of a staggered grid, the places, and a text."""
-    (row_u, row_v), (column_u, column_v) = dims
-    u, v = pair.u, pair.v
-    if row_u == row_v and column_u == column_v:
+    drawn: Drawn,
+    record: Record,
+    *,
+    along_earth: bool,
+) -> Grid:
+    """Return the grid of two components, aligned by the positions of their values.
+
+    Raises
+    ------
+    FieldError
+        When the values of the components lie at other places that are not half a cell apart.
+    """
+    dims = horizontal_dims(u), horizontal_dims(v)
+    nemo = _nemo_places(u, v, dims, datasets, drawn, along_earth=along_earth)
+    if nemo is not None:
+        rows = Sides.counted(-1, v.sizes[dims[1][0]], v.sizes[dims[1][0]])
+        count = u.sizes[dims[0][1]]
+        columns = Sides.counted(-1, count, count, wraps=_wraps(nemo))
+        return _staggered(u, v, nemo, rows, columns, "Arakawa C, sides after the middle", record)
+    own = _source(u, datasets), _source(v, datasets)
+    apart = own[0] is not own[1]
+    alike = u.sizes[dims[0][0]] == v.sizes[dims[1][0]] and u.shape == v.shape
+    if apart or (dims[0] != dims[1] and alike):
+        at = [
+            _own_places(array, pair, source, drawn)
+            for array, pair, source in zip((u, v), dims, own, strict=True)
+        ]
+        # Axes of other names in one dataset are told apart by positions on the Earth alone.
+        known = [p for p in at if p is not None and (p.is_earth or apart)]
+        if len(known) == 2 and known[0].is_earth == known[1].is_earth:
+            grid = _by_positions(u, v, known[0], known[1], record)
+            if grid is not None:
+                return grid
+    (row_u, column_u), (_, column_v) = dims
+    if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
             msg = (
                 f"{u.name} and {v.name} differ in size, {_sizes(u)} and {_sizes(v)}; expected "
                 "components of one grid"
             )
             raise FieldError(msg)
-        places = _nemo_places(pair, cells, datasets)
-        if places is None:
-            return (
-                (None, None),
-                find_places(u, cells, [_dataset_of(u, datasets), *datasets]),
-                "both components at the same position",
-            )
-        rows = Sides(-1, v.sizes[row_v], v.sizes[row_v])
-        columns = Sides(-1, u.sizes[column_u], u.sizes[column_u], _wraps(places))
-        return (rows, columns), places, "Arakawa C, sides after the middle"
+        places = find_places(u, dims[0], [*own[:1], *datasets], drawn)
+        return Grid(u, v, places, None, None, "both components at the same position")
+    return _by_names(u, v, (row_u, column_v), datasets, drawn, record)
+
+
+def _staggered(
+    u: xr.DataArray,
+    v: xr.DataArray,
+    places: Places,
+    rows: Sides,
+    columns: Sides,
+    words: str,
+    record: Record,
+) -> Grid:
+    """Return a staggered grid, of places in all cells."""
+    at = np.ix_(rows.cells, columns.cells)
+    places = replace(places, a=places.a[at], b=places.b[at])
+    record("align", f"{u.name} and {v.name} averaged from the sides of cells to their centres")
+    return Grid(u, v, places, rows, columns, words)
+
+
+def _by_positions(
+    u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, record: Record
+) -> Grid | None:
+    """Return the grid of components with positions of their own; ``None`` where these do not tell.
+
+    Components at the same places are brought into the order of the first one.
+    """
+    dims = horizontal_dims(u), horizontal_dims(v)
+    if at_u.is_line and at_v.is_line:
+        return _by_lines(u, v, at_u, at_v, record)
+    rename = dict(zip(dims[1], dims[0], strict=True))
+    if at_u.a.shape == at_v.a.shape:
+        for flips in ((), (0,), (1,), (0, 1)):
+            turned = (np.flip(at_v.a, flips), np.flip(at_v.b, flips)) if flips else (at_v.a, at_v.b)
+            offset = _offset(at_u, replace(at_v, a=turned[0], b=turned[1]))
+            if offset is None or max(map(abs, offset)) > SAME_NODE:
+                continue
+            if flips:
+                axes = " and ".join(dims[1][n] for n in flips)
+                record("align", f"{v.name}: {axes} reversed to match {u.name}")
+            v = v.isel({dims[1][n]: slice(None, None, -1) for n in flips})
+            words = "both components at the same position"
+            return Grid(u, renamed(v, rename, u), at_u, None, None, words)
+    offset = _offset(at_u, at_v)
+    if offset is not None and all(abs(abs(part) - 0.5) < HALF for part in offset):
+        row, column = (-1 if offset[0] > 0 else 0), (0 if offset[1] > 0 else -1)
+        rows = Sides.counted(row, at_v.a.shape[0], at_u.a.shape[0])
+        count = at_u.a.shape[1]
+        wraps = count == at_v.a.shape[1] and _wraps(at_u)
+        columns = Sides.counted(column, count, at_v.a.shape[1], wraps=wraps)
+        middle = _moved(at_u, columns, at_v.a.shape[1])
+        position = "before" if column == 0 else "after"
+        return _staggered(
+            u, v, middle, rows, columns, f"Arakawa C, sides {position} the middle", record
+        )
+    if dims[0] != dims[1]:
+        return None
+    raise FieldError(_apart(u, v, at_u, at_v))
+
+
+def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, record: Record) -> Grid:
+    """Return the grid of components on lines of coordinates."""
+    dims = horizontal_dims(u), horizontal_dims(v)
+    period = 360.0 if at_u.is_earth else None
+    (a_u, b_u), (a_v, b_v) = at_u.lines, at_v.lines
+    matches = labels.match(b_u, b_v), labels.match(a_u, a_v, period)
+    if all(len(found.one) for found in matches):
+        if not all(found.is_whole for found in matches):
+            for n, (one, other) in enumerate(((b_u, b_v), (a_u, a_v))):
+                kept = matches[n]
+                if len(kept.one) < max(len(one), len(other)):
+                    record(
+                        "align",
+                        f"{dims[0][n]}: {len(kept.one)} positions that {u.name} "
+                        f"({labels.text(one)}) and {v.name} ({labels.text(other)}) have in common",
+                        notable=True,
+                    )
+                elif not kept.is_whole:
+                    word = "reversed" if (np.diff(kept.other) < 0).all() else "reordered"
+                    record("align", f"{v.name}: {dims[1][n]} {word} to match {u.name}")
+        u = u.isel({d: as_slice(found.one) for d, found in zip(dims[0], matches, strict=True)})
+        v = v.isel({d: as_slice(found.other) for d, found in zip(dims[1], matches, strict=True)})
+        at = np.ix_(*(found.one for found in matches))
+        places = replace(at_u, a=at_u.a[at], b=at_u.b[at])
+        v = renamed(v, dict(zip(dims[1], dims[0], strict=True)), u)
+        return Grid(u, v, places, None, None, "both components at the same position")
+    if labels.is_between(b_u, b_v) and labels.is_between(a_v, a_u, period):
+        rows, columns = Sides.between(b_u, b_v, None), Sides.between(a_v, a_u, period)
+        if len(rows.cells) and len(columns.cells):
+            a, b = np.broadcast_arrays(a_v, b_u[:, None])
+            middle = replace(at_u, a=a, b=b, why=f"{at_u.why}, at the cell centres")
+            return _staggered(u, v, middle, rows, columns, "Arakawa C", record)
+    raise FieldError(_apart(u, v, at_u, at_v))
+
+
+def _apart(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places) -> str:
+    """Return the message for components at different places."""
+    texts = []
+    for array, places in ((u, at_u), (v, at_v)):
+        if places.is_line:
+            ends = [labels.text(line) for line in places.lines]
+        else:
+            ends = [
+                f"{np.nanmin(part):.6g} to {np.nanmax(part):.6g}" for part in (places.a, places.b)
+            ]
+        names = places.why.split(" and ")
+        pairs = zip(names, ends, strict=False)
+        texts.append(f"{array.name} at {', '.join(f'{n} {end}' for n, end in pairs)}")
+    return (
+        f"{u.name} and {v.name} lie at different positions: {texts[0]}; {texts[1]}. These are "
+        f"neither the same nor half a cell apart; bring one to the other, as with "
+        f"{v.name}.interp_like({u.name})"
+    )
+
+
+def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
+    """Return by how many rows and columns places lie behind others, if by the same everywhere."""
+    rows, columns = (min(pair) for pair in zip(at_u.a.shape, at_v.a.shape, strict=True))
+    if min(rows, columns) < 2:
+        return None
+    p, q = (
+        (at.on_sphere if at.is_earth else np.stack([at.a, at.b], axis=-1))[:rows, :columns]
+        for at in (at_u, at_v)
+    )
+    along, up, way = p[:-1, 1:] - p[:-1, :-1], p[1:, :-1] - p[:-1, :-1], (q - p)[:-1, :-1]
+    basis = np.stack([up, along], axis=-1)
+    square = np.swapaxes(basis, -1, -2) @ basis
+    right = (np.swapaxes(basis, -1, -2) @ way[..., None])[..., 0]
+    good = np.isfinite(square).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
+    good = np.asarray(good & (np.linalg.det(np.nan_to_num(square)) != 0))
+    if not good.any():
+        return None
+    cells = np.linalg.solve(square[good], right[good][..., None])[..., 0]
+    low, middle, high = np.percentile(cells, (5, 50, 95), axis=0)
+    return (float(middle[0]), float(middle[1])) if (high - low).max() < HALF else None
+
+
+def _own_places(
+    array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, drawn: Drawn
+) -> Places | None:
+    """Return the places of a variable by coordinates that have its own dimensions."""
+    own = {str(n): c for n, c in {**source.variables, **array.coords}.items()}
+    names = [n for n in own if n in source.variables and {*dims} & {*source[n].dims}]
+    if len(dims) < 2:
+        return None
+    foreign = {d for n in names for d in source[n].dims} - {*array.dims, *dims}
+    part = source[[n for n in names if not {*source[n].dims} & foreign]]
+    try:
+        return find_places(array, dims, [part], drawn, any_axes=False)
+    except FieldError:
+        return None
+
+
+def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Return the dataset that holds a variable."""
+    return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
+
+
+def _by_names(
+    u: xr.DataArray,
+    v: xr.DataArray,
+    cells: tuple[str, str],
+    datasets: Sequence[xr.Dataset],
+    drawn: Drawn,
+    record: Record,
+) -> Grid:
+    """Return a staggered grid by the names and sizes of its dimensions."""
+    (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
     counts = {
         "row": (v.sizes[row_v], u.sizes[row_u]),
         "column": (u.sizes[column_u], v.sizes[column_v]),
@@ -74,76 +336,60 @@ def find_grid(
         first_side(row_v, row_u, counts["row"], datasets),
         first_side(column_u, column_v, counts["column"], datasets),
     ]
-    places = _middle_places(pair, cells, firsts, datasets)
-    rows = Sides(firsts[0], *counts["row"])
-    wraps = counts["column"][0] == counts["column"][1] and _wraps(places)
-    columns = Sides(firsts[1], *counts["column"], wraps)
-    position = {0: "before", -1: "after"}[firsts[1]]
-    return (rows, columns), places, f"Arakawa C, sides {position} the middle"
-
-
-def _dataset_of(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Return the dataset that holds a variable."""
-    return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
-
-
-def _middle_places(
-    pair: Pair, cells: tuple[str, str], firsts: list[int], datasets: Sequence[xr.Dataset]
-) -> Places:
-    """Return places in the middle of the cells, from the data or as means of those on sides."""
-    inside = pair.u.isel({d: 0 for d in pair.u.dims if d not in cells})
+    other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
+    inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
     try:
-        return find_places(inside, cells, datasets)
+        places = find_places(inside, cells, datasets, drawn)
     except FieldError as error:
         try:
-            on_sides = find_places(pair.u, horizontal_dims(pair.u), datasets)
+            on_sides = find_places(u, horizontal_dims(u), datasets, drawn)
         except FieldError:
             raise error from None
-    count = pair.v.sizes[cells[1]]
-    sides = Sides(firsts[1], on_sides.a.shape[1], count)
-    return _moved(on_sides, sides)
+        count = v.sizes[column_v]
+        places = _moved(on_sides, Sides.counted(firsts[1], on_sides.a.shape[1], count), count)
+    rows = Sides.counted(firsts[0], *counts["row"])
+    wraps = counts["column"][0] == counts["column"][1] and _wraps(places)
+    columns = Sides.counted(firsts[1], *counts["column"], wraps=wraps)
+    position = {0: "before", -1: "after"}[firsts[1]]
+    words = f"Arakawa C, sides {position} the middle"
+    return _staggered(u, v, places, rows, columns, words, record)
 
 
-def _moved(places: Places, sides: Sides) -> Places:
-    """Return places between sides along a row; unknown ones are NaN."""
-    shape = (places.a.shape[0], sides.cells)
+def _moved(places: Places, sides: Sides, count: int) -> Places:
+    """Return places of this many cells between sides along a row; unknown ones are NaN."""
     if places.is_earth:
-        lonlat = Projection(GLOBE).lonlat(centred(places.on_sphere, 1, sides))
+        lonlat = Projection(GLOBE).lonlat(_mean(places.on_sphere, 1, sides))
     else:
-        lonlat = centred(places.a, 1, sides), centred(places.b, 1, sides)
-    a, b = np.full(shape, np.nan), np.full(shape, np.nan)
-    a[:, sides.known], b[:, sides.known] = lonlat
+        lonlat = _mean(places.a, 1, sides), _mean(places.b, 1, sides)
+    a, b = (np.full((places.a.shape[0], count), np.nan) for _ in range(2))
+    a[:, sides.cells], b[:, sides.cells] = lonlat
     return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, at the cell centres")
 
 
 def _nemo_places(
-    pair: Pair, cells: tuple[str, str], datasets: Sequence[xr.Dataset]
+    u: xr.DataArray,
+    v: xr.DataArray,
+    dims: tuple[tuple[str, ...], tuple[str, ...]],
+    datasets: Sequence[xr.Dataset],
+    drawn: Drawn,
+    *,
+    along_earth: bool,
 ) -> Places | None:
     """Return the places of NEMO's T points, where the components lie on the sides of cells."""
-    sources = [_dataset_of(array, datasets) for array in (pair.u, pair.v)]
+    if dims[0] != dims[1] or u.shape != v.shape:
+        return None
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
         of_t = next(ds for ds in datasets if "glamt" in ds.variables)
-        if not set(cells) <= set(of_t["glamt"].dims):  # of another model
+        if not {*dims[0]} <= {*of_t["glamt"].dims}:  # of another model
             return None
-        return find_places(of_t["glamt"], cells, [of_t[["glamt", "gphit"]]])
-    if sources[0] is sources[1] and pair.u.name != "vozocrtx":
+        return find_places(of_t["glamt"], dims[0], [of_t[["glamt", "gphit"]]], drawn)
+    if u.name != "vozocrtx" or along_earth:
         return None
-    try:
-        at_u, at_v = (
-            find_places(a, cells, [ds]) for a, ds in zip((pair.u, pair.v), sources, strict=True)
-        )
-    except FieldError:
+    at = [_own_places(a, dims[0], _source(a, datasets), drawn) for a in (u, v)]
+    if at[0] is None or at[1] is None or not at[0].is_earth or not at[0].is_near(at[1]):
         return None
-    if not at_u.is_earth or pair.along == "earth":
-        return None
-    if at_u.is_line and at_v.is_line:
-        same = np.allclose(at_u.a[0], at_v.a[0], atol=1e-6, equal_nan=True)
-    else:
-        same = np.allclose(at_u.a, at_v.a, atol=1e-6, equal_nan=True)
-    if not same:
-        return _moved(at_u, Sides(-1, at_u.a.shape[1], at_u.a.shape[1]))
-    return at_u if pair.u.name == "vozocrtx" else None
+    return at[0]
 
 
 def _wraps(places: Places) -> bool:
@@ -186,53 +432,8 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     return slice(0, max(top, 2)), slice(0, last)
 
 
-def sea_mask(shape: tuple[int, ...], datasets: Sequence[xr.Dataset]) -> xr.DataArray | None:
-    """Return a variable that is positive where there is data, (J, I); ``None`` without one."""
-    for ds in datasets:
-        for name in MASKS:
-            if name in ds.variables:
-                mask = ds[name]
-                mask = mask.isel({d: 0 for d in mask.dims[:-2]})
-                if mask.shape == tuple(shape):
-                    return mask
-    return None
-
-
 def _sizes(array: xr.DataArray) -> str:
     return " x ".join(f"{n} {d}" for d, n in array.sizes.items())
-
-
-@dataclass(frozen=True)
-class Sides:
-    """Sides of cells along an axis.
-
-    ``first`` is that of the module, ``sides`` and ``cells`` are counts; ``wraps`` where the axis
-    goes around the Earth.
-    """
-
-    first: int
-    sides: int
-    cells: int
-    wraps: bool = False
-
-    @property
-    def known(self) -> slice:
-        """The cells with a side before and after them."""
-        if self.wraps:
-            return slice(0, self.cells)
-        return slice(max(0, -self.first), min(self.cells, self.sides - self.first - 1))
-
-
-def centred(values: Floats, axis: int, sides: Sides) -> Floats:
-    """Return means of two sides at the known cells; a missing side, or NaN, is a wall."""
-    cells = np.arange(sides.cells)[sides.known]
-    before, after = cells + sides.first, cells + sides.first + 1
-    if sides.wraps:
-        before, after = before % sides.sides, after % sides.sides
-    one, other = np.take(values, before, axis=axis), np.take(values, after, axis=axis)
-    mean = (np.nan_to_num(one) + np.nan_to_num(other)) / 2
-    mean[np.isnan(one) & np.isnan(other)] = np.nan
-    return np.asarray(mean)
 
 
 def first_side(

@@ -15,22 +15,23 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.field.arrays import GridArrays, SectionAxes
 from flowtex.field.earth import DEGREE
 from flowtex.field.steps import LazySteps
+from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
     LEVEL,
-    PRESSURES,
     TIME,
     Choice,
     axis_kind,
-    drawn_steps,
-    sections,
+    choose,
+    is_pressure,
 )
-from flowtex.sources.datasets.coordinates import LATITUDE, LENGTHS, LONGITUDE
-from flowtex.sources.datasets.regions import numbers_in
-from flowtex.sources.datasets.select import plain_unit, to_metres_per_second, variable
-from flowtex.sources.notices import notify
+from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.datasets.select import variable, velocity_unit
+from flowtex.sources.datasets.values import numbers_in, read_step
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,16 +49,28 @@ def is_vertical(array: xr.DataArray) -> bool:
     return bool(WORDS.search(words) or (not words and NAMES.match(str(array.name))))
 
 
+def is_section(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> bool:
+    """Return whether the components that are named lie in a vertical section.
+
+    Axes of one kind without units, as in a laboratory, are those of a plane.
+    """
+    if u is None or v is None or not is_vertical(array := variable(datasets, v)):
+        return False
+    named = [c for c in array.coords.values() if c.dims and c.attrs.get("units")]
+    return bool(named) or "standard_name" in array.attrs
+
+
 def read_section(
     datasets: Sequence[xr.Dataset],
-    u: str,
-    v: str,
+    u: str | None,
+    v: str | None,
     *,
     name: str,
     sel: Mapping[str, Any],
     isel: Mapping[str, Any],
 ) -> GridArrays:
     """Read a vertical section, from the names of a component along it and a vertical one."""
+    u, v, record = str(u), str(v), Record()
     one, two = variable(datasets, u), variable(datasets, v)
     if set(one.dims) != set(two.dims):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
@@ -75,22 +88,24 @@ def read_section(
         .transpose(..., ROWS, COLUMNS)
         for a in (one, two)
     ]
-    parts = sections(flat, choice)
-    for note in parts[0].notes:
-        notify(note)
-    metres = to_metres_per_second(one) or 1.0
-    x, x_factor, x_text = _horizontal(across, parts[0].array)
+    first, second = align(flat[0], flat[1], choice, record)
+    drawn = choose(first, choice, record)
+    parts = drawn.of(first), drawn.of(second)
+    record.notify()
+    unit = velocity_unit(one)
+    metres = (units.factor(unit, "m/s") if unit else None) or 1.0
+    x, x_factor, x_text = _horizontal(across, parts[0])
     y, y_factor, y_text = _vertical(up, two)
-    times, numbers = drawn_steps(parts[0], flat[0])
+    count = drawn.steps
 
     def component(number: int) -> Callable[[int], Floats]:
-        return lambda step: numbers_in(parts[number].step(numbers[step]))
+        return lambda step: read_step(parts[number].variable, step)
 
     def velocity(step: int) -> Floats:
         a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
         return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
-    velocities = LazySteps(len(numbers), velocity)
+    velocities = LazySteps(count, velocity)
     scalars = {
         # The axes have different units, so a speed along both has none.
         "speed": lambda step: np.abs(component(0)(step)) * metres,
@@ -99,12 +114,13 @@ def read_section(
     }
     return GridArrays(
         points=np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1),
-        velocity=velocities if len(numbers) > 1 else velocities[0],
-        times=times,
-        scalars={key: LazySteps(len(numbers), read) for key, read in scalars.items()},
+        velocity=velocities if count > 1 else velocities[0],
+        times=drawn.times,
+        reading=record.reading,
+        scalars={key: LazySteps(count, read) for key, read in scalars.items()},
         name=name,
         time_unit="s",
-        units={"speed": "m/s", u: str(one.attrs.get("units", "")), v: str(two.attrs["units"])},
+        units={"speed": "m/s", u: unit, v: str(two.attrs["units"])},
         long_names={"speed": "speed along the section"},
         periodic="",
         section=SectionAxes(x_text, y_text, downward=_is_downward(up)),
@@ -157,24 +173,25 @@ def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, floa
             )
             raise FieldError(msg)
         return values, 1 / (DEGREE * math.cos(math.radians(float(latitudes[0])))), "longitude (°)"
-    if unit not in LENGTHS:
-        expected = f"degrees, {', '.join(LENGTHS)}"
-        msg = f"the unit of {across.name} is {unit!r}; expected {expected}: set its units"
+    length = units.factor(unit, "m")
+    if length is None:
+        msg = (
+            f"the unit of {across.name} is {unit!r}; expected degrees, or one of length such as m "
+            "or km: set its units"
+        )
         raise FieldError(msg)
-    return values, 1 / LENGTHS[unit], f"{across.name} ({unit})"
+    return values, 1 / length, f"{across.name} ({unit})"
 
 
 def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
     """Return levels, the factor of the velocity to their unit per second, and the axis's text."""
-    unit, moves = str(up.attrs.get("units", "")), plain_unit(w)
+    unit, moves = str(up.attrs.get("units", "")), str(w.attrs.get("units", ""))
     text = f"{up.attrs.get('long_name', up.name)} ({unit})"
-    if unit in LENGTHS and (metres := to_metres_per_second(w)) is not None:
+    factor = units.factor(moves, f"({unit})/s")
+    if factor is not None and units.measures(unit, units.LENGTHS):
         downward = _is_downward(up) != ("downward" in str(w.attrs.get("standard_name", "")))
-        return numbers_in(up), (-1 if downward else 1) * metres / LENGTHS[unit], text
-    pressure, _, time = moves.partition("/")
-    if unit.lower() in PRESSURES and pressure in PRESSURES and time in ("s", "day"):
-        seconds = 86400.0 if time == "day" else 1.0
-        factor = PRESSURES[pressure] / PRESSURES[unit.lower()] / seconds
+        return numbers_in(up), -factor if downward else factor, text
+    if factor is not None and units.measures(unit, units.PRESSURES):
         return numbers_in(up), factor, text
     msg = (
         f"{up.name} is in {unit!r} and {w.name} in {str(w.attrs.get('units', ''))!r}; expected m "
@@ -188,5 +205,4 @@ def _is_downward(up: xr.DataArray) -> bool:
     positive = str(up.attrs.get("positive", "")).lower()
     if positive in ("up", "down"):
         return positive == "down"
-    is_pressure = str(up.attrs.get("units", "")).lower() in PRESSURES
-    return is_pressure or (str(up.name).lower().startswith("depth") and float(up.max()) > 0)
+    return is_pressure(up) or (str(up.name).lower().startswith("depth") and float(up.max()) > 0)

@@ -11,12 +11,11 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
-from flowtex.field.units import LENGTHS, factor, measures
 from flowtex.sources.datasets.axes import FACES, NODES
-from flowtex.sources.datasets.coordinates import DEGREES
 from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.models.points import join_points
 
@@ -68,9 +67,9 @@ class Mesh:
     def is_earth(self) -> bool:
         """Whether the coordinates are longitude and latitude, and not those of a plane."""
         unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
-        if DEGREES.match(unit) or RADIANS.match(unit):
+        if units.is_angle(unit):
             return True
-        if measures(unit, LENGTHS):
+        if units.measures(unit, units.LENGTHS):
             return False
         description = str(self.x.attrs.get("standard_name", "")) or name
         if "projection" in description:
@@ -83,11 +82,9 @@ class Mesh:
 
     @property
     def unit(self) -> str:
-        """Unit of positions in a plane: metres for all lengths; empty where none is known."""
-        if self.is_earth:
-            return ""
+        """Unit of positions in a plane; empty where unknown."""
         unit = str(self.x.attrs.get("units", ""))
-        return "m" if factor(unit, "m") else unit if measures(unit, LENGTHS) else ""
+        return units.symbol(unit) if units.measures(unit, units.LENGTHS) else ""
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
@@ -111,10 +108,7 @@ class Mesh:
             if radians:
                 a, b = np.degrees(a), np.degrees(b)
         else:
-            a, b = (
-                values * (factor(str(c.attrs.get("units", "")), "m") or 1.0)
-                for values, c in ((a, self.x), (b, self.y))
-            )
+            b = b * (units.factor(str(self.y.attrs.get("units", "")), self.unit) or 1.0)
         if self.kind == POINTS:
             positions = _positions(a, b, self.is_earth)
             return a, b, join_points(positions, on_sphere=self.is_earth)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flowtex._util.arguments import brief
 from flowtex._util.extras import import_extra
@@ -16,12 +16,9 @@ from flowtex.errors import FieldError
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
-from flowtex.sources.opening.series import are_steps, joined, of_tree
+from flowtex.sources.opening.series import Opened, are_steps, of_tree
 from flowtex.sources.opening.tables import read_csv, read_vec
 from flowtex.sources.opening.wind_json import read_winds
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json", ".geojson")
@@ -30,28 +27,6 @@ TABLES = {".csv": read_csv, ".vec": read_vec}
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 #: The newest Python for which the wheels of eccodes have its library.
 ECCODES_UNTIL = (3, 13)
-
-
-class OpenDatasets(list["xr.Dataset"]):
-    """Datasets of files, which can be closed as often as one likes.
-
-    Arrays that are not read yet stay valid, as xarray opens a closed file for the next reading.
-    """
-
-    def __init__(self, datasets: Iterable[xr.Dataset], opened: Iterable[Any] = ()) -> None:
-        super().__init__(datasets)
-        # The method close of a dataset forgets how to close it.
-        self._closers = [part._close for part in opened if part._close is not None]
-
-    def joined(self, others: Sequence[OpenDatasets]) -> OpenDatasets:
-        """Return the same datasets, which close the files of others."""
-        self._closers += [close for other in others for close in other._closers]
-        return self
-
-    def close(self) -> None:
-        """Close the files, so that other programs can replace them."""
-        for close in self._closers:
-            close()
 
 
 def is_dataset_file(path: Path) -> bool:
@@ -98,17 +73,14 @@ def belong_together(paths: Sequence[Path]) -> bool:
     return series or not all(find_pairs(parts) for parts in opened)
 
 
-def open_datasets(paths: Sequence[Path]) -> OpenDatasets:
+def open_datasets(paths: Sequence[Path]) -> Opened:
     """Open files that belong together: parts of one model's output, or steps of a series."""
     opened = [open_files(path) for path in paths]
-    if len(opened) == 1:
-        return opened[0]
-    parts = [ds for datasets in opened for ds in datasets]
-    series = len(parts) == len(opened) and are_steps(parts)
-    return OpenDatasets([joined(parts)] if series else parts).joined(opened)
+    parts = (ds for datasets in opened for ds in datasets)
+    return Opened(parts, [close for datasets in opened for close in datasets.closers])
 
 
-def open_files(path: Path) -> OpenDatasets:
+def open_files(path: Path) -> Opened:
     """Open one file; GRIB has a dataset for each group of messages with common axes."""
     xarray = import_extra("xarray", "xarray")
     # Its library must be loaded before those of other readers, which contain another PROJ.
@@ -119,12 +91,12 @@ def open_files(path: Path) -> OpenDatasets:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:
-            return OpenDatasets([read_winds(path)])
+            return Opened([read_winds(path)])
         if suffix in TABLES:
-            return OpenDatasets([TABLES[suffix](path)])
+            return Opened([TABLES[suffix](path)])
         if suffix in GRIB:
             parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
-            return OpenDatasets(parts, parts)
+            return Opened.of(parts, parts)
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
@@ -138,13 +110,13 @@ def open_files(path: Path) -> OpenDatasets:
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
-            return OpenDatasets([ds], [ds])
+            return Opened.of([ds], [ds])
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             msg = f"the group {group!r} does not exist; expected {groups}"
             raise FieldError(msg)
-        return OpenDatasets([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
+        return Opened.of([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
 
 
 def import_cfgrib() -> Any:

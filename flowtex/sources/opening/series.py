@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,10 +15,14 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
+from flowtex.field import units
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.axes import as_slice
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.opening.components import split_components
 from flowtex.sources.opening.tables import as_dataset
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,26 +34,81 @@ DAYS_AS_NUMBERS = "%Y%m%d"
 
 
 class Datasets(list["xr.Dataset"]):
-    """Datasets whose axes cf_xarray recognises, with times as dates."""
+    """Datasets whose axes cf_xarray recognises, with times as dates.
+
+    ``opened`` close the files that flowtex opened, after each read.
+    """
+
+    def __init__(self, items: Iterable[xr.Dataset] = (), *, opened: Any = ()) -> None:
+        super().__init__(items)
+        self.opened = tuple(opened)
+
+    def close(self) -> None:
+        """Close the files; a later read opens them again."""
+        for close in self.opened:
+            close()
 
 
-def as_datasets(data: Any) -> Datasets:
+class Opened(list["xr.Dataset"]):
+    """Datasets of files that flowtex has opened, and functions that close these."""
+
+    def __init__(
+        self, items: Iterable[xr.Dataset], closers: Iterable[Callable[[], None]] = ()
+    ) -> None:
+        super().__init__(items)
+        self.closers = tuple(closers)
+
+    @classmethod
+    def of(cls, items: Iterable[xr.Dataset], parts: Iterable[Any]) -> Opened:
+        """Return datasets, with the functions that close the datasets and nodes of trees.
+
+        The method ``close`` of a dataset works only once, but xarray opens a file for each read.
+        """
+        return cls(items, [part._close for part in parts if part._close is not None])
+
+
+def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     """Return datasets of xarray's with recognised axes, which takes long at first.
 
-    Steps of a series become one dataset, and a tree the dataset of its group with a velocity.
+    Steps of a series, and regions beside each other, become one dataset, and a tree the dataset of
+    its group with a velocity.
     """
     if isinstance(data, Datasets):
         return data
-    xarray = import_extra("xarray", "xarray")
+    xarray, record = import_extra("xarray", "xarray"), record or Record()
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
         part = of_tree(ds) if isinstance(ds, xarray.DataTree) else as_dataset(ds, several=several)
         result.append(split_components(_decoded(part)))
-    if len(result) > 1 and are_steps(result) and _times_differ(result):
-        with suppress(FieldError):  # such as domains of different sizes
-            result = [joined(result)]
-    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]))
+    groups: dict[frozenset[Any], list[xr.Dataset]] = {}
+    for ds in result:
+        groups.setdefault(frozenset(ds.data_vars), []).append(ds)
+    result = [ds for group in groups.values() for ds in _together(group, record)]
+    opened = data.closers if isinstance(data, Opened) else ()
+    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), opened=opened)
+
+
+def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
+    """Join datasets of the same variables: steps of one series, or regions beside each other."""
+    if len(group) < 2 or not any(array.ndim > 1 for array in group[0].data_vars.values()):
+        return group
+    if _times_differ(group):
+        try:
+            return [joined(group, record)]
+        except FieldError:  # such as domains of different sizes
+            return group
+    xarray = import_extra("xarray", "xarray")
+    lines = [{d: ds.indexes[d] for d in ds.dims if d in ds.indexes} for ds in group]
+    axes = [d for d in lines[0] if any(not lines[0][d].equals(o.get(d, [])) for o in lines[1:])]
+    if not axes or any(lines[0].keys() != other.keys() for other in lines[1:]):
+        return group
+    try:
+        whole = xarray.combine_by_coords(_chunked([ds.sortby(axes) for ds in group]))
+    except (ValueError, KeyError):  # such as regions that overlap
+        return group
+    record("select", f"{len(group)} regions joined along {' and '.join(map(str, axes))}")
+    return [whole]
 
 
 def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:
@@ -87,20 +146,20 @@ def _decoded(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _dated(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset with dates along its axis of time, if other variables or units have them."""
-    for name in LETTERS:
+    """Return a dataset with dates along its axis of time, if texts or numbers have them."""
+    for name in (*LETTERS, *(n for n, c in ds.coords.items() if c.dims == (n,))):
         if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
             continue
         dim = str(ds[name].dims[0])
+        rows = ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
         texts = [
-            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0")
-            for row in (ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values))
+            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0") for row in rows
         ]
         try:
             dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
         except ValueError:
             continue
-        if ds.sizes[dim] == len(dates) and not np.isnat(dates).any():
+        if ds.sizes[dim] == len(dates):
             return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
     for axis in ds.dims:
         line = ds.coords.get(axis)
@@ -126,10 +185,10 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:
-    """Return whether no two of several datasets have a time in common."""
+    """Return whether several datasets have times, and none has the same as another."""
     name = _time_axis(datasets)
     times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in datasets]
-    texts = [str(time) for line in times for time in line]
+    texts = [tuple(map(str, line)) for line in times]
     return all(map(len, times)) and len(set(texts)) == len(texts)
 
 
@@ -145,9 +204,9 @@ def are_steps(datasets: Sequence[xr.Dataset]) -> bool:
     return len(same) == 1 and bool(find_pairs([datasets[0]]))
 
 
-def joined(datasets: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Join steps of a series in the order of their times."""
-    xarray = import_extra("xarray", "xarray")
+def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
+    """Join steps of a series in the order of their times, on the positions that all have."""
+    xarray, record = import_extra("xarray", "xarray"), record or Record()
     datasets = [_decoded(ds) for ds in datasets]
     name = _time_axis(datasets)
     dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
@@ -157,16 +216,14 @@ def joined(datasets: Sequence[xr.Dataset]) -> xr.Dataset:
             ds.assign_coords({name: [d]}) if name in ds.dims else ds
             for ds, d in zip(datasets, dates, strict=True)
         ]
-    if find_spec("dask") is not None:
-        # Otherwise joining reads all data.
-        datasets = [ds.chunk() for ds in datasets]
+    datasets = _alike(datasets, name, record)
     try:
         series: xr.Dataset = xarray.concat(
-            datasets,
+            _chunked(datasets),
             dim=name,
-            data_vars="minimal",
-            coords="minimal",
-            compat="override",
+            data_vars="different",
+            coords="different",
+            compat="equals",
             join="exact",
         ).sortby(name)
         return series
@@ -175,6 +232,38 @@ def joined(datasets: Sequence[xr.Dataset]) -> xr.Dataset:
             f"the files are not steps of one series: {error}. Give only files that belong together"
         )
         raise FieldError(msg) from error
+
+
+def _chunked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Return datasets of arrays that are joined without reading all data, where Dask is present."""
+    return [ds.chunk() for ds in datasets] if find_spec("dask") is not None else datasets
+
+
+def _alike(datasets: list[xr.Dataset], name: str, record: Record) -> list[xr.Dataset]:
+    """Return steps of a series on the labels that all have along each axis, in one order."""
+    for dim in map(str, datasets[0].dims):
+        if dim == name or dim not in datasets[0].indexes:
+            continue
+        lines = [np.asarray(ds[dim].values) for ds in datasets if dim in ds.indexes]
+        if len(lines) < len(datasets):
+            continue
+        degrees = units.is_angle(str(datasets[0][dim].attrs.get("units", "")))
+        period = 360.0 if degrees and lines[0].dtype.kind in "fiu" else None
+        kept = lines[0]
+        for line in lines[1:]:
+            kept = kept[labels.match(kept, line, period).one]
+        if not len(kept):
+            continue
+        if len(kept) < max(map(len, lines)):
+            text = f"{dim}: {len(kept)} values that all steps have in common"
+            record("align", text, notable=True)
+        parts = []
+        for ds, line in zip(datasets, lines, strict=True):
+            found = labels.match(kept, line, period).other
+            part = ds.isel({dim: as_slice(found)}) if not np.array_equal(line, kept) else ds
+            parts.append(part.assign_coords({dim: (dim, kept, datasets[0][dim].attrs)}))
+        datasets = parts
+    return datasets
 
 
 def _dates_in_names(paths: Sequence[Path]) -> list[np.datetime64] | None:

@@ -211,10 +211,8 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
             "expected degrees",
         ),
         (
-            lambda ds: ds.assign_coords(
-                lon=("lon", np.random.default_rng(1).permutation(ds.lon), ds.lon.attrs)
-            ),
-            "lon increases and decreases.*sortby",
+            lambda ds: ds.assign_coords(lon=("lon", np.roll(ds.lon, 1) // 2, ds.lon.attrs)),
+            "lon increases and decreases.*drop_duplicates",
         ),
         (_nameless, "Name the components, as in u="),
         (_unplaced, "no variable has two axes.*If cell is the axis"),
@@ -254,8 +252,8 @@ def test_units_are_those_of_velocities_and_the_same() -> None:
 def test_a_pair_in_another_unit_is_told_of() -> None:
     ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
     for name in "uv":
-        ds[name].attrs = {"units": "furlong/day"}
-    with pytest.raises(FieldError, match=r"^the unit of 'u' is 'furlong/day', which is not a unit"):
+        ds[name].attrs = {"units": "furlong"}
+    with pytest.raises(FieldError, match=r"^the unit of 'u' is 'furlong', which is not a unit"):
         FlowField.from_xarray(ds)
 
 
@@ -265,7 +263,7 @@ def test_a_region_is_cut_from_the_dataset() -> None:
         FieldError, match=r"'lon' is an axis of the surface.* as in data\.sel\(lon="
     ):
         FlowField.from_xarray(ds, sel={"lon": slice(5, 9)})
-    with pytest.raises(FieldError, match=r"the axis may run the other way: slice\(high, low\)$"):
+    with pytest.raises(FieldError, match=r"the axis may run the other way: slice\(high, low\)"):
         FlowField.from_xarray(ds.sel(lat=slice(45, 50)))
 
 

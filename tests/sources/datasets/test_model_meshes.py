@@ -21,9 +21,10 @@ from flowtex.field.earth import EARTH_RADIUS
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.sources.dataset_source import DatasetSource
-from flowtex.sources.datasets.read import recognise
+from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.opening.series import as_datasets
+from flowtex.sources.record import Record
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -41,7 +42,7 @@ def test_the_turning_earth_is_what_every_convention_has(name: str) -> None:
     field = FlowField.from_xarray(build(mesh), globe=True)
     assert field.shape == (1, 600) and field.triangles is not None and field.valid.all()
     assert len(field.triangles) == len(mesh.triangles) == 2 * 600 - 4
-    assert field.length_unit == "m" and field.surface.on_globe
+    assert field.length_unit == "km" and field.surface.on_globe
     assert faults(field).max() < (1e-6 if exact else 0.04) * RATE
     # The surface is closed: each triangle has three others beside it.
     assert isinstance(field.surface, TriangleSurface)
@@ -82,8 +83,8 @@ def test_the_levels_of_icon_count_down_and_its_dates_are_numbers() -> None:
     field = FlowField.from_xarray(icon(globe(200)), globe=True)
     assert str(field.start).startswith("2024-01-01 12:00") or "12:00" in str(field.start)
     (ds,) = mpas(globe(200))
-    known = recognise(ds)
-    assert known.pair.u.name == "uReconstructZonal" and "2024-01-01T06" in str(known.u.times)
+    known = read_flow(ds, None, None, Record())
+    assert known.pair.u.name == "uReconstructZonal" and "2024-01-01T06" in str(known.drawn.times)
 
 
 def test_scalars_at_nodes_and_in_faces() -> None:
@@ -163,11 +164,12 @@ def lake(**attrs: str) -> xr.Dataset:
 
 def test_mixed_polygons_in_a_plane_keep_their_components() -> None:
     field = FlowField.from_xarray(lake())
-    assert field.projection is None and field.length_unit == "m"
+    assert field.projection is None and field.length_unit == "km"
     assert field.shape == (1, 30) and field.triangles is not None and len(field.triangles) == 40
-    assert np.ptp(field.points[0], axis=0).tolist() == [5000.0, 4000.0, 0.0]
-    inside = (field.points[0, :, 1] > 1500) & (field.points[0, :, 1] < 3500)
-    assert np.allclose(field.velocity[0, 0, inside, 0], field.points[0, inside, 1] / 1000)
+    assert np.ptp(field.points[0], axis=0).tolist() == [5.0, 4.0, 0.0]
+    inside = (field.points[0, :, 1] > 1.5) & (field.points[0, :, 1] < 3.5)
+    assert np.allclose(field.speed[0, 0, inside], field.points[0, inside, 1])
+    assert field.unit_of("speed") == "m/s"
     assert np.allclose(field.velocity[0, 0, :, 1:], 0)
 
 

@@ -17,6 +17,7 @@ from flowtex.errors import FieldError
 from flowtex.scene.options import Options
 from flowtex.settings import SettingsError
 from flowtex.sources.dataset_source import open_source
+from flowtex.sources.notices import DatasetNotice
 
 pytest.importorskip("netCDF4")
 
@@ -73,10 +74,13 @@ def test_a_unit_is_read_by_any_name(key: str) -> None:
     assert slow == pytest.approx(fast / 100)
 
 
-def test_domains_of_other_sizes_are_not_joined() -> None:
+def test_steps_are_joined_on_the_positions_that_all_have() -> None:
     one, other = days(2, units="days since 2001-01-01")
-    field = FlowField.from_xarray([one, other.isel(lon=slice(1, None))])
-    assert field.steady
+    with pytest.warns(DatasetNotice, match="lon: 9 values that all steps have in common"):
+        field = FlowField.from_xarray([one, other.isel(lon=slice(1, None))])
+    assert len(field.times) == 2 and field.shape == (8, 9)
+    turned = [one, other.isel(lat=slice(None, None, -1))]
+    assert same(FlowField.from_xarray([one, other]), FlowField.from_xarray(turned))
 
 
 def test_groups_are_chosen_by_path(tmp_path: Path) -> None:

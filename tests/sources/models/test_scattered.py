@@ -13,9 +13,11 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
-from flowtex.sources.datasets.read import recognise
+from flowtex.field.units import factor
+from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.models.healpix import healpix_centres
 from flowtex.sources.models.points import join_points
+from flowtex.sources.record import Record
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -290,7 +292,7 @@ def test_missing_positions_are_left_out() -> None:
 
 
 def test_grid_is_described() -> None:
-    known = recognise(along(*reduced()))
+    known = read_flow(along(*reduced()), None, None, Record())
     assert known.grid == "1,600 points joined by 3,196 triangles; velocity at nodes"
 
 
@@ -315,11 +317,12 @@ def test_levels_and_times_of_points() -> None:
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("mm", 1e-3), ("km", 1e3), ("inch", 0.0254)])
-def test_lengths_of_meshes_are_metres(unit: str, metres: float) -> None:
+def test_points_keep_the_unit_of_x(unit: str, metres: float) -> None:
     x, y = RANDOM.uniform(0, 9, (2, 200))
     ds = xr.Dataset(
         {name: ("p", x, {"units": "m/s"}) for name in "uv"},
-        {name: ("p", c, {"units": unit}) for name, c in (("x", x), ("y", y))},
+        {"x": ("p", x, {"units": unit}), "y": ("p", y * metres, {"units": "m"})},
     )
     field = FlowField.from_xarray(ds)
-    assert field.length_unit == "m" and np.allclose(field.points[0, :, 0], x * metres)
+    assert np.allclose(field.points[0, :, :2], np.stack([x, y], axis=-1))
+    assert factor(field.length_unit, "m") == pytest.approx(metres)

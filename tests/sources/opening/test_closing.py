@@ -12,6 +12,7 @@ from earth_data import winds
 
 from flowtex import FlowField
 from flowtex.sources.opening.dataset_files import open_datasets
+from flowtex.sources.opening.series import as_datasets
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice"),
@@ -35,7 +36,7 @@ def test_files_are_closed_and_read_again(tmp_path: Path, engine: Any) -> None:
     path = tmp_path / "run.nc"
     ds = data()
     ds.to_netcdf(path, engine=engine)
-    opened = open_datasets([path])
+    opened = as_datasets(open_datasets([path]))
     field = FlowField.from_xarray(opened, globe=True)
     for step in (0, 2, 1):
         opened.close()
@@ -56,7 +57,7 @@ def test_groups_and_series_are_closed(tmp_path: Path) -> None:
     for n, path in enumerate(steps):
         data().isel(time=[n]).to_netcdf(path)
     for paths in ([tree], [tree / "ocean"], steps):
-        opened = open_datasets(paths)
+        opened = as_datasets(open_datasets(paths))
         opened.close()
         assert opened[0]["u"].isel(time=1).values.any()
         assert any(map(is_open, (tree, *steps)))

@@ -1,0 +1,134 @@
+"""Alignment of the second component, and of further variables, with the first one by labels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flowtex._util.arguments import is_number
+from flowtex._util.array_types import AnyArray
+from flowtex.errors import FieldError
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.axes import (
+    LEVEL,
+    TIME,
+    Choice,
+    as_slice,
+    axis_kind,
+    further_axes,
+    is_dates,
+    line_of,
+)
+from flowtex.sources.record import Record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def align(
+    u: xr.DataArray, v: xr.DataArray, choice: Choice, record: Record
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return two components with the same axes beside those of the surface, by their labels.
+
+    Labels that one of them lacks are left out. Both then have the names of the first.
+    """
+    axes = [further_axes(array) for array in (u, v)]
+    for kind in [k for k in (*axes[0], *axes[1]) if (k in axes[0]) != (k in axes[1])]:
+        n = 0 if kind in axes[0] else 1
+        array = (u, v)[n]
+        dim = axes[n].pop(kind)
+        if array.sizes[dim] != 1:
+            listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (u, v))
+            msg = f"the components have different axes: {listed}. Select along these axes first"
+            raise FieldError(msg)
+        u, v = (array.isel({dim: 0}), v) if n == 0 else (u, array.isel({dim: 0}))
+    _check_scalars(u, v)
+    for kind, dim in axes[0].items():
+        other = axes[1][kind]
+        indexes = u.indexes.get(dim), v.indexes.get(other)
+        if dim == other and indexes[0] is not None and indexes[0].equals(indexes[1]):
+            continue
+        lines = line_of(u, dim), line_of(v, other)
+        if lines[0] is not None and lines[1] is not None:
+            found = common(u, v, dim, lines[0], lines[1], record)
+            kept = lines[0][found.one]
+            for line in (lines[0], lines[1]):
+                _check_choice(choice, (dim, kind), line, kept)
+            u, v = u.isel({dim: as_slice(found.one)}), v.isel({other: as_slice(found.other)})
+        elif u.sizes[dim] != v.sizes[other]:
+            msg = (
+                f"{u.name} has {u.sizes[dim]} values along {dim} and {v.name} has "
+                f"{v.sizes[other]} along {other}, without coordinates to align them by; add these, "
+                f"as in ds.assign_coords({dim}=...)"
+            )
+            raise FieldError(msg)
+        v = renamed(v, {other: dim}, u)
+    return u, v
+
+
+def _check_choice(choice: Choice, names: tuple[str, str], line: AnyArray, kept: AnyArray) -> None:
+    """Raise for the choice of a label that only one of the components has."""
+    for name in names:
+        target = choice.sel.get(name)
+        if target is None or not is_number(target) or line.dtype.kind not in "fiu":
+            continue
+        wanted = np.array([float(target)])
+        if len(labels.match(wanted, line).one) and not len(labels.match(wanted, kept).one):
+            msg = (
+                f"only one of the components has the {name} {target}; both have {labels.text(kept)}"
+            )
+            raise FieldError(msg)
+
+
+def common(
+    u: xr.DataArray, v: xr.DataArray, dim: str, one: AnyArray, other: AnyArray, record: Record
+) -> labels.Match:
+    """Return the labels that two variables have in common, and record those that are left out."""
+    found = labels.match(one, other)
+    if not len(found.one):
+        msg = (
+            f"{u.name} and {v.name} have no {dim} in common: {u.name} has {labels.text(one)}, and "
+            f"{v.name} {labels.text(other)}. Give both at the same {dim}, as with "
+            f"ds.interp({dim}=...)"
+        )
+        raise FieldError(msg)
+    for array, line in ((u, one), (v, other)):
+        if len(found.one) < len(np.unique(line[line == line])):
+            record(
+                "align",
+                f"{dim}: {len(line) - len(found.one)} of {len(line)} of {array.name} are left out, "
+                "as only one component has them",
+                notable=True,
+            )
+    if len(found.other) > 1 and (np.diff(found.other) < 0).all():
+        record("align", f"{v.name}: {dim} reversed to match {u.name}")
+    return found
+
+
+def renamed(array: xr.DataArray, names: dict[str, str], like: xr.DataArray) -> xr.DataArray:
+    """Return a variable with other names of dimensions, and the labels of another variable."""
+    dims = {one: other for one, other in names.items() if one != other}
+    clash = [n for n in (*dims.values(), *names) if n in array.coords]
+    array = array.drop_vars(clash).rename(dims)
+    lines = {
+        name: c for name, c in like.coords.items() if c.ndim == 1 and c.dims[0] in names.values()
+    }
+    return array.drop_vars([n for n in lines if n in array.coords]).assign_coords(lines)
+
+
+def _check_scalars(u: xr.DataArray, v: xr.DataArray) -> None:
+    """Raise for components that were selected at different times or levels."""
+    for name, one in u.coords.items():
+        other = v.coords.get(name)
+        if one.ndim or other is None or other.ndim or name in (*u.dims, *v.dims):
+            continue
+        is_choice = is_dates(one) or axis_kind(u, str(name)) in (TIME, LEVEL)
+        values = np.atleast_1d(one.values), np.atleast_1d(other.values)
+        known = (values[0] == values[0]).all()
+        if is_choice and known and not len(labels.match(values[0], values[1]).one):
+            msg = (
+                f"{u.name} is at {name} {labels.text(values[0])} and {v.name} at "
+                f"{labels.text(values[1])}; give both at the same {name}"
+            )
+            raise FieldError(msg)

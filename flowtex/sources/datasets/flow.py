@@ -1,0 +1,323 @@
+"""The velocity of a dataset: which variables, how their values are read, and where they lie."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import FieldError
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.align import align
+from flowtex.sources.datasets.axes import (
+    NODES,
+    Choice,
+    Drawn,
+    axis_direction,
+    choose,
+    horizontal_dims,
+)
+from flowtex.sources.datasets.components import Orientation, component_units, orientation
+from flowtex.sources.datasets.coordinates import Places, ordered
+from flowtex.sources.datasets.masks import (
+    Mask,
+    find_masks,
+    is_constant,
+    moves_over_land,
+    valid_range,
+)
+from flowtex.sources.datasets.select import POLAR, Pair, choose_pair
+from flowtex.sources.datasets.staggered import Grid, find_grid, unrepeated
+from flowtex.sources.datasets.values import Component, Values, read_step
+from flowtex.sources.fill import undeclared_fill
+from flowtex.sources.models.conventions import find_mesh
+from flowtex.sources.models.mesh import POINTS, Mesh
+from flowtex.sources.models.scattered import check_faces
+from flowtex.sources.opening.series import Datasets, as_datasets
+from flowtex.sources.record import Record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Share of nodes at rest from which on those of a staggered grid count as land.
+LAND_SHARE = 0.01
+#: Values of a step that are examined, and lines of each of the nine parts of larger ones.
+MOST_EXAMINED, PART_LINES = 4_000_000, 200
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """A velocity of a dataset: how its values are read, and where they lie."""
+
+    pair: Pair  #: The two variables, with the axes that are drawn: ([time], ...).
+    drawn: Drawn
+    grid: str  #: The kind of grid, as text.
+    places: Places  #: Nodes in the middle of cells.
+    values: Values
+    unit: str  #: Unit of the components; empty where unknown.
+    orientation: Orientation
+    cells: tuple[str, ...]  #: Dimensions of the nodes.
+    datasets: Datasets
+    record: Record
+    ahead: tuple[int, int] = (1, 1)  #: Directions of rows and columns, 1 or -1.
+    trimmed: tuple[slice, ...] = ()  #: Rows and columns that repeat no others.
+    mesh: Mesh | None = None
+    staggered: bool = False
+    mean: Callable[[int], tuple[Floats, Floats]] | None = None  #: Of the members of an ensemble.
+
+    def components(self, step: int) -> tuple[Floats, Floats]:
+        """Return the components eastward and northward, or along x and y, in :attr:`unit`."""
+        if self.mean is not None:
+            return self.mean(step)
+        u, v = self.values.read(step)
+        self.datasets.close()
+        if self.mesh is not None:
+            return self.mesh.vectors_at_nodes(u, v, self.cells[0])
+        u, v = u[self.trimmed], v[self.trimmed]
+        if self.orientation.along != "grid" or self.places.is_line:
+            return u, v
+        return self.places.turned(self.ahead, u, v)
+
+    def at_nodes(self, values: Floats, dim: str = "") -> Floats:
+        """Return values of another variable, in the middle of all cells, at the nodes."""
+        if self.mesh is not None:
+            return self.mesh.at_nodes(values, dim)
+        return np.asarray(self.values.at_cells(values)[self.trimmed])
+
+    def beside(self, array: xr.DataArray) -> xr.DataArray | None:
+        """Return the drawn part of another variable at the nodes; ``None`` where it lies elsewhere.
+
+        Its labels decide; a variable without coordinates must have the dimensions of the nodes.
+        """
+        try:
+            part = self.drawn.of(array)
+        except FieldError:
+            return None
+        series = part.ndim > len(surface := horizontal_dims(part))
+        if series and part.shape[0] != self.drawn.steps:
+            return None
+        if self.mesh is not None:
+            return part if {NODES, *self.cells} & set(surface) else None
+        if len(surface) < 2:
+            return None
+        at: list[Any] = []
+        period = 360.0 if self.places.is_earth else None
+        for n, (dim, cell) in enumerate(zip(surface, self.cells, strict=True)):
+            line = part.coords.get(dim)
+            is_line = line is not None and line.dtype.kind in "fiu" and self.places.is_line
+            if line is not None and is_line and not self.staggered:
+                own = np.asarray(line.values, dtype=float)
+                wanted = self.places.lines[1 - n]
+                found = labels.match(wanted, own, period if n else None)
+                if len(found.one) < len(wanted):
+                    return None
+                at.append(found.other)
+            elif dim != cell:
+                return None
+        if at:
+            part = part.isel(dict(zip(surface, at, strict=False)))
+        return part if part.shape[-2:] == self.shape else None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of all cells (J, I), before those without all sides are left out."""
+        u, v = self.pair.u, self.pair.v
+        return u.sizes[horizontal_dims(u)[0]], v.sizes[horizontal_dims(v)[-1]]
+
+
+def read_flow(
+    data: Any,
+    u: str | None,
+    v: str | None,
+    record: Record,
+    *,
+    sel: Mapping[str, Any] | None = None,
+    isel: Mapping[str, Any] | None = None,
+    mask: Any = None,
+    components: str | None = None,
+) -> Flow:
+    """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
+    datasets = as_datasets(data, record)
+    pair = choose_pair(datasets, u, v)
+    record("select", f"velocity: {pair}")
+    unit, factors = component_units(pair, record)
+    one, two = pair.u, pair.v
+    mesh = find_mesh(datasets)
+    if mesh is not None and len(horizontal_dims(one)) > 1:
+        mesh = None
+    if mesh is None:
+        one, two = ordered(one, record), ordered(two, Record())
+    elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
+        msg = (
+            f"{one.name!r} has {', '.join(map(str, one.dims))} and {two.name!r} "
+            f"{', '.join(map(str, two.dims))}; expected both at nodes, or both in faces"
+        )
+        raise FieldError(msg)
+    choice = Choice(dict(sel or {}), dict(isel or {}))
+    check_faces(one, two, {**choice.sel, **choice.isel})
+    one, two = align(one, two, choice, record)
+    drawn = choose(one, choice, record)
+    one, two = drawn.of(one), drawn.of(two)
+    if drawn.level:
+        record("select", f"level: {drawn.level}", caption=drawn.level)
+    pair = replace(pair, u=one, v=two)
+    flow = (
+        _on_rows(pair, datasets, drawn, record)
+        if mesh is None
+        else _on_faces(mesh, pair, datasets, drawn, record)
+    )
+    found = orientation(
+        pair, flow.places, staggered=flow.staggered, wanted=components, record=record
+    )
+    return _masked(replace(flow, unit=unit, orientation=found), factors, mask)
+
+
+def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
+    """Return a velocity on rows and columns, whose values are not known yet."""
+    along_earth = pair.along == "earth"
+    grid: Grid = find_grid(pair.u, pair.v, datasets, drawn, record, along_earth=along_earth)
+    rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
+    places = grid.places
+    trimmed = unrepeated(places)
+    places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
+    kind = "rows and columns" if places.is_line else "curvilinear"
+    record("coordinates", places.why)
+    bare = (Component(part.variable, 1.0) for part in (grid.u, grid.v))
+    return Flow(
+        pair=replace(pair, u=grid.u, v=grid.v),
+        drawn=drawn,
+        grid=f"{grid.words}, {kind}",
+        places=places,
+        values=Values(
+            (next(bare), next(bare)),
+            pair.kind,
+            angle=places.angle if pair.kind == POLAR else None,
+            rows=grid.rows,
+            columns=grid.columns,
+        ),
+        unit="",
+        orientation=Orientation("earth", ""),
+        cells=(rows, columns),
+        datasets=datasets,
+        record=record,
+        ahead=(axis_direction(pair.u, rows), axis_direction(pair.v, columns)),
+        trimmed=trimmed,
+        staggered=grid.staggered,
+    )
+
+
+def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
+    """Return a velocity at the nodes or in the faces of a mesh, whose values are not known yet."""
+    (dim,) = horizontal_dims(pair.u)
+    places = Places(
+        mesh.a[None],
+        mesh.b[None],
+        is_earth=mesh.is_earth,
+        is_line=False,
+        why=mesh.coordinates,
+        unit="" if mesh.is_earth else mesh.unit,
+    )
+    record("coordinates", mesh.coordinates)
+    record("surface", mesh.words, notable=mesh.kind == POINTS)
+    bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
+    return Flow(
+        pair=pair,
+        drawn=drawn,
+        grid=f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}",
+        places=places,
+        values=Values(bare, pair.kind, axes=1),
+        unit="",
+        orientation=Orientation("earth", ""),
+        cells=(dim,),
+        datasets=datasets,
+        record=record,
+        mesh=mesh,
+    )
+
+
+def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
+    """Return a velocity with what is no data: valid ranges, fill values and masks."""
+    record, axes = flow.record, flow.values.axes
+    parts: list[Component] = []
+    for array, factor in zip((flow.pair.u, flow.pair.v), factors, strict=True):
+        valid = valid_range(array)
+        part = Component(array.variable, factor, valid)
+        sample = [read_step(part.variable, 0, at, axes=axes) for at in _examined(array, axes)]
+        flat = np.concatenate([values.ravel() for values in sample])
+        if valid is not None:
+            outside = (flat < valid[0]) | (flat > valid[1])
+            if outside.any():
+                ends = f"{valid[0]:.6g} to {valid[1]:.6g}"
+                record("mask", f"{outside.mean():.0%} of {array.name} masked: outside {ends}")
+            flat = flat[~outside]
+        fill = None if wanted is False else undeclared_fill(flat)
+        if fill is not None:
+            record(
+                "mask",
+                f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from "
+                f"all other values, is taken as missing; mask=False draws it",
+                notable=True,
+            )
+        parts.append(replace(part, fill=fill))
+    flow = replace(flow, values=replace(flow.values, components=(parts[0], parts[1])))
+    masks = []
+    for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
+        part_of = flow.beside(mask.array)
+        if part_of is None and wanted is not None:
+            msg = f"mask is {wanted!r}, which lies at other positions than the velocity"
+            raise FieldError(msg)
+        if flow.mesh is not None and part_of is not None and flow.cells[0] not in part_of.dims:
+            continue
+        if part_of is not None and _applies(flow, mask, part_of, wanted):
+            masks.append((part_of.variable, mask))
+    flow = replace(flow, values=replace(flow.values, masks=tuple(masks)))
+    return _without_land(flow) if flow.staggered else flow
+
+
+def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
+    """Return whether a mask marks missing data, and record it."""
+    axes, variable = flow.values.axes, part.variable
+    marks, land = [], []
+    for at in _examined(part, axes):
+        bad = ~mask.is_data(read_step(variable, 0, at, axes=axes))
+        marks.append(bad.ravel())
+        if mask.is_land and not flow.staggered:
+            u = flow.values.components[0].read(0, at, axes=axes)
+            land.append(u[bad])
+    share = float(np.mean(np.concatenate(marks)))
+    option = f"mask={part.name!r}"
+    is_wind = mask.is_land and wanted is None and moves_over_land(flow.pair.u)
+    if is_wind and not (land and is_constant(np.concatenate(land))):
+        flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
+        return False
+    if share == 1.0 and wanted is None and part.ndim == axes:  # not only in the first step
+        flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used", notable=True)
+        return False
+    if share:
+        flow.record("mask", f"{share:.0%} masked: {mask.text}; mask=False draws it")
+    return True
+
+
+def _examined(array: xr.DataArray, axes: int) -> list[Any]:
+    """Return rows and columns of a step to examine: all, or nine parts of a large one."""
+    shape = array.shape[-axes:]
+    if axes == 1 or np.prod(shape, dtype=float) <= MOST_EXAMINED:
+        return [None]
+    lines = [
+        [np.arange(n)[max(first, 0) :][:PART_LINES] for first in (0, n // 2, n - PART_LINES)]
+        for n in shape
+    ]
+    return [(rows, columns) for rows in lines[0] for columns in lines[1]]
+
+
+def _without_land(flow: Flow) -> Flow:
+    """Return components on the sides of cells without those at rest, where these are land."""
+    u, v = flow.values.read(0)
+    still: Bools = (u == 0) & (v == 0)
+    if still.mean() <= LAND_SHARE:
+        return flow
+    flow.record("mask", f"{still.mean():.0%} masked: at rest in the first step, as on land")
+    return replace(flow, values=replace(flow.values, land=still))

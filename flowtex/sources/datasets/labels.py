@@ -1,0 +1,128 @@
+"""Labels along axes: which of two axes are the same, as values or as times.
+
+Labels are equal up to rounding. An axis may be reversed, or count longitude from another meridian.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.field.dates import as_seconds
+
+#: Shares of the spacing up to which labels are equal, also those in single precision.
+SAME, BLURRED = 0.02, 0.2
+#: Shares of the way between two labels that count as the middle.
+MIDDLE = (0.4, 0.6)
+#: Seconds up to which dates are equal.
+SAME_DATE_S = 0.5
+
+
+class Match(NamedTuple):
+    """Numbers of the labels that two axes have in common, in the order of the first."""
+
+    one: Indices
+    other: Indices
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether both are the axes as they are."""
+        return all(np.array_equal(part, np.arange(len(part))) for part in self)
+
+
+def match(one: AnyArray, other: AnyArray, period: float | None = None) -> Match:
+    """Return the labels that two axes, (N,) and (M,), have in common; each label counts once."""
+    if one.dtype.kind not in "fiumMO" or other.dtype.kind not in "fiumMO":
+        place = {value: n for n, value in reversed(list(enumerate(other.tolist())))}
+        found = np.array([place.get(value, -1) for value in one.tolist()], dtype=np.intp)
+        return Match(np.flatnonzero(found >= 0), found[found >= 0])
+    a, b = numbers(one, other)
+    dates = one.dtype.kind in "MO"
+    near = min(SAME_DATE_S, BLURRED * spacing(a)) if dates else tolerance(a, b)
+    distance, nearest = _nearest(a, b, period)
+    same = np.flatnonzero(distance <= near)
+    _, first = np.unique(nearest[same], return_index=True)
+    same = same[np.sort(first)]
+    return Match(same, nearest[same])
+
+
+def is_between(one: Floats, other: Floats, period: float | None = None) -> bool:
+    """Return whether the labels of one axis are in the middle between those of another."""
+    if min(len(one), len(other)) < 2:
+        return False
+    distance, _ = _nearest(one, other, period)
+    share = distance / spacing(other)
+    inside = share[share < 1.0]
+    return len(inside) >= len(share) - 1 and bool(
+        ((inside >= MIDDLE[0]) & (inside <= MIDDLE[1])).all()
+    )
+
+
+def numbers(one: AnyArray, other: AnyArray) -> tuple[Floats, Floats]:
+    """Return two axes as numbers, dates and spans as seconds since the first label of one."""
+    if one.dtype.kind not in "mMO" and other.dtype.kind not in "mMO":
+        return one.astype(float), other.astype(float)
+    try:
+        joined, _, _ = as_seconds(np.concatenate([one, other]), "")
+        seconds: Floats = np.ma.filled(np.ma.asarray(joined, dtype=float), np.nan)
+    except (TypeError, ValueError) as error:
+        msg = f"times {text(one)} and {text(other)} cannot be compared: {error}"
+        raise FieldError(msg) from error
+    return seconds[: len(one)], seconds[len(one) :]
+
+
+def spacing(line: Floats) -> float:
+    """Return the least distance of different labels; infinite for one."""
+    steps = np.diff(np.unique(line[np.isfinite(line)]))
+    return float(steps.min()) if len(steps) else np.inf
+
+
+def tolerance(a: Floats, b: Floats) -> float:
+    """Return the difference up to which labels are equal."""
+    size = max(float(np.abs(line[np.isfinite(line)]).max(initial=0.0)) for line in (a, b))
+    apart = min(spacing(a), spacing(b))
+    rounding = 4.0 * float(np.finfo(np.float32).eps) * size
+    return max(SAME * apart, min(rounding, BLURRED * apart)) if np.isfinite(apart) else rounding
+
+
+def _nearest(a: Floats, b: Floats, period: float | None) -> tuple[Floats, Indices]:
+    """Return distances to the nearest of the labels b, and their numbers."""
+    if not len(b):
+        return np.full(len(a), np.inf), np.zeros(len(a), dtype=np.intp)
+    if period is not None:
+        a, b = a % period, b % period
+    order = np.argsort(b, kind="stable")
+    ordered, source = b[order], order
+    if period is not None:
+        ordered = np.concatenate([ordered[-1:] - period, ordered, ordered[:1] + period])
+        source = np.concatenate([order[-1:], order, order[:1]])
+    after = np.clip(np.searchsorted(ordered, a), 1, max(len(ordered) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(ordered) - 1)
+    gaps = np.abs(np.stack([a - ordered[before], a - ordered[after]]))
+    nearer = np.where(gaps[0] <= gaps[1], before, after)
+    distance = gaps.min(axis=0)
+    return np.where(np.isnan(distance), np.inf, distance), source[nearer]
+
+
+def text(line: Any) -> str:
+    """Return an axis as text: its ends, its spacing and the number of labels."""
+    line = np.asarray(line)
+    if line.size == 0:
+        return "no values"
+    words = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
+    if line.size < 4:
+        return ", ".join(_word(value) for value in words)
+    by = ""
+    if line.dtype.kind in "fiu":
+        steps = np.diff(line.astype(float))
+        even = np.allclose(steps, steps[0], rtol=1e-3, atol=0)
+        by = f" by {abs(steps.mean()):.4g}" if even else ""
+    return f"{_word(words[0])} to {_word(words[-1])}{by} ({line.size} values)"
+
+
+def _word(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)

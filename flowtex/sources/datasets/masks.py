@@ -1,0 +1,158 @@
+"""Which values are no data: valid ranges, fill values, masks beside the velocity, and flags."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.arguments import near_names
+from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Names of masks that are 1 where there is water, and of those that are 1 on land.
+SEA = re.compile(r"^(mask|mask_?(rho|t|c)|tmask\w*|wet|wet_c|sea_?mask|ocean_?mask)$", re.I)
+LAND = re.compile(r"^(lsm|land|land_?mask|land_sea_mask|mask_?land|xland)$", re.I)
+#: Masks of nodes and faces of meshes, and their value under water.
+WET = {
+    **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
+    **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
+}
+#: Standard names of masks, and whether they are positive in the sea.
+STANDARD = {
+    "land_binary_mask": False,
+    "land_area_fraction": False,
+    "sea_binary_mask": True,
+    "sea_area_fraction": True,
+}
+#: Meanings of flags that are land, water, and bad values.
+LAND_WORDS = re.compile(r"land|continent|dry", re.I)
+SEA_WORDS = re.compile(r"sea|ocean|water|wet", re.I)
+BAD_WORDS = re.compile(r"bad|fail|missing|invalid|reject|error|interference|no_data", re.I)
+#: Names of air that moves over land as well.
+OVER_LAND = re.compile(r"wind|air|atmos|^[uv]a?s?$|^[uv]_?10|10_?m|^[uv]a$|^[uv]100", re.I)
+#: Share of the values on land that are the same, from which on these are no data.
+SAME_ON_LAND = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Mask:
+    """A variable that marks values as data, and when it does."""
+
+    array: xr.DataArray
+    text: str  #: The condition for values that are no data, such as ``"lsm == 1"``.
+    bad: tuple[float, ...] = ()  #: Values that mark no data; without any, those up to a half.
+    reverse: bool = False  #: Whether values above a half mark no data.
+    #: Whether values there may be data nevertheless, as winds are on land.
+    is_land: bool = False
+
+    def is_data(self, values: AnyArray) -> Bools:
+        """Return where values of the variable mark data."""
+        if self.bad:
+            return ~np.isin(values, self.bad)
+        return np.asarray(~(values > 0.5) if self.reverse else values > 0.5)
+
+
+def find_masks(
+    velocity: Sequence[xr.DataArray], datasets: Sequence[xr.Dataset], wanted: Any
+) -> Iterator[Mask]:
+    """Yield the masks of a velocity, by CF's names, flags beside it, and common names.
+
+    ``wanted`` is the name of the only mask, ``False`` for none, or ``None`` for all.
+    """
+    if wanted is False:
+        return
+    beside = {
+        name for a in velocity for name in str(a.attrs.get("ancillary_variables", "")).split()
+    }
+    names: list[str] = []
+    for ds in datasets:
+        for key, array in ds.variables.items():
+            name = str(key)
+            if array.ndim == 0 or array.dtype.kind not in "fiub" or name in names:
+                continue
+            names.append(name)
+            if wanted is not None and name != wanted:
+                continue
+            mask = _mask(ds[name], name, is_flag=name in beside, is_wanted=wanted is not None)
+            if mask is not None:
+                yield mask
+    if wanted is not None and wanted not in names:
+        msg = f"mask is {wanted!r}; {near_names(str(wanted), names)}, or False for none"
+        raise FieldError(msg)
+
+
+def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:
+    """Return the mask of a variable; ``None`` for other variables."""
+    standard = str(array.attrs.get("standard_name", ""))
+    meanings = str(array.attrs.get("flag_meanings", "")).split()
+    values = np.atleast_1d(array.attrs.get("flag_values", range(len(meanings)))).tolist()
+    flags = dict(zip(meanings, values, strict=False))
+    if is_flag or standard.endswith(("status_flag", "quality_flag")):
+        return _marked(array, name, [word for word in flags if BAD_WORDS.search(word)], flags)
+    if name in WET:
+        return Mask(array, f"{name} == {1 - WET[name]}", bad=(1.0 - WET[name],))
+    if not (standard in STANDARD or SEA.match(name) or LAND.match(name) or is_wanted):
+        return None
+    land = [word for word in flags if LAND_WORDS.search(word)]
+    if land or any(map(SEA_WORDS.search, flags)):
+        land = land or [word for word in flags if not SEA_WORDS.search(word)]
+        return _marked(array, name, land, flags, is_land=True)
+    if name.lower() == "xland":
+        return Mask(array, f"{name} == 1", bad=(1.0,), is_land=True)
+    if STANDARD.get(standard, not LAND.match(name)):
+        return Mask(array, f"{name} == 0", is_land=standard in STANDARD)
+    return Mask(array, f"{name} == 1", reverse=True, is_land=True)
+
+
+def _marked(
+    array: xr.DataArray,
+    name: str,
+    words: Sequence[str],
+    flags: Mapping[str, float],
+    *,
+    is_land: bool = False,
+) -> Mask | None:
+    bad = tuple(float(flags[word]) for word in words)
+    return Mask(array, f"{name} is {' or '.join(words)}", bad, is_land=is_land) if bad else None
+
+
+def moves_over_land(array: xr.DataArray) -> bool:
+    """Return whether a velocity is that of air, by its names."""
+    words = str(array.attrs.get("standard_name", "")) or str(array.attrs.get("long_name", ""))
+    if "water" in words or "current" in words.lower():
+        return False
+    return OVER_LAND.search(words or str(array.name)) is not None
+
+
+def is_constant(values: Floats) -> bool:
+    """Return whether nearly all values are the same, or missing."""
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return True
+    _, counts = np.unique(values, return_counts=True)
+    return bool(counts.max() >= SAME_ON_LAND * len(values))
+
+
+def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
+    """Return the least and greatest valid value of a variable that xarray has unpacked."""
+    attrs, encoding = array.attrs, array.encoding
+    low, high = np.atleast_1d(attrs.get("valid_range", (-np.inf, np.inf)))[:2]
+    low, high = attrs.get("valid_min", low), attrs.get("valid_max", high)
+    if not (np.isfinite(float(low)) or np.isfinite(float(high))):
+        return None
+    ends = [float(low), float(high)]
+    packed = np.dtype(encoding.get("dtype", float)).kind in "iu"
+    whole = all(np.asarray(end).dtype.kind in "iu" for end in (low, high) if np.isfinite(end))
+    if packed and whole:
+        # The range is in the unit of the packed numbers if it has their type.
+        scale, offset = encoding.get("scale_factor", 1.0), encoding.get("add_offset", 0.0)
+        ends = sorted(float(scale) * end + float(offset) for end in ends)
+    rounding = 1e-6 * max(abs(end) for end in ends if np.isfinite(end))
+    return ends[0] - rounding, ends[1] + rounding

@@ -1,0 +1,115 @@
+"""The values of the two components at a step: without missing data, and in one unit.
+
+All choices are made before, so that any process reads any step and region by itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.blocks import even_runs
+from flowtex.errors import FieldError
+from flowtex.sources.datasets.masks import Mask
+from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
+from flowtex.sources.datasets.staggered import Sides, centred
+from flowtex.sources.inspection.limits import values_in
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Numbers of rows and columns; ``None`` for all.
+Lines: TypeAlias = tuple[Indices, Indices] | None
+#: Values beyond this are missing data, even without an attribute.
+LARGEST_VALUE = 1e15
+
+
+def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
+    """Return the values of a variable as float64; missing data are NaN."""
+    values = values_in(array)
+    if values.dtype.kind not in "fiub":
+        msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
+        raise FieldError(msg)
+    values = values.astype(float)
+    # Fill values that no attribute names.
+    values[np.abs(values) > LARGEST_VALUE] = np.nan
+    return values
+
+
+def read_step(variable: xr.Variable, step: int, lines: Lines = None, *, axes: int = 2) -> Floats:
+    """Return a step of a variable ([time], ...) with this many axes, or some rows and columns."""
+    part = variable[step] if variable.ndim > axes else variable
+    if lines is None:
+        return numbers_in(part)
+    below = []
+    for first in even_runs(lines[0]):
+        beside = [part[first, second] for second in even_runs(lines[1])]
+        # The reader may be a task of a cluster, which must not wait for other tasks.
+        below.append([numbers_in(p.compute(scheduler="synchronous")) for p in beside])
+    return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
+
+
+@dataclass(frozen=True, eq=False)
+class Component:
+    """A variable of the velocity, ([time], J, I) or ([time], N), and its valid values."""
+
+    variable: xr.Variable
+    factor: float  #: From its unit to that of the first component, or to radians.
+    valid: tuple[float, float] | None = None
+    fill: float | None = None  #: A value that means missing data, though no attribute names it.
+
+    def read(self, step: int, lines: Lines, *, axes: int) -> Floats:
+        """Return a step, with NaN for missing data."""
+        values = read_step(self.variable, step, lines, axes=axes)
+        with np.errstate(invalid="ignore"):
+            if self.fill is not None:
+                values[values == self.fill] = np.nan
+            if self.valid is not None:
+                values[(values < self.valid[0]) | (values > self.valid[1])] = np.nan
+        return values * self.factor
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Reads both components at the nodes, in one unit."""
+
+    components: tuple[Component, Component]
+    kind: str  #: How the variables give the components, as in :class:`Pair`.
+    axes: int = 2  #: Number of axes of the nodes.
+    angle: Floats | None = None  #: Angle of polar components, (J, I).
+    masks: tuple[tuple[xr.Variable, Mask], ...] = ()  #: In the middle of cells.
+    rows: Sides | None = None  #: Sides of cells on which the components lie.
+    columns: Sides | None = None
+    land: Bools | None = None  #: Cells that are land, (J, I).
+
+    def read(self, step: int, lines: Lines = None) -> tuple[Floats, Floats]:
+        """Return the components at all nodes, or at some rows and columns."""
+        u, v = (part.read(step, lines, axes=self.axes) for part in self.components)
+        staggered = self.rows is not None or self.columns is not None
+        u, v = centred(u, v, self.rows, self.columns)
+        if staggered:  # near a wall only one of them may be known
+            missing = np.isnan(u) & np.isnan(v)
+            u, v = (np.where(missing, np.nan, np.nan_to_num(part)) for part in (u, v))
+        if self.kind in (FROM, TOWARDS):
+            size = u if self.kind == TOWARDS else -u
+            u, v = size * np.sin(v), size * np.cos(v)
+        elif self.kind == POLAR and self.angle is not None:
+            cos, sin = np.cos(self.angle), np.sin(self.angle)
+            u, v = u * cos - v * sin, u * sin + v * cos
+        missing = np.isnan(u) | np.isnan(v)
+        for variable, mask in self.masks:
+            marks = read_step(variable, step, lines, axes=self.axes)
+            missing |= ~mask.is_data(self.at_cells(marks))
+        if self.land is not None:
+            missing |= self.land
+        u[missing] = v[missing] = np.nan
+        return u, v
+
+    def at_cells(self, values: Floats) -> Floats:
+        """Return values in the middle of all cells where these have all sides."""
+        if self.rows is not None:
+            values = values[self.rows.cells]
+        return values if self.columns is None else values[:, self.columns.cells]
