@@ -292,8 +292,12 @@ def test_missing_positions_are_left_out() -> None:
 
 
 def test_grid_is_described() -> None:
-    known = read_flow(along(*reduced()), None, None, Record())
+    ds = along(*reduced())
+    for name in "uv":
+        ds[name].attrs = {}
+    known = read_flow(ds, None, None, Record())
     assert known.grid == "1,600 points joined by 3,196 triangles; velocity at nodes"
+    assert known.orientation.along == "earth"
 
 
 def test_levels_and_times_of_points() -> None:
