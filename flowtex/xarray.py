@@ -22,8 +22,7 @@ import flowtex
 from flowtex._util.arguments import brief, checked_number
 from flowtex._util.terminal.console import plain_text
 from flowtex.field import FlowField
-from flowtex.field.locate import locate
-from flowtex.field.point_values import PointValues, values_at
+from flowtex.field.point_values import PointValues
 from flowtex.sources.datasets.read import recognised
 
 if TYPE_CHECKING:
@@ -248,14 +247,9 @@ class FlowtexAccessor:
         >>> f"{values.eastward:.0f} m/s to the east, {values.northward:.0f} m/s to the north"
         '22 m/s to the east, -17 m/s to the north'
         """
-        field = self.field(**options)
         for name, value in (("x", x), ("y", y)):
             checked_number(name, value, -1e300, 1e300, expected="a finite number")
-        point = np.array([x, y], dtype=float)
-        if field.projection is not None:
-            point = field.projection.positions(*point)
-        index = locate(field, point) if np.isfinite(point).all() else None
-        return None if index is None else values_at(field, index)
+        return self.field(**options).at(x, y)
 
     def pyramid(self, store: str | Path, **options: Any) -> Built:
         """Build a pyramid of the flow, as :func:`flowtex.pyramid.build` does."""

@@ -21,14 +21,7 @@ from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTHING, FieldArrays, Reading, SectionAxes, TriangleArrays
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import as_seconds
-from flowtex.field.derived import (
-    FOLLOWED,
-    LONG_NAMES,
-    derived_steps,
-    derived_unit,
-    followed_steps,
-    speed_unit,
-)
+from flowtex.field.derived.methods import FieldQuantities
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
 from flowtex.field.gaps import filled_gaps
@@ -36,10 +29,11 @@ from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
 from flowtex.field.metric import IndexVelocity
-from flowtex.field.steps import LazySteps, Steps, typical_steps
+from flowtex.field.steps import LazySteps, Steps, scaled_steps, typical_steps
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.units import factor, speed_unit, velocity_units
 from flowtex.field.validation import ALL_AT_REST, with_gaps
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
@@ -55,7 +49,7 @@ MOST_LOST = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FlowField(FieldConstructors):
+class FlowField(FieldConstructors, FieldQuantities):
     """Velocity on a surface, steady or time-varying.
 
     Make one with :meth:`from_arrays`, :meth:`from_triangles`, :meth:`from_pyvista`,
@@ -68,8 +62,8 @@ class FlowField(FieldConstructors):
     points
         Node positions, (J, I, 3), in the mesh's own units.
     velocity
-        Velocity, (T, J, I, 3) with T = 1 when steady, in the mesh's units per unit of time;
-        zero at nodes that are not valid. Long series of datasets are read step by step.
+        Velocity, (T, J, I, 3) with T = 1 when steady, in units of length per unit of time; zero at
+        nodes that are not valid. Long series of datasets are read step by step.
     times
         Time of each step, (T,), strictly increasing.
     valid
@@ -102,7 +96,7 @@ class FlowField(FieldConstructors):
         What was done to the data of a file, mesh or dataset, step by step; ``print(field.reading)``
         lists it.
     velocity_unit
-        Unit of :attr:`speed`; by default the units of length and time.
+        Unit of the velocity of the data, and of :attr:`speed`; empty for length per time.
 
     Examples
     --------
@@ -187,9 +181,9 @@ class FlowField(FieldConstructors):
             (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
-            units of length per unit of time. NaN and masked entries blank a node; one that has data
-            at some times is at rest at the others, without streaks, and the scalar ``"no data"`` is
-            1 there. Steps that are read lazily (``LazySteps``) stay lazy: at most three tell this.
+            ``velocity_unit``. NaN and masked entries blank a node; one that has data at some times
+            is at rest at the others, without streaks, and the scalar ``"no data"`` is 1 there.
+            Steps that are read lazily (``LazySteps``) stay lazy: at most three tell this.
         times
             Time of each step, (T,), strictly increasing; 0, 1, 2, ... by default. Dates
             (``datetime64``, or cftime's) become seconds since the first, and are shown as dates.
@@ -203,13 +197,15 @@ class FlowField(FieldConstructors):
             Further nodal arrays, name to (J, I) or (T, J, I); values beyond 1e100 become NaN.
         name, length_unit, time_unit
             Text for captions.
+        velocity_unit
+            Unit of the velocity, such as ``"m/s"`` where positions are in mm; by default the unit
+            of length per unit of time.
         sign_free
             Whether v and -v mean the same. Such a field is steady; it is drawn to both sides, and
             kernels and motions that distinguish forward from backward are not available. Vectors
             are reversed where that makes neighbours agree.
         units
-            Unit of each scalar by its name, for legends; the unit of the speed follows from those
-            of length and time.
+            Unit of each scalar by its name, for legends.
         long_names
             Descriptions of scalars for legends, where they differ from their names.
         projection
@@ -245,15 +241,15 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        filled = filled_gaps(
-            velocity, scalars, units, axes=2, unit=speed_unit(length_unit, time_unit)
-        )
+        scale, time_unit, velocity_unit = velocity_units(length_unit, time_unit, velocity_unit)
+        unit = velocity_unit or speed_unit(length_unit, time_unit)
+        filled = filled_gaps(velocity, scalars, units, axes=2, unit=unit)
         on_globe = projection is not None and projection.is_globe
         parts = points, filled.velocity, t, valid, periodic, filled.scalars
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
         flow = cls(
             points=nodes.surface.points,
-            velocity=nodes.velocity,
+            velocity=scaled_steps(nodes.velocity, scale),
             times=np.arange(len(nodes.velocity), dtype=float) if t is None else t.copy(),
             valid=nodes.valid,
             periodic=nodes.periodic,
@@ -304,10 +300,10 @@ class FlowField(FieldConstructors):
             way and share an edge with several others; the surface may have borders and several
             parts.
         velocity
-            Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a time-varying field, in units
-            of length per unit of time. NaN and masked entries blank a node. The component normal to
-            the surface is not drawn (:attr:`normal_share`). The velocity may be lazy.
-        times, name, length_unit, time_unit, units, long_names, projection
+            Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a time-varying field. NaN and
+            masked entries blank a node. The component normal to the surface is not drawn
+            (:attr:`normal_share`). The velocity may be lazy.
+        times, name, length_unit, time_unit, velocity_unit, units, long_names, projection
             As for :meth:`from_arrays`.
         valid
             Nodes that have data, (N,). All by default.
@@ -341,14 +337,14 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        filled = filled_gaps(
-            velocity, scalars, units, axes=1, unit=speed_unit(length_unit, time_unit)
-        )
+        scale, time_unit, velocity_unit = velocity_units(length_unit, time_unit, velocity_unit)
+        unit = velocity_unit or speed_unit(length_unit, time_unit)
+        filled = filled_gaps(velocity, scalars, units, axes=1, unit=unit)
         arrays = triangle_nodes(points, triangles, filled.velocity, t, valid, filled.scalars)
         count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
-            velocity=arrays.velocity,
+            velocity=scaled_steps(arrays.velocity, scale),
             times=np.arange(count, dtype=float) if t is None else t.copy(),
             valid=arrays.valid,
             periodic=(False, False),
@@ -431,8 +427,23 @@ class FlowField(FieldConstructors):
 
     @property
     def speed(self) -> Steps:
-        """Speed along the surface, (T, J, I)."""
-        return self.index_velocity.speed
+        """Speed along the surface, (T, J, I), in :attr:`speed_unit`."""
+        return scaled_steps(self.index_velocity.speed, self.speed_scale)
+
+    @property
+    def speed_unit(self) -> str:
+        """Unit of the velocity of the data; empty if unknown."""
+        flat = self.projection is not None and not self.projection.is_globe
+        if flat and "speed" in self.scalars and "speed" in self.units:
+            return self.units["speed"]
+        return self.velocity_unit or speed_unit(self.length_unit, self.time_unit)
+
+    @cached_property
+    def speed_scale(self) -> float:
+        """Factor from units of length per unit of time to :attr:`speed_unit`."""
+        own = speed_unit(self.length_unit, self.time_unit)
+        same = not own or self.speed_unit in ("", own)
+        return 1.0 if same else factor(own, self.speed_unit) or 1.0
 
     @property
     def normal_share(self) -> float:
@@ -460,69 +471,7 @@ class FlowField(FieldConstructors):
         """Return the unit of a scalar, or of the speed; empty if unknown."""
         if name in self.units or name != "speed" or name in self.scalars:
             return self.units.get(name, "")
-        return speed_unit(self.length_unit, self.time_unit)
-
-    def derive(self, name: str, *, horizon: float | None = None) -> Steps:
-        """Compute a scalar from the velocity and its gradient along the surface.
-
-        Parameters
-        ----------
-        name
-            ``"vorticity"``: positive where the flow turns anticlockwise, seen from outside, or
-            from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
-            of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
-            ``"okubo_weiss"``: the square of the shear less that of the vorticity, negative in
-            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the largest rate at which
-            particles that start near a node separate.
-        horizon
-            How long particles are followed for ``"ftle"``, in the unit of time; backward if
-            negative.
-
-        Returns
-        -------
-        numpy.ndarray
-            (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
-            Okubo-Weiss); NaN where too few neighbours have data. Lazy where the velocity is.
-
-        Raises
-        ------
-        FieldError
-            When the name is unknown, the horizon is invalid, or the field is sign-free.
-
-        Notes
-        -----
-        Errors are of second order in the size of cells, on any surface. On flat maps of the Earth
-        the values are those on the sphere.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
-        >>> field.derive("vorticity").shape
-        (1, 41, 81)
-        """
-        if self.sign_free:
-            msg = f"{name} needs a direction, but this field is sign-free"
-            raise FieldError(msg)
-        if horizon is not None or name in FOLLOWED:
-            return followed_steps(name, self, horizon)
-        return derived_steps(name, self.surface, self.projection, self.velocity)
-
-    def with_derived(self, name: str, *, horizon: float | None = None) -> FlowField:
-        """Return the field with the result of ``derive`` among its scalars.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
-        >>> sorted(field.with_derived("shear").scalars)
-        ['shear', 'vorticity']
-        """
-        return self.same_flow(
-            scalars={**self.scalars, name: self.derive(name, horizon=horizon)},
-            units={**self.units, name: derived_unit(name, self.time_unit)},
-            long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
-        )
+        return self.speed_unit
 
     def same_flow(self, **changes: Any) -> FlowField:
         """Return the field with other scalars or texts; positions and velocity stay."""

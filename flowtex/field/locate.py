@@ -4,6 +4,9 @@ Every renderer cuts the cells of a structured surface along the diagonal from th
 (j, i) to (j + 1, i + 1), and what lies between the nodes is linear in the triangles; so is what
 this module returns. Each surface returns its own triangles.
 
+On the Earth places are looked up by longitude and latitude, so that values do not depend on the
+map. Where cells are parallelograms, in these or in space, values are bilinear in them.
+
 To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
 field. From the triangles around them a walk leads over the surface, across the side on which the
 point lies as long as that leads nearer; that also finds the way over cells that are thousands of
@@ -12,7 +15,8 @@ times longer than wide, where the nearest node is not a corner of the right cell
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy
@@ -22,25 +26,37 @@ from flowtex._util.arguments import brief, check_field, checked_array
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
-from flowtex.field.field import FlowField
+from flowtex.field.constructors import FieldConstructors
+from flowtex.field.derived.gradient import true_positions
+from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.surface import Surface
 
 #: Nodes around a point from which walks begin, and most triangles of a walk.
 START_NODES, WALK_STEPS = 4, 96
 #: Height of a triangle over a side, squared, below which it has no area.
 FLAT_TRIANGLE = 1e-20
+#: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
+CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
+#: The same on the Earth, where a map is inverted, and how far a cell is from a parallelogram.
+EARTH_TOLERANCE, EARTH_SKEW = 1e-4, 1e-3
+#: Cells that are tried for a place, and the share of one by which it may lie beside it.
+MOST_CELLS, ROUNDING = 8, 1e-9
+#: Latitude from which on a node has the longitude of the one beside it.
+POLE_LATITUDE = 90 - 1e-6
+#: The globe on which places of the Earth are looked up.
+EARTH = Projection(GLOBE)
 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoint:
-    """A point on a triangle of the surface."""
+    """A point in a triangle, or a cell, of the surface."""
 
     index: tuple[float, float]  #: The point as (j, i), folded back into one period.
-    nodes: Indices  #: Numbers of the corners, (3,): j times the number of columns plus i.
-    weights: Floats  #: Their shares, (3,).
+    nodes: Indices  #: Numbers of the K corners, (K,): j times the number of columns plus i.
+    weights: Floats  #: Their shares, (K,).
 
     def corners(self, nodal: AnyArray) -> Floats:
-        """Return values at the corners, (3, ...), of nodal data (J, I, ...)."""
+        """Return values at the corners, (K, ...), of nodal data (J, I, ...)."""
         return np.asarray(nodal.reshape(-1, *nodal.shape[2:])[self.nodes], dtype=float)
 
     def interpolate(self, nodal: AnyArray) -> Floats:
@@ -60,11 +76,57 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     return SurfacePoint((float(place[0]), float(place[1])), nodes, weights)
 
 
+def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
+    """Return the point at (j, i) with its cell where that is a parallelogram, else its triangle."""
+    point = surface_point(field.surface, index)
+    if field.triangles is None:
+        cell = divmod(int(point.nodes[0]), field.shape[1])
+        nodes = _cell_nodes(field, cell)
+        if not _is_skew(field, _places(field, nodes)):
+            t, s = point.index[0] - cell[0], point.index[1] - cell[1]
+            weights = np.array([(1 - t) * (1 - s), (1 - t) * s, t * (1 - s), t * s])
+            return SurfacePoint(point.index, nodes, weights)
+    return point
+
+
+def _cell_nodes(field: Any, cell: Any) -> Indices:
+    first = cell[0] * field.shape[1] + cell[1]
+    return np.array([first, first + 1, first + field.shape[1], first + field.shape[1] + 1])
+
+
+def _places(field: Any, nodes: Indices) -> Floats:
+    """Return longitudes and latitudes of nodes of a cell, (K, 2), or positions, (K, 3)."""
+    points = field.surface.points.reshape(-1, 3)[nodes]
+    return points if field.projection is None else lonlats(field, points)
+
+
+def lonlats(field: Any, points: Floats) -> Floats:
+    """Return longitudes and latitudes of corners of a cell, (K, 2), continuous in it."""
+    assert field.projection is not None
+    lon, lat = (np.array(part) for part in field.projection.lonlat(points))
+    poles = np.abs(lat) > POLE_LATITUDE
+    for n in np.flatnonzero(poles) if len(lat) == 4 else ():
+        lon[n] = next((lon[m] for m in (n ^ 2, n ^ 1) if not poles[m]), lon[n])
+    return np.stack([lon[0] + turned(lon - lon[0]), lat], axis=-1)
+
+
+def turned(lon: Any) -> Any:
+    """Return longitudes in degrees, from -180 up to 180."""
+    return (lon + 180.0) % 360.0 - 180.0
+
+
+def _is_skew(field: Any, places: Floats) -> bool:
+    a, b, c, d = places
+    size = max(np.abs(b - a).max(), np.abs(c - a).max())
+    skew = FLAT_TOLERANCE if field.projection is None else EARTH_SKEW
+    return not np.abs(a - b - c + d).max() <= skew * size
+
+
 class Locator:
     """Search for points of one surface."""
 
     def __init__(self, surface: Surface) -> None:
-        self._surface = surface
+        self.surface = surface
         self._points = surface.points.reshape(-1, 3)
         nodes = surface.corners_of(surface.drawn).ravel()
         usable = surface.apart.ravel()[nodes]
@@ -100,12 +162,12 @@ class Locator:
                 beside = self._around[self._first[node[numbers]] + turn]
                 self._try(at, numbers, beside, (best, triangle, shares))
         self._walk(at, (best, triangle, shares))
-        corners = self._points[self._surface.corners_of(triangle)]
+        corners = self._points[self.surface.corners_of(triangle)]
         # The diagonal of a cell is not its size.
         sides = np.sort(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1), axis=1)
         distance = (best / np.where(sides[:, 1] > 0, sides[:, 1], 1.0)).reshape(len(points), -1)
         chosen = np.argmin(distance, axis=1) + np.arange(len(points)) * len(self._shifts)
-        index = self._surface.index_of(triangle[chosen], shares[chosen])
+        index = self.surface.index_of(triangle[chosen], shares[chosen])
         return index[:, ::-1], distance.ravel()[chosen]
 
     def _try(
@@ -117,7 +179,7 @@ class Locator:
     ) -> Indices:
         """Store the points that are nearer in their triangle, and return their numbers."""
         best, at, shares = nearest
-        corners = self._points[self._surface.corners_of(triangle)]
+        corners = self._points[self.surface.corners_of(triangle)]
         inside, far = closest(points[numbers], corners[:, 0], corners[:, 1], corners[:, 2])
         nearer = far < best[numbers]
         which = numbers[nearer]
@@ -133,8 +195,8 @@ class Locator:
             for corner in range(3):
                 # On a side the opposite corner has no share.
                 numbers = current[shares[current, corner] <= 0]
-                beside = self._surface.beside(before[numbers], corner)
-                inside = (beside >= 0) & self._surface.is_drawn(beside)
+                beside = self.surface.beside(before[numbers], corner)
+                inside = (beside >= 0) & self.surface.is_drawn(beside)
                 self._try(points, numbers[inside], beside[inside], nearest)
             going = np.flatnonzero(at != before)
             if not len(going):
@@ -182,14 +244,12 @@ def _on_border(at: Floats, nodes: Floats) -> Floats:
 _locators: WeakCache[Locator] = WeakCache()
 
 
-def locator(field: FlowField) -> Locator:
+def locator(field: Any) -> Locator:
     """Return the locator of a field's surface, which is cached as long as the field lives."""
     return _locators.get("locator", lambda: Locator(field.surface), owner=field)
 
 
-def locate(
-    field: FlowField, point: ArrayLike, *, tolerance: float = 0.1
-) -> tuple[float, float] | None:
+def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[float, float] | None:
     """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
     The result is ``None`` if the surface is farther than ``tolerance`` times the size of the
@@ -206,7 +266,7 @@ def locate(
     >>> [round(number, 6) for number in locate(field, (0.5, 0.25))]
     [25.0, 50.0]
     """
-    check_field(field, FlowField)
+    check_field(field, FieldConstructors)
     expected = "two or three finite coordinates in the mesh's units"
     at = checked_array("point", point, expected=expected)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
@@ -214,7 +274,86 @@ def locate(
         raise FieldError(msg)
     target = np.zeros((1, 3))
     target[0, : len(at)] = at
+    if field.projection is not None:
+        lon, lat = map(float, field.projection.lonlat(target[0]))
+        near = max(tolerance, CURVED_TOLERANCE)
+        if field.projection.is_globe and locator(field).nearest(target)[1][0] > near:
+            return None
+        return locate_lonlat(field, lon, lat, tolerance=tolerance)
     index, distance = locator(field).nearest(target)
     if distance[0] > tolerance:
         return None
     return float(index[0, 0]), float(index[0, 1])
+
+
+def locate_lonlat(
+    field: Any, lon: float, lat: float, *, tolerance: float = EARTH_TOLERANCE
+) -> tuple[float, float] | None:
+    """Return (j, i), in cells, of a longitude and latitude in degrees; ``None`` outside the data.
+
+    It is the same on every map.
+    """
+    if not np.isfinite([lon, lat]).all():
+        return None
+    surface = (finder := _earth_locator(field)).surface
+    target = EARTH.positions(np.array(lon), np.array(lat))
+    index, distance = finder.nearest(target[None])
+    if not distance[0] <= max(tolerance, CURVED_TOLERANCE):
+        return None
+    _, number, _ = surface.triangle_at(index[0])
+    nodes = surface.corners_of(np.array([number]))[0]
+    if field.triangles is None:
+        try:
+            return _in_parallelogram(field, int(nodes[0]), (lon, lat), tolerance)
+        except np.linalg.LinAlgError:
+            pass
+    # In triangles of great circles.
+    corners = surface.points.reshape(-1, 3)[nodes]
+    weights = np.linalg.solve(corners.T, target)
+    weights /= weights.sum()
+    sag = np.ptp(corners, axis=0).max() / EARTH_RADIUS / 4
+    if weights.min() < -max(tolerance, sag):
+        return None
+    weights = np.clip(weights, 0, None) / np.clip(weights, 0, None).sum()
+    i, j = surface.index_of(np.array([number]), weights[None])[0]
+    return float(j), float(i)
+
+
+def _earth_locator(field: Any) -> Locator:
+    """Return the locator of a field's nodes on the globe, which is cached with the field."""
+    if field.projection == EARTH:
+        return locator(field)
+
+    def on_globe() -> Locator:
+        points = true_positions(field.surface.points, field.projection)
+        return Locator(replace(field, points=points, projection=EARTH).surface)
+
+    return _locators.get("earth", on_globe, owner=field)
+
+
+def _in_parallelogram(
+    field: Any, first: int, at: tuple[float, float], tolerance: float
+) -> tuple[float, float] | None:
+    """Return (j, i) of a place in the cell that begins at a node, or in one beside it.
+
+    Raises numpy's LinAlgError where cells are no parallelograms in longitude and latitude.
+    """
+    surface, counts = field.surface, np.array(field.shape) - 1
+    cell = np.array(divmod(first, field.shape[1]))
+    for _ in range(MOST_CELLS):
+        places = _places(field, _cell_nodes(field, cell))
+        if _is_skew(field, places):
+            raise np.linalg.LinAlgError
+        start, sides = places[0], places[[2, 1]] - places[0]
+        offset = np.array([turned(at[0] - start[0]), at[1] - start[1]])
+        within = np.linalg.solve(sides.T, offset)
+        beside = cell + np.floor(within).astype(int) * (np.abs(within - 0.5) > 0.5 + ROUNDING)
+        beside = np.where(surface.periodic, beside % counts, np.clip(beside, 0, counts - 1))
+        if (beside == cell).all() or not surface.cells[tuple(beside)]:
+            break
+        cell = beside
+    inside = np.clip(within, 0, 1)
+    if np.abs(within - inside).max() > tolerance:
+        return None
+    j, i = cell + inside
+    return float(j), float(i)

@@ -2,31 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import check_field
+from flowtex._util.arguments import brief, check_field
 from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
-from flowtex.field.derived import speed_unit
-from flowtex.field.field import FlowField
+from flowtex.field.earth import Projection
 from flowtex.field.grids.signs import weighted_axis
 from flowtex.field.interpolation import steps_around
-from flowtex.field.locate import surface_point
+from flowtex.field.locate import (
+    CURVED_TOLERANCE,
+    EARTH,
+    FLAT_TOLERANCE,
+    SurfacePoint,
+    locate,
+    locate_lonlat,
+    lonlats,
+    turned,
+    value_point,
+)
+from flowtex.field.steps import Steps
+
+#: Share of the way to the middle of a cell by which its corners are moved to one side of a map.
+INWARD = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class PointValues:
     """The values of a field at one point of the surface and one time.
 
-    ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
-    mesh's units per unit of time, ``speed`` its magnitude along the surface, as in colours, and
-    ``speed_label`` its name. For a field with a projection, ``lonlat`` are longitude and
-    latitude in degrees, and ``eastward`` and ``northward`` the velocity on the Earth.
+    ``index`` is (j, i) in cells, and ``position`` (3,) in the mesh's units. ``velocity``, (3,), and
+    its magnitude, ``speed``, are in ``speed_unit``, that of the data; where a notable part of the
+    flow leaves the surface, the speed is that along it, and ``speed_label`` says so. For a field
+    with a projection, ``lonlat`` are longitude and latitude in degrees, ``eastward`` and
+    ``northward`` the velocity on the Earth and ``speed`` its magnitude, while ``velocity`` is that
+    on the map.
 
     Examples
     --------
@@ -45,22 +63,18 @@ class PointValues:
     time: float
     length_unit: str = ""
     time_unit: str = ""
+    speed_unit: str = ""
     speed_label: str = "speed"
     lonlat: tuple[float, float] | None = None
     eastward: float = 0.0
     northward: float = 0.0
 
-    @property
-    def speed_unit(self) -> str:
-        """Unit of the speed; empty if the unit of length or of time is unknown."""
-        return speed_unit(self.length_unit, self.time_unit)
 
-
-def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValues:
+def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
-    They are linear in the triangles of the drawn surface, and in time, as are the colours of a
-    picture.
+    They are bilinear in cells that are parallelograms, in longitude and latitude or in space,
+    elsewhere linear in the triangles of the drawn surface; and linear in time.
 
     Parameters
     ----------
@@ -86,42 +100,98 @@ def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValu
     >>> sorted(values_at(field, at, time=field.times[3]).scalars)
     ['vorticity']
     """
-    check_field(field, FlowField)
-    point = surface_point(field.surface, index)
+    check_field(field, FieldConstructors)
+    point = value_point(field, index)
     moment = float(field.times[-1])
     if time is not None and not field.steady:
         moment = time_within(field.start, field.times, time)
     before, after, share = steps_around(field.times, moment)
 
-    def value(steps: Floats) -> Floats:
+    def value(steps: Steps, corners: Callable[[Floats], Floats] = point.corners) -> Floats:
         if len(steps) == 1:
-            return point.interpolate(steps[0])
-        a, b = (point.interpolate(steps[n]) for n in (before, after))
-        return np.asarray(a * (1 - share) + b * share)
+            return corners(steps[0])
+        return corners(steps[before]) * (1 - share) + corners(steps[after]) * share
 
-    if field.sign_free:
-        velocity = weighted_axis(point.corners(field.velocity[0]), point.weights)
-    else:
-        velocity = value(field.velocity)
-    position = point.interpolate(field.surface.points)
+    scale, weights = field.speed_scale, point.weights
+    vectors = scale * value(field.velocity)
+    velocity = weighted_axis(vectors, weights) if field.sign_free else weights @ vectors
+    values: dict[str, Any] = {
+        "position": point.interpolate(field.surface.points),
+        "velocity": velocity,
+        "speed": float(np.linalg.norm(velocity)),
+        "scalars": {name: float(weights @ value(steps)) for name, steps in field.scalars.items()},
+    }
+    if field.leaves_surface:
+        values["speed"] = float(weights @ value(field.index_velocity.speed) * scale)
+    if field.projection is not None:
+        values |= _on_earth(field, field.projection, point, values, partial(value, field.velocity))
     return PointValues(
         index=point.index,
-        position=position,
-        velocity=velocity,
-        speed=float(value(field.speed)),
-        scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
         time=moment,
         length_unit=field.length_unit,
         time_unit=field.time_unit,
+        speed_unit=field.speed_unit,
         speed_label=field.speed_label,
-        **_on_earth(field, position, velocity),
+        **values,
     )
 
 
-def _on_earth(field: FlowField, position: Floats, velocity: Floats) -> dict[str, Any]:
-    """Return place and velocity on the Earth, where the field has a projection."""
-    if field.projection is None:
-        return {}
-    lon, lat = field.projection.lonlat(position)
-    east, north = field.projection.components(lon, lat, velocity)
-    return {"lonlat": (float(lon), float(lat)), "eastward": float(east), "northward": float(north)}
+def point_at(field: Any, place: ArrayLike, time: Any = None) -> PointValues | None:
+    """Return the values at a place in the coordinates of the data; ``None`` outside the data."""
+    at = np.asarray(place, dtype=float)
+    if not np.isfinite(at).all():
+        msg = f"the place is {brief(place)}; expected finite numbers"
+        raise FieldError(msg)
+    if field.projection is not None:
+        index = locate_lonlat(field, *at.tolist())
+    else:
+        frame = field.surface.frame
+        if len(at) == 2 and frame is not None and not frame[:, 2].any():
+            at = np.append(at, field.surface.center[2])
+        index = locate(field, at, tolerance=CURVED_TOLERANCE if frame is None else FLAT_TOLERANCE)
+    return None if index is None else values_at(field, index, time)
+
+
+def _on_earth(
+    field: Any,
+    projection: Projection,
+    point: SurfacePoint,
+    values: Mapping[str, Any],
+    at_time: Callable[[Callable[[Floats], Floats]], Floats],
+) -> dict[str, Any]:
+    """Return place and velocity on the Earth, which do not depend on the map."""
+    corners, weights = point.corners(field.surface.points), point.weights
+    places = lonlats(field, corners)
+    lon, lat = places.T
+    if len(weights) == 4:
+        here = weights @ places
+    else:
+        here = np.array(EARTH.lonlat(weights @ EARTH.positions(lon, lat)))
+    # Corners at the edge of a map have the directions of the side where the cell is.
+    middle, origin = lon.mean(), projection.origin or projection.center[0]
+    side = origin + turned(middle - origin) + (1 - INWARD) * (lon - middle)
+
+    def components(nodal: Floats) -> Floats:
+        east, north = projection.components(side, lat, point.corners(nodal))
+        return np.asarray(np.stack([east, north], axis=-1) * field.speed_scale)
+
+    east, north = at_time(components).T
+    if len(weights) == 4:
+        eastward, northward = weights @ east, weights @ north
+    else:  # directions differ between the corners, as around a pole
+        vector = weights @ EARTH.vectors(lon, lat, east, north)
+        eastward, northward = EARTH.components(here[0], here[1], vector)
+    # On the map, or on the sphere; beyond the edge of a map the surface continues.
+    position = projection.positions(here[0], here[1])
+    about, size = values["position"], np.ptp(corners, axis=0).max()
+    scalars = {**values["scalars"]}
+    if not projection.is_globe:
+        scalars.pop("speed", None)  # which is that on the Earth
+    return {
+        "position": position if np.abs(position - about).max() <= size else about,
+        "scalars": scalars,
+        "lonlat": (float(turned(here[0])), float(here[1])),
+        "eastward": float(eastward),
+        "northward": float(northward),
+        "speed": float(np.hypot(eastward, northward)),
+    }

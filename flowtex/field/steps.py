@@ -118,3 +118,10 @@ def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
     if isinstance(steps, LazySteps):
         return steps.map(function)
     return np.stack([function(step) for step in steps])
+
+
+def scaled_steps(steps: Steps, scale: float) -> Steps:
+    """Return steps times a factor."""
+    if scale == 1.0:
+        return steps
+    return steps.map(lambda step: step * scale) if isinstance(steps, LazySteps) else steps * scale

@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
 
 #: Texts of data without a unit.
 NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")
@@ -15,8 +16,6 @@ LENGTHS = ("[length]", "[printing_unit]")
 TIMES = ("[time]", "[frame]")
 PRESSURES = ("[mass] / [length] / [time] ** 2",)
 VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
-#: Units of images, which are counted.
-IMAGE_TIMES = ("[frame]",)
 #: Spellings that pint reads otherwise: its px is a length of web pages.
 SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))
 
@@ -74,9 +73,38 @@ def symbol(text: str) -> str:
     return text if unit is None or not unit.dimensionality else f"{unit:~C}".replace("**", "^")
 
 
-def part(unit: str, dimensions: tuple[str, ...]) -> str:
-    """Return the part of a unit that has one of some dimensions, as ``"m"`` of ``"m/s"``."""
-    for name in dict(getattr(parsed(unit), "_units", {})):
-        if measures(name, dimensions):
-            return symbol(name)
-    return ""
+def speed_unit(length: str, time: str) -> str:
+    """Return the unit of length per time; empty where one of the units is unknown."""
+    if not length or not time:
+        return ""
+    if time.startswith(f"{length} / "):  # of examples: times in lengths per free-stream speed
+        return time.removeprefix(f"{length} / ")
+    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
+
+
+def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, str]:
+    """Return the factor from a unit of velocity to length per time, the unit of time, and a symbol.
+
+    An unknown unit of time is the velocity's own one. Velocities without a unit, or along positions
+    without one, are not converted.
+    """
+    if not velocity or velocity == speed_unit(length, time):
+        return 1.0, time, velocity
+    if length and not time:
+        time = _unit_of_time(velocity)
+    own = speed_unit(length, time)
+    scale = factor(velocity, own) if own else 1.0
+    if scale is None:
+        msg = (
+            f"velocity_unit is {velocity!r}, which cannot be converted to {own!r}, the unit of "
+            "the positions per unit of time; expected a unit of the same kind"
+        )
+        raise FieldError(msg)
+    return scale, time, symbol(velocity)
+
+
+def _unit_of_time(velocity: str) -> str:
+    """Return the unit of time in one of velocity, such as ``"d"`` of ``"m/day"``; else s."""
+    unit = parsed(velocity)
+    parts = [] if unit is None else [name for name, _ in (1 * unit).unit_items()]
+    return next((symbol(name) for name in parts if measures(name, TIMES)), "s")

@@ -29,6 +29,14 @@ def node_positions(points: Any) -> Any:
     is_tuple = isinstance(points, (tuple, list)) and len(points) in (2, 3)
     sizes = [np.ndim(part) for part in points] if is_tuple else []
     if sizes == [1, 1]:
+        for name, line in zip("xy", points, strict=True):
+            steps: Floats = np.diff(np.ma.filled(np.ma.asarray(line, dtype=float), np.nan))
+            if (steps > 0).any() and (steps < 0).any():
+                msg = (
+                    f"{name} increases and decreases; expected coordinates in one direction: sort "
+                    f"them, and the velocity with them, by np.argsort({name})"
+                )
+                raise FieldError(msg)
         points = np.meshgrid(*points)
     elif not isinstance(points, tuple) or set(sizes) != {2}:
         return points

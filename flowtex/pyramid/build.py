@@ -68,7 +68,7 @@ MOST_FAILURES = 20
 IDENTITY = (
     *("format", "times", "nodes", "parameter", "lines", "depth", "tile_cells", "components"),
     *("axes", "height", "has_position", "periodic", "projection", "scalars", "uncertainty"),
-    *("units", "time_unit", "length_unit", "start"),
+    *("units", "time_unit", "length_unit", "velocity_unit", "start"),
 )
 
 
@@ -277,7 +277,7 @@ def _prepared(
         about = {**about, "ranges": source.ranges()}
     else:
         stored = check_about(stored, place)
-        entries = {"uncertainty": "", **stored}  # earlier versions wrote none
+        entries = {"uncertainty": "", "velocity_unit": "", **stored}  # earlier versions wrote none
         differing = [name for name in IDENTITY if entries.get(name) != about[name]]
         if differing:
             msg = (

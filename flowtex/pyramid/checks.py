@@ -117,7 +117,7 @@ _ABOUT: dict[str, Check] = {
     "components": _either(2, 3),
     "height": _number,
     "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
-    "uncertainty": _or_none(_text),
+    **dict.fromkeys(("uncertainty", "velocity_unit"), _or_none(_text)),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
     "ranges": _or_none(_by_name(_ENDS)),

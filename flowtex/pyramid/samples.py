@@ -22,6 +22,7 @@ from flowtex.pyramid.layout import (
     Arrays,
     Part,
     create_array,
+    empty_field,
     parts_along,
 )
 from flowtex.textures.tiles import ends_of
@@ -51,7 +52,7 @@ def write_samples(array: Arrays, about: About, part: Part, nodes: Nodes) -> None
     step, shape = _spacing(about), _shape(about)
     values = {**nodes.scalars}
     if "speed" not in values:
-        values["speed"] = norm(nodes.velocity)
+        values["speed"] = norm(nodes.velocity) * empty_field(about).speed_scale
     result = np.full((len(values), 2 + math.prod(shape)), np.nan)
     for row, name in zip(result, _quantities(about), strict=True):
         known_values: Floats = np.where(nodes.valid, values[name], np.nan)

@@ -547,7 +547,7 @@ def share_field(field: FlowField) -> FlowField:
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     text = field.formula and (field.formula.texts, field.formula.parameters)
     words = (*names, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
-    units = tuple(field.units.items())
+    units = (field.velocity_unit, *field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)
     inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)

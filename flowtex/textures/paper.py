@@ -220,7 +220,7 @@ def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
 
 def _by_length(components: Floats, field: FlowField) -> Floats:
     """Return the cells crossed in a unit of length; nodes at rest take that of the nearest one."""
-    speed = field.speed[0]
+    speed = field.index_velocity.speed[0]
     moving = field.valid & (speed > 1e-7 * speed.max())
     if not moving.any():
         return np.zeros_like(components)

@@ -269,7 +269,7 @@ class TextureSet:
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
         """Return the speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
-        speed = self.geometry.field.speed[self._step(slices)]
+        speed = self.geometry.field.index_velocity.speed[self._step(slices)]
         return np.asarray(speed[self.geometry.texels] / self.typical_speed)
 
     def _step(self, slices: TraceSlices) -> int:

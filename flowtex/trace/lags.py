@@ -65,7 +65,7 @@ def choose_lags(
     if parameter == "arclength":
         first, last = first_cells, longest / small_cell(field)
     else:
-        speed = field.typical.speed[:, field.valid]
+        speed = field.typical.index_velocity.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
             return RATIO ** np.arange(float(least))
@@ -84,14 +84,15 @@ def choose_lags(
 
 
 def typical_speed(field: FlowField) -> float:
-    """Return the root mean square of the speed in the field's own units; 1 in a flow at rest.
+    """Return the root mean square of the speed, in length per time; 1 in a flow at rest.
 
     On a map it is that of the speed on the Earth: towards the poles a flat map stretches velocities
     without limit.
     """
     typical = field.typical
     on_earth = field.projection is not None and "speed" in field.scalars
-    speed = np.asarray(typical.scalars["speed"] if on_earth else typical.speed)[:, field.valid]
+    steps = typical.scalars["speed"] if on_earth else typical.speed
+    speed = np.asarray(steps)[:, field.valid] / field.speed_scale
     finite = speed[np.isfinite(speed)]
     return float(np.sqrt(np.square(finite).sum() / max(finite.size, 1))) or 1.0
 

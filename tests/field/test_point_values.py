@@ -6,10 +6,17 @@ from datetime import datetime
 
 import numpy as np
 import pytest
+import xarray as xr
 from earth_fields import winds
+from numpy.typing import NDArray
+from scipy.interpolate import RegularGridInterpolator
+from scipy.spatial import Delaunay
 
 from flowtex import FieldError, FlowField
+from flowtex.field.earth import Projection
 from flowtex.field.point_values import values_at
+
+Floats = NDArray[np.float64]
 
 
 def test_values_are_linear_in_space_and_time() -> None:
@@ -116,3 +123,115 @@ def test_a_time_may_be_a_date_where_the_times_are() -> None:
         values_at(field, (1, 1), "2000-01-04")
     with pytest.raises(FieldError, match="time is 'noon'; expected a number, or a date such as"):
         values_at(field, (1, 1), "noon")
+
+
+def weather(lon: Floats, lat: Floats, hours: tuple[int, ...] = (0,)) -> xr.Dataset:
+    """A wind on the Earth in m/s, and a scalar."""
+    t = xr.DataArray(np.array(hours, float), dims="time") / 12
+    b, a = (xr.DataArray(np.radians(v), dims=[d]) for v, d in ((lat, "lat"), (lon, "lon")))
+    parts = {
+        "u": 10 * np.cos(b) + 4 * np.sin(2 * a + t),
+        "v": 6 * np.sin(a - t) * np.cos(b) + 2 * np.sin(3 * b) + 0 * t,
+        "warmth": 280 + 20 * np.cos(b) * np.sin(a),
+    }
+    names = {"u": "eastward_wind", "v": "northward_wind"}
+    data = xr.Dataset(parts).assign_coords(lon=lon, lat=lat)
+    data = data.assign_coords(
+        time=np.datetime64("2024-01-01", "ns") + (t.values * 12).astype("m8[h]")
+    )
+    for name, standard in names.items():
+        data[name].attrs = {"units": "m s-1", "standard_name": standard}
+    return data.transpose("time", "lat", "lon", ...)
+
+
+MAPS = ["globe", "platecarree", "mercator", "robinson", "north", "+proj=laea +lat_0=50 +lon_0=20"]
+
+
+@pytest.mark.parametrize("projection", MAPS)
+def test_values_are_those_of_the_data_on_every_map(
+    projection: str, rng: np.random.Generator
+) -> None:
+    data = weather(np.arange(0, 61, 2.5), np.arange(20, 71, 2.5), (0, 6, 12))
+    field = FlowField.from_xarray(data, projection=projection)
+    for lon, lat, hour in rng.uniform((0, 20, 0), (60, 70, 12), (12, 3)):
+        when = np.datetime64("2024-01-01", "s") + np.timedelta64(int(3600 * hour), "s")
+        got, expected = field.at(lon, lat, when), data.interp(lon=lon, lat=lat, time=when)
+        assert got is not None
+        assert got.eastward == pytest.approx(float(expected.u), abs=2e-6)
+        assert got.northward == pytest.approx(float(expected.v), abs=2e-6)
+        assert got.speed == pytest.approx(float(np.hypot(expected.u, expected.v)), abs=2e-6)
+        assert got.scalars == {"warmth": pytest.approx(float(expected.warmth))}
+        assert got.lonlat == pytest.approx((lon, lat))
+        assert got.speed_unit == "m/s"
+    for lon, lat in ((61, 40), (-0.1, 40), (30, 71), (30, 19.9), (240, -40)):
+        assert field.at(lon, lat) is None
+
+
+@pytest.mark.parametrize("projection", ["globe", "mercator", "north"])
+def test_values_do_not_change_at_the_date_line_and_the_pole(projection: str) -> None:
+    data = weather(np.arange(-180, 180, 4.0), np.arange(0, 91, 3.0))
+    closed = xr.concat([data, data.isel(lon=[0]).assign_coords(lon=[180.0])], "lon")
+    field = FlowField.from_xarray(data, projection=projection)
+    high = [] if projection == "mercator" else [(12.0, 89.0), (-100.0, 88.1), (33.0, 90.0)]
+    for lon, lat in [(179.0, 40.3), (-179.9, 11.0), (178.3, 0.0), *high]:
+        got, expected = field.at(lon, lat), closed.isel(time=0).interp(lon=lon, lat=lat)
+        assert got is not None
+        parts = [float(expected.u), float(expected.v)]
+        assert [got.eastward, got.northward] == pytest.approx(parts, abs=1e-5)
+
+
+def test_triangles_around_the_pole_agree_on_the_globe_and_a_map() -> None:
+    # A solid rotation, which has no direction of its own at the pole.
+    places = np.random.default_rng(1).normal((0, 0, 2), size=(800, 3))
+    places = places[places[:, 2] > 0] / np.linalg.norm(places[places[:, 2] > 0], axis=1)[:, None]
+    lon, lat = np.degrees(np.arctan2(*places.T[1::-1])), np.degrees(np.arcsin(places[:, 2]))
+    triangles = Delaunay(places[:, :2] / (1 + places[:, 2:])).simplices
+    turning = np.cross([3.0, 4, 5], places)
+    globe = Projection("globe")
+    east, north = globe.components(lon, lat, turning)
+    fields = [
+        FlowField.from_triangles(
+            projection.positions(lon, lat),
+            triangles,
+            projection.vectors(lon, lat, east, north),
+            projection=projection,
+            length_unit="m",
+            time_unit="s",
+        )
+        for projection in (globe, Projection("north"))
+    ]
+    for at in ((20.0, 89.9), (-150.0, 75.0), (100.0, 60.0)):
+        one, other = (field.at(*at) for field in fields)
+        assert one is not None and other is not None
+        here = [np.atleast_1d(degrees) for degrees in at]
+        moved = np.cross([3.0, 4, 5], globe.positions(here[0], here[1]) / 6_371_000)
+        parts = [float(part[0]) for part in globe.components(here[0], here[1], moved)]
+        assert [one.eastward, one.northward] == pytest.approx(parts, abs=0.1)
+        same = [one.eastward, one.northward, one.speed]
+        assert [other.eastward, other.northward, other.speed] == pytest.approx(same, abs=1e-5)
+
+
+def test_a_blank_place_has_no_values() -> None:
+    data = weather(np.arange(0, 61, 2.0), np.arange(-40, 41, 2.0))
+    land = (data.lon > 20) & (data.lon < 30) & (data.lat > 0) & (data.lat < 20)
+    for projection in ("globe", "mercator"):
+        field = FlowField.from_xarray(data.where(~land), projection=projection)
+        assert field.at(25, 10) is None and field.at(17, 10) is not None
+
+
+def test_a_point_in_space_is_bilinear_in_a_rectangle() -> None:
+    x, y = np.array([0.0, 1, 3, 4]), np.array([0.0, 2, 3])
+    flow = np.random.default_rng(0).normal(size=(2, 3, 4, 2))
+    field = FlowField.from_arrays((x, y), flow, times=[0, 2], time_unit="s")
+    expected = RegularGridInterpolator((np.array([0.0, 2]), y, x), flow)((0.5, 1.2, 2.3))
+    got = field.at(2.3, 1.2, time=0.5)
+    assert got is not None
+    assert got.velocity[:2] == pytest.approx(expected)
+    assert got.speed == pytest.approx(np.hypot(*expected))
+    places = np.stack([*np.meshgrid(x, y), np.full((3, 4), 5.0)], axis=-1)
+    raised = FlowField.from_arrays(places, flow[0])
+    one, other = raised.at(2.3, 1.2), raised.at(2.3, 1.2, 5.0)
+    assert one is not None and other is not None and one.speed == other.speed
+    assert raised.at(2.3, 1.2, 4.0) is None
+    with pytest.raises(FieldError, match="expected finite numbers"):
+        field.at(np.nan, 1.0)

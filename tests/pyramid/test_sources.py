@@ -163,7 +163,7 @@ def test_several_files_of_a_series_are_read_by_regions(tmp_path: Path) -> None:
         data.isel(time=[step]).to_netcdf(path)
     source = source_of(paths)
     assert isinstance(source, RegionSource)
-    assert all(variable.chunks for variable in source.regions.components)
+    assert all(part.variable.chunks for part in source.regions.values.components)
     at = (slice(3, 30), slice(5, 60))
     whole = FlowField.from_xarray(data).velocity
     np.testing.assert_array_equal(source.nodes(1, *at).velocity, np.asarray(whole[1])[at])

@@ -16,6 +16,7 @@ from flowtex._util.array_types import Floats
 from flowtex.app.server.validation import mapping, number
 from flowtex.app.streaming.viewport import Pane, Viewport
 from flowtex.field import FlowField
+from flowtex.field.locate import CURVED_TOLERANCE, FLAT_TOLERANCE
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import SPEED
 from flowtex.scene.probe import PointValues, Probe, locate, probe, values_at
@@ -30,8 +31,6 @@ FEWEST_SAMPLES = 10
 UNIT_LENGTH = 12
 #: Distance from a critical point, in pixels, that counts as on it.
 MARK_REACH_PX = 9
-#: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
-CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
 
 
 def number_text(x: float, digits: int = DIGITS) -> str:

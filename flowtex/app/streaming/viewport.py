@@ -22,7 +22,7 @@ from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.surface import Surface
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
@@ -378,17 +378,10 @@ class Viewport:
         surface = handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
-            if isinstance(surface, TriangleSurface):
-                # The drawn mesh has only the triangles of the last part.
-                meshes = [_meshes.get("mesh", partial(_whole_mesh, surface), owner=surface)]
-            else:
-                meshes = handle.meshes
-            hits = (
-                mesh.ray_trace(start, start + direction * reach, first_point=True)[0]
-                for mesh in meshes
-            )
-            points = [np.asarray(hit, dtype=float) for hit in hits if len(hit)]
-            return min(points, key=lambda p: float((p - start) @ direction), default=None)
+            # The drawn mesh has only the triangles of the last part.
+            mesh = _meshes.get("mesh", partial(_whole_mesh, surface), owner=surface)
+            hit, _ = mesh.ray_trace(start, start + direction * reach, first_point=True)
+            return np.asarray(hit, dtype=float) if len(hit) else None
         normal = np.cross(*surface.frame)
         slope = float(direction @ normal)
         if abs(slope) < 1e-9:
@@ -404,10 +397,10 @@ class Viewport:
 _meshes: WeakCache[pv.PolyData] = WeakCache()
 
 
-def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
+def _whole_mesh(surface: Surface) -> pv.PolyData:
     """Return the mesh of all drawn triangles of a surface."""
-    triangles: Any = surface.triangles[surface.cells]
-    return pv.PolyData.from_regular_faces(surface.points[0], triangles)
+    triangles: Any = surface.corners_of(surface.drawn)
+    return pv.PolyData.from_regular_faces(surface.points.reshape(-1, 3), triangles)
 
 
 def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:

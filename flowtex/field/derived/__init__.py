@@ -75,17 +75,10 @@ def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
     return FOLLOWED[name](field, horizon)
 
 
-def derived_unit(name: str, time_unit: str) -> str:
-    """Return the unit of a derived scalar; empty where that of time is unknown."""
-    if not time_unit:
+def derived_unit(name: str, field: Any) -> str:
+    """Return the unit of a derived scalar of a field; empty where it is unknown."""
+    time = field.time_unit
+    if not time or (field.velocity_unit and not field.length_unit):
         return ""
-    return f"1/{time_unit}²" if name == "okubo_weiss" else f"1/{time_unit}"
-
-
-def speed_unit(length: str, time: str) -> str:
-    """Return the unit of speed; empty where one of the units is unknown."""
-    if not length or not time:
-        return ""
-    if time.startswith(f"{length} / "):
-        return time.removeprefix(f"{length} / ")
-    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
+    time = f"({time})" if "/" in time else time
+    return f"1/{time}²" if name == "okubo_weiss" else f"1/{time}"

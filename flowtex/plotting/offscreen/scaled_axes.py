@@ -180,7 +180,7 @@ def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> Flo
     plane = AxesScales(Figure().add_subplot(projection="polar")).field(field, frame)
     rows, columns = field.shape  # the plane may have one more line, which closes it
     values = np.stack([np.asarray(step)[:rows, :columns] for step in plane.derive(name)])
-    units = {**field.units, name: derived_unit(name, field.time_unit)}
+    units = {**field.units, name: derived_unit(name, field)}
     return replace(field, scalars={**field.scalars, name: values}, units=units)
 
 

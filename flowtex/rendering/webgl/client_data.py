@@ -21,7 +21,6 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.field import FlowField
-from flowtex.field.derived import speed_unit
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
@@ -408,8 +407,8 @@ class ClientData:
         field = self.field
         return {
             "label": field.speed_label,
-            "unit": speed_unit(field.length_unit, field.time_unit),
-            "typical": float(self.textures.typical_speed),
+            "unit": field.speed_unit,
+            "typical": float(self.textures.typical_speed * field.speed_scale),
         }
 
     def _earth(self) -> Header | None:

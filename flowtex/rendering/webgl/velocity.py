@@ -24,8 +24,6 @@ from flowtex.trace.charts import Charts
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
-#: Share of the typical speed by which that along the surface may differ from the whole one.
-SAME_SPEED_SHARE = 1e-3
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4
 #: Error of a position as a share of a small cell, and which percentile that is.
@@ -164,11 +162,11 @@ def _is_blanked(valid: Bools) -> bool:
 
 
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
-    """Return the velocity of one time, (J, I, 3 to 5).
+    """Return the velocity of one time, (J, I, 3 or 5).
 
     The channels are the rate along i and j, in cells per length of a cell; the speed along the
-    surface, in multiples of the typical speed; the whole speed, if it differs; and the uncertainty
-    of the direction, if the field has one. All are rounded to the precision that paths and colours
+    surface, in multiples of the typical speed; and, if the field has an uncertainty of the
+    direction, the speed once more and that. All are rounded to the precision that paths and colours
     need.
     """
     field = textures.geometry.field.at_step(step)
@@ -180,14 +178,8 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     cells = components * _sizes(textures)[..., None]
     np.divide(cells, speed[..., None], out=rate, where=moves[..., None])
     channels = [rate[..., 0], rate[..., 1], speed / typical]
-    full_speed = np.asarray(field.speed[0])
-    differs = (
-        np.abs(full_speed - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical
-    )
-    if differs or field.uncertainty:
-        channels.append(fill_blanked(full_speed, valid) / typical)
     if field.uncertainty:
-        channels.append(unknown_share(field, 0))
+        channels += [channels[2], unknown_share(field, 0)]
     share, exponent = np.frexp(channels[2:])
     channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
     across = norm(field.surface.tangents)[:, ::4, ::4] / _sizes(textures)[::4, ::4]

@@ -9,6 +9,7 @@ import numpy as np
 from flowtex._util.arguments import is_number
 from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError
+from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import (
     LEVEL,
@@ -49,7 +50,15 @@ def align(
         indexes = u.indexes.get(dim), v.indexes.get(other)
         if dim == other and indexes[0] is not None and indexes[0].equals(indexes[1]):
             continue
-        lines = line_of(u, dim), line_of(v, other)
+        lines = [line_of(u, dim), line_of(v, other)]
+        named = [
+            str(a.coords[d].attrs.get("units", "")) if d in a.coords else ""
+            for a, d in ((u, dim), (v, other))
+        ]
+        factor = units.factor(named[1], named[0]) if named[0] != named[1] else None
+        if factor is not None and lines[1] is not None and lines[1].dtype.kind in "fiu":
+            record("align", f"{other} of {v.name} converted from {named[1]} to {named[0]}")
+            lines[1] = lines[1] * factor
         if lines[0] is not None and lines[1] is not None:
             found = common(u, v, dim, lines[0], lines[1], record)
             kept = lines[0][found.one]

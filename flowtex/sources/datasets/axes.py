@@ -163,7 +163,7 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
     for dim in (NODES, FACES):
         if dim in array.dims:
             return (dim,)
-    axes = array.cf.axes
+    axes = marked_axes(array)
     dims = [str(d) for d in array.dims]
     if len(dims) < 2:
         return tuple(dims)
@@ -186,14 +186,22 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
     return pair if pair[0] != pair[1] else (dims[-2], dims[-1])
 
 
+def marked_axes(array: xr.DataArray) -> dict[str, list[str]]:
+    """Return the coordinates of the axes X, Y, Z and T, which are marked in all datasets."""
+    axes: dict[str, list[str]] = {}
+    for name, coordinate in array.coords.items():
+        axes.setdefault(str(coordinate.attrs.get("axis", "")), []).append(str(name))
+    return axes
+
+
 def axis_kind(array: xr.DataArray, dim: str) -> str:
     """Return ``"time"``, ``"level"``, or the name of another axis."""
-    axes = array.cf.axes
+    axes = marked_axes(array)
     named = array.coords[dim].attrs if dim in array.coords else {}
     by_name = TIMES.match(dim) and not {*axes.get("X", ()), *axes.get("Y", ())} & {dim}
     if dim in axes.get("T", ()) or _dates(array, dim) is not None or by_name:
         return TIME
-    vertical = (*axes.get("Z", ()), *array.cf.coordinates.get("vertical", ()))
+    vertical = axes.get("Z", [])
     if dim in vertical or LEVELS.match(dim) or named.get("standard_name") == "air_pressure":
         return LEVEL
     on_axis = [name for name in vertical if array.coords[name].dims == (dim,)]
@@ -305,7 +313,7 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
 
 def axis_direction(array: xr.DataArray, dim: str) -> int:
     """Return 1 where the coordinate of a dimension grows with its indices, or -1."""
-    coordinate = array.coords.get(dim)
+    coordinate = coordinate_of(array, dim)
     if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
         return 1
     first, last = (float(coordinate.values[n]) for n in (0, -1))
@@ -323,6 +331,11 @@ def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
     return None
 
 
+def coordinate_of(array: xr.DataArray, dim: str) -> xr.DataArray | None:
+    """Return the coordinate of a dimension; xarray makes up numbers for one that lacks it."""
+    return next((c for name, c in array.coords.items() if name == dim), None)
+
+
 def is_dates(coordinate: xr.DataArray) -> bool:
     """Return whether a coordinate has dates, of any calendar."""
     kind = coordinate.dtype.kind
@@ -336,7 +349,7 @@ def line_of(array: xr.DataArray, dim: str) -> AnyArray | None:
     dates = _dates(array, dim)
     if dates is not None:
         return dates
-    coordinate = array.coords.get(dim)
+    coordinate = coordinate_of(array, dim)
     if coordinate is None:
         alike = [c for c in array.coords.values() if c.dims == (dim,)]
         coordinate = alike[0] if len(alike) == 1 else None
@@ -381,10 +394,16 @@ def _drawn(
             return _nearest(target, line, name)
     if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
         return list(range(count))
+    if kind == TIME and line is not None and count > 1:
+        msg = (
+            f"{dim} has the texts {labels.text(line)}, which are not dates; expected dates such as "
+            f"2024-01-31T06:00, or numbers. Set them, as in ds.assign_coords({dim}=...)"
+        )
+        raise FieldError(msg)
     if count == 1:
         return 0
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
-        number, reason = _at_surface(line, array.coords.get(dim)), "the nearest to the surface"
+        number, reason = _at_surface(line, coordinate_of(array, dim)), "the nearest to the surface"
     else:
         number, reason = 0, "the first"
     value = None if line is None else line[number]
@@ -488,7 +507,7 @@ def _places(line: AnyArray, target: Any) -> tuple[Floats, tuple[float, float]]:
 
 
 def _unit(array: xr.DataArray, dim: str) -> str:
-    coordinate = array.coords.get(dim)
+    coordinate = coordinate_of(array, dim)
     return "" if coordinate is None else str(coordinate.attrs.get("units", ""))
 
 

@@ -15,7 +15,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, horizontal_dims
+from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, coordinate_of, horizontal_dims
 from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.record import Record
 
@@ -31,6 +31,8 @@ LATITUDE = re.compile(
 )
 ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
+#: Words of data of the Earth.
+EARTHLY = re.compile(r"east|north|lon|lat|wind|ocean|sea|zonal|xi_|eta_|nav_|west", re.I)
 #: Names of polar coordinates: the distance from the centre, and the angle.
 RADII = re.compile(r"^(r|rho|radius|radial\w*|range)$", re.I)
 ANGLES = re.compile(r"^(phi|theta|azimuth|angle|az|polar_angle)$", re.I)
@@ -108,13 +110,16 @@ def find_places(
         a, b = _at_nodes(lon, lat, dims, shape, drawn)
         if a is None or b is None or (degrees := _in_degrees(a, b, lon, lat)) is None:
             continue
+        turned = ", converted from radians" if degrees[0] is not a else ""
         a, b = degrees
         unset = (a == 0) & (b == 0) if min(a.shape) > 1 else np.False_
         if unset.sum() > 1:  # where a model leaves out land
             a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
         is_line = lon.ndim == 1
         a, b = _over_nodes(np.unwrap(a, period=360.0) if is_line else a, b)
-        places = Places(a, b, is_earth=True, is_line=is_line, why=f"{lon.name} and {lat.name}")
+        places = Places(
+            a, b, is_earth=True, is_line=is_line, why=f"{lon.name} and {lat.name}{turned}"
+        )
         if found is None:
             found = places
             if is_line:
@@ -130,6 +135,13 @@ def find_places(
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
+    if not EARTHLY.search(f"{array.attrs} {array.name} {dims} {list(array.coords)}"):
+        lacking = [d for d, line in zip(dims, lines, strict=True) if line is None]
+        msg = (
+            f"{array.name!r} has no coordinates along {' and '.join(lacking)}; add them, as in "
+            f"ds.assign_coords({lacking[0]}=...), or open the file that has them with this one"
+        )
+        raise FieldError(msg)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     msg = (
         f"{array.name!r} with the dimensions {', '.join(dims)} has neither longitude and latitude "
@@ -140,17 +152,23 @@ def find_places(
     raise FieldError(msg)
 
 
-def ordered(array: xr.DataArray, record: Record) -> xr.DataArray:
+def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
     """Return a variable whose axes of the surface are in order, by their labels."""
     for dim in horizontal_dims(array):
-        line = array.coords.get(dim)
+        line = coordinate_of(array, dim)
         if line is None or line.dtype.kind not in "fiu" or line.size < 3:
             continue
         values = np.asarray(line.values, dtype=float)
+        known = np.isfinite(values)
+        if known.any() and not known.all():
+            text = f"{array.name}: {(~known).sum()} of {known.size} {dim} are NaN, and left out"
+            record(step, text, notable=True)
+            array, values = array.isel({dim: known}), values[known]
+            line = array.coords[dim]
         if units.factor(str(line.attrs.get("units", "")), "degree") and LONGITUDE.match(dim):
             values = np.unwrap(values, period=360.0)
         steps = np.diff(values)
-        if (steps > 0).all() or (steps < 0).all() or not np.isfinite(values).all():
+        if (steps > 0).all() or (steps < 0).all() or not known.any():
             continue
         if not _is_degrees(line):
             keys = values
@@ -166,7 +184,7 @@ def ordered(array: xr.DataArray, record: Record) -> xr.DataArray:
                 f"ds.drop_duplicates({dim!r})"
             )
             raise FieldError(msg)
-        record("coordinates", f"{dim} is not in order, and was sorted", notable=True)
+        record(step, f"{array.name}: sorted by {dim}", notable=step == "coordinates")
         array = array.isel({dim: order})
     return array
 
@@ -224,7 +242,8 @@ def _pairs(
     for a in sorted(candidates[0], key=lambda c: (order(c), firsts[id(c)])):
         partners = _partner_names(str(a.name))
         for b in sorted(candidates[1], key=lambda c: str(c.name).lower() not in partners):
-            if a.ndim == b.ndim and str(b.name).lower() in partners:
+            of_axes = a.dims == (dims[1],) and b.dims == (dims[0],)
+            if a.ndim == b.ndim and (of_axes or str(b.name).lower() in partners):
                 yield a, b
 
 

@@ -18,6 +18,7 @@ from flowtex.sources.datasets.axes import (
     Drawn,
     axis_direction,
     choose,
+    coordinate_of,
     horizontal_dims,
 )
 from flowtex.sources.datasets.components import Orientation, component_units, orientation
@@ -106,7 +107,7 @@ class Flow:
         at: list[Any] = []
         period = 360.0 if self.places.is_earth else None
         for n, (dim, cell) in enumerate(zip(surface, self.cells, strict=True)):
-            line = part.coords.get(dim)
+            line = coordinate_of(part, dim)
             is_line = line is not None and line.dtype.kind in "fiu" and self.places.is_line
             if line is not None and is_line and not self.staggered:
                 own = np.asarray(line.values, dtype=float)
@@ -149,7 +150,7 @@ def read_flow(
     if mesh is not None and len(horizontal_dims(one)) > 1:
         mesh = None
     if mesh is None:
-        one, two = ordered(one, record), ordered(two, Record())
+        one, two = ordered(one, record, "coordinates"), ordered(two, record, "align")
     elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
         msg = (
             f"{one.name!r} has {', '.join(map(str, one.dims))} and {two.name!r} "
@@ -247,6 +248,8 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
         part = Component(array.variable, factor, valid)
         sample = [read_step(part.variable, 0, at, axes=axes) for at in _examined(array, axes)]
         flat = np.concatenate([values.ravel() for values in sample])
+        if unknown := np.isnan(flat).mean():
+            record("mask", f"{unknown:.0%} of {array.name} is missing")
         if valid is not None:
             outside = (flat < valid[0]) | (flat > valid[1])
             if outside.any():

@@ -40,6 +40,8 @@ from flowtex.sources.datasets.masks import (
 )
 from flowtex.sources.datasets.regions import Regions, Words, region_lines
 from flowtex.sources.datasets.select import (
+    Pair,
+    choose_pair,
     find_pairs,
     other_velocities,
     variable,
@@ -100,9 +102,13 @@ def read_datasets(
         if is_section(datasets, u, v):
             return read_section(datasets, u, v, name=name, sel=sel, isel=isel or {})
         options: dict[str, Any] = {"mask": mask, "components": components}
-        flow, spread = read_flow(datasets, u, v, record, sel=sel, isel=isel, **options), None
+        options |= {"sel": sel, "isel": isel}
+        spread: Callable[[int], Floats] | None = None
         if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
-            flow, spread = _averaged(flow, uncertainty, sel, isel, options)
+            pair = choose_pair(datasets, u, v)
+            flow, spread = _averaged(datasets, pair, uncertainty, record, options)
+        else:
+            flow = read_flow(datasets, u, v, record, **options)
         for note in other_velocities(datasets, flow.pair) if u is None else ():
             record("select", note, notable=True)
         if not flow.places.is_earth and projection is not None:
@@ -200,15 +206,11 @@ def _note_rest(read: Callable[[int], tuple[Floats, Floats]], count: int, flow: F
 
 
 def _averaged(
-    flow: Flow,
-    dim: str,
-    sel: Mapping[str, Any],
-    isel: Mapping[str, Any] | None,
-    options: Mapping[str, Any],
+    datasets: Datasets, pair: Pair, dim: str, record: Record, options: Mapping[str, Any]
 ) -> tuple[Flow, Callable[[int], Floats]]:
     """Return the mean over a dimension, and a reader of the spread."""
-    datasets, chosen = flow.datasets, {**sel, **(isel or {})}
-    u, v = (variable(datasets, str(a.name)) for a in (flow.pair.u, flow.pair.v))
+    u, v, isel = pair.u, pair.v, options["isel"] or {}
+    chosen = {**options["sel"], **isel}
     if dim in horizontal_dims(u) or dim not in {*u.dims} & {*v.dims}:
         names = [str(d) for d in u.dims if d not in horizontal_dims(u)]
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
@@ -218,21 +220,18 @@ def _averaged(
             f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
         )
         raise FieldError(msg)
-    pair = str(u.name), str(v.name)
     members = [
         read_flow(
             datasets,
-            pair[0],
-            pair[1],
-            Record(),
-            sel=sel,
-            isel={**(isel or {}), dim: number},
-            **options,
+            str(u.name),
+            str(v.name),
+            record,
+            **{**options, "isel": {**isel, dim: number}},
         )
         for number in range(u.sizes[dim])
     ]
     mean, spread = mean_and_spread([member.components for member in members])
-    flow.record("select", f"mean over {dim}", caption=f"mean over {dim}")
+    record("select", f"mean over {dim}", caption=f"mean over {dim}")
     drawn = members[0].drawn
     if axis_kind(u, dim) == TIME:
         drawn = replace(drawn, times=None)
@@ -242,7 +241,7 @@ def _averaged(
     ]
     kept = Datasets(others, opened=datasets.opened)
     changes: dict[str, Any] = {"mean": mean, "drawn": drawn, "datasets": kept}
-    return replace(members[0], record=flow.record, **changes), spread
+    return replace(members[0], **changes), spread
 
 
 def _on_grid(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
@@ -272,27 +271,24 @@ def _on_mesh(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]
 
 def _units(flow: Flow) -> dict[str, str]:
     """Return the units of positions and times, and record those that are assumed."""
-    record, unit, pair = flow.record, flow.unit, flow.pair
-    names = f"{pair.u.name} and {pair.v.name} have"
-    time = flow.drawn.time_unit if flow.drawn.steps > 1 else ""
-    if flow.drawn.times is not None and np.asarray(flow.drawn.times).dtype.kind in "mMO":
-        time = "s"
-    length = "m" if flow.places.is_earth else flow.places.unit
-    if flow.places.is_earth and unit and units.factor(unit, "m/s") is None:
-        msg = f"the unit of {names[:-5]} is {unit!r}; expected one such as m/s on the Earth"
+    record, unit = flow.record, flow.unit
+    names = f"{flow.pair.u.name} and {flow.pair.v.name}"
+    times = flow.drawn.times
+    is_date = times is not None and np.asarray(times).dtype.kind in "mMO"
+    time = "s" if is_date else flow.drawn.time_unit
+    if not flow.places.is_earth:
+        length = flow.places.unit
+        if not unit and length and time:
+            record("units", f"{names} have no unit; {length}/{time} is assumed", notable=True)
+        return {"length_unit": length, "time_unit": time}
+    if unit and units.factor(unit, "m/s") is None:
+        msg = f"the unit of {names} is {unit!r}; expected one such as m/s on the Earth"
         raise FieldError(msg)
-    if not unit and flow.places.is_earth:
-        record("units", f"{names} no unit; m/s is assumed", notable=True)
-    elif not unit and length:
-        record("units", f"{names} no unit; {length}/s is assumed", notable=True)
-    if unit and not length:
-        length = units.part(unit, units.LENGTHS) or "m"
-        record("units", f"{flow.places.why} have no unit; {length} is assumed", notable=True)
-    if not time and (unit or length):
-        time = units.part(unit, units.IMAGE_TIMES) or "s"
-        if flow.drawn.steps > 1:
-            record("units", f"times have no unit; {time} is assumed", notable=True)
-    return {"length_unit": length, "time_unit": time}
+    if not unit:
+        record("units", f"{names} have no unit; m/s is assumed", notable=True)
+    if not time and flow.drawn.steps > 1:
+        record("units", "times have no unit; s is assumed", notable=True)
+    return {"length_unit": "m", "time_unit": time or "s"}
 
 
 def _regions(
@@ -309,7 +305,7 @@ def _regions(
     if lines.projection is not None and not lines.projection.is_globe:
         others.pop("speed", None)
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
-    inner = f"{named['length_unit']}/{named['time_unit']}"
+    inner = units.speed_unit(named["length_unit"], named["time_unit"])
     return Regions(
         Words(
             length_unit=named["length_unit"],

@@ -248,9 +248,9 @@ def _partners(
 
 
 def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
-    """Return whether two variables have as many axes, and units of the same kind."""
+    """Return whether two variables have units of the same kind."""
     kinds = {_is_velocity(u), _is_velocity(v)}
-    return u.name != v.name and u.ndim == v.ndim and (len(kinds) == 1 or False not in kinds)
+    return u.name != v.name and (len(kinds) == 1 or False not in kinds)
 
 
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:

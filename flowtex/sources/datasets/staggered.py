@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels
@@ -295,7 +295,11 @@ def _own_places(
 ) -> Places | None:
     """Return the places of a variable by coordinates that have its own dimensions."""
     own = {str(n): c for n, c in {**source.variables, **array.coords}.items()}
-    names = [n for n in own if n in source.variables and {*dims} & {*source[n].dims}]
+    names = [
+        n
+        for n in own
+        if n in source.variables and (not source[n].dims or {*dims} & {*source[n].dims})
+    ]
     if len(dims) < 2:
         return None
     foreign = {d for n in names for d in source[n].dims} - {*array.dims, *dims}
@@ -475,5 +479,6 @@ def _line(name: str, datasets: Sequence[xr.Dataset]) -> Floats | None:
         if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
             values = np.asarray(values_in(ds[name]), dtype=float)
             # Mere indices of the nodes are not coordinates.
-            return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
+            is_index = np.array_equal(values, np.arange(len(values)) + values[0])
+            return None if is_index and not ds[name].attrs.get("units") else values
     return None

@@ -162,7 +162,7 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
         if ds.sizes[dim] == len(dates):
             return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
     for axis in ds.dims:
-        line = ds.coords.get(axis)
+        line = ds.variables.get(axis)
         if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
             return ds.assign_coords({axis: (axis, _days(line.values), {"axis": "T"})})
     return ds
@@ -181,7 +181,13 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         guessed: xr.Dataset = ds.cf.guess_coord_axis()
-        return guessed
+        # Asked for often, and slowly found: each coordinate is marked with its axis.
+        marks = {**guessed.cf.axes, "Z": guessed.cf.axes.get("Z", [])}
+        marks["Z"] = [*marks["Z"], *guessed.cf.coordinates.get("vertical", [])]
+        for axis, names in marks.items():
+            for name in names:
+                guessed[name].attrs.setdefault("axis", axis)
+    return guessed
 
 
 def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:

@@ -21,6 +21,7 @@ VALUES = (
     "name",
     "length_unit",
     "time_unit",
+    "velocity_unit",
     "sign_free",
     "units",
     "long_names",

@@ -92,5 +92,5 @@ def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tu
 
 def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
     """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
-    steps = field.speed if root.leaves_surface else norm(field.velocity)
-    return np.asarray(np.asarray(steps)[:, field.valid])
+    steps = field.index_velocity.speed if root.leaves_surface else norm(field.velocity)
+    return np.asarray(steps)[:, field.valid] * field.speed_scale

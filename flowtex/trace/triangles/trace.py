@@ -108,7 +108,7 @@ def _direct_lags(field: FlowField, parameter: str, lags: Floats, unit: Floats) -
     """Return how many of the lags are integrated; the others are composed."""
     if not field.steady or field.sign_free or not np.all(unit == unit.flat[0]):
         return len(lags)
-    speed = field.speed[0][field.valid]
+    speed = field.index_velocity.speed[0][field.valid]
     moving = speed[speed > 0]
     pace = float(np.median(moving)) if parameter == "time" and len(moving) else 1.0
     return direct_lags(lags, pace * float(unit.flat[0]) / small_cell(field))

@@ -42,7 +42,7 @@ def test_the_turning_earth_is_what_every_convention_has(name: str) -> None:
     field = FlowField.from_xarray(build(mesh), globe=True)
     assert field.shape == (1, 600) and field.triangles is not None and field.valid.all()
     assert len(field.triangles) == len(mesh.triangles) == 2 * 600 - 4
-    assert field.length_unit == "km" and field.surface.on_globe
+    assert field.length_unit == "m" and field.surface.on_globe
     assert faults(field).max() < (1e-6 if exact else 0.04) * RATE
     # The surface is closed: each triangle has three others beside it.
     assert isinstance(field.surface, TriangleSurface)
