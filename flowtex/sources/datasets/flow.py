@@ -36,7 +36,7 @@ from flowtex.sources.datasets.values import Component, Values, read_step
 from flowtex.sources.fill import undeclared_fill
 from flowtex.sources.models.conventions import find_mesh
 from flowtex.sources.models.mesh import POINTS, Mesh
-from flowtex.sources.models.scattered import check_faces
+from flowtex.sources.models.scattered import join_faces
 from flowtex.sources.opening.series import Datasets, as_datasets
 from flowtex.sources.record import Record
 
@@ -143,6 +143,11 @@ def read_flow(
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets = as_datasets(data, record)
     pair = choose_pair(datasets, u, v)
+    choice = Choice(dict(sel or {}), dict(isel or {}))
+    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, components)
+    if joined is not None:
+        datasets = Datasets(joined, opened=datasets.opened)
+        pair = choose_pair(datasets, str(pair.u.name), str(pair.v.name))
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)
     one, two = pair.u, pair.v
@@ -157,8 +162,6 @@ def read_flow(
             f"{', '.join(map(str, two.dims))}; expected both at nodes, or both in faces"
         )
         raise FieldError(msg)
-    choice = Choice(dict(sel or {}), dict(isel or {}))
-    check_faces(one, two, {**choice.sel, **choice.isel})
     one, two = align(one, two, choice, record)
     drawn = choose(one, choice, record)
     one, two = drawn.of(one), drawn.of(two)

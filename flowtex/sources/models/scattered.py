@@ -12,7 +12,7 @@ import numpy as np
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import LEVEL, NODES, TIME, axis_kind
 from flowtex.sources.datasets.coordinates import ACROSS, LATITUDE, LONGITUDE, UPWARD
-from flowtex.sources.datasets.select import MOVING, find_pairs
+from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.healpix import healpix_centres
 from flowtex.sources.models.mesh import POINTS, Mesh
@@ -30,7 +30,7 @@ NAMED = 4
 
 def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets in which the dimension of scattered points is called ``NODES``."""
-    datasets = _stacked([_with_centres(ds) for ds in datasets])
+    datasets = [_with_centres(ds) for ds in datasets]
     pairs = [pair for pair in find_pairs(datasets) if pair.rank <= NAMED]
     for x, y in _positions(datasets):
         along = [a for ds in datasets for a in ds.data_vars.values() if set(x.dims) <= set(a.dims)]
@@ -110,45 +110,41 @@ def _is_surface(x: xr.DataArray, y: xr.DataArray) -> bool:
         return False
 
 
-def check_faces(u: xr.DataArray, v: xr.DataArray, chosen: Container[str]) -> None:
-    """Raise a FieldError for components along the rows of several faces of a globe."""
-    for dim in map(str, u.dims):
-        if FACES_OF_GLOBE.match(dim) and u.sizes[dim] > 1 and dim not in chosen:
-            msg = (
-                f"{u.name} and {v.name} lie along the rows and columns of each of {u.sizes[dim]} "
-                f"faces ({dim}), as no standard name says eastward and northward; compute these "
-                f"components, or select one face, as in isel={{{dim!r}: 0}}"
-            )
-            raise FieldError(msg)
+def join_faces(
+    datasets: Sequence[xr.Dataset], pair: Pair, chosen: Container[str], wanted: str | None
+) -> list[xr.Dataset] | None:
+    """Return datasets with the faces of a globe along ``NODES``; ``None`` for other datasets.
 
-
-def _stacked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Return datasets with the faces of a cubed sphere along one dimension.
-
-    Components along the rows of each face stay as they are, so that one face can be selected.
-    Coordinates along some of the dimensions only count the nodes, and are dropped.
+    ``chosen`` are axes along which one entry is selected, and ``wanted`` the directions of the
+    components, if they are given. Coordinates along a part of the axes only count the nodes, and
+    are dropped.
     """
-    arrays = [ds[name] for ds in datasets for name in ds.variables]
-    for lon, _ in _pairs(arrays):
-        dims = [str(d) for d in lon.dims]
-        face = next((d for d in dims if FACES_OF_GLOBE.match(d) and lon.sizes[d] > 1), None)
-        if face is None or lon.ndim != 3:
-            continue
-        pairs = [pair for pair in find_pairs(datasets) if face in pair.u.dims]
-        if pairs and pairs[0].along != "earth":
-            return datasets
-        return [_one_dimension(ds, dims) if set(dims) <= set(ds.dims) else ds for ds in datasets]
-    return datasets
+    u = pair.u
+    sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}
+    face = next((d for d, n in sizes.items() if n > 1 and d not in chosen), "")
+    if not face:
+        return None
+    if (wanted or pair.along) != "earth":
+        msg = (
+            f"{u.name} and {pair.v.name} lie along the rows and columns of each of {sizes[face]} "
+            f"faces ({face}), as no standard name says eastward and northward; compute these "
+            f"components, or select one face, as in isel={{{face!r}: 0}}"
+        )
+        raise FieldError(msg)
+    for lon, _ in _pairs([ds[name] for ds in datasets for name in ds.variables]):
+        dims = {str(d) for d in lon.dims}
+        if lon.ndim == 3 and face in dims:
+            return [_one_dimension(ds, dims) if dims <= set(ds.dims) else ds for ds in datasets]
+    return None
 
 
-def _one_dimension(ds: xr.Dataset, dims: list[str]) -> xr.Dataset:
-    face = set(dims)
+def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
     parts = [name for name, a in ds.variables.items() if face & {*a.dims} and face - {*a.dims}]
     ds = ds.drop_vars(parts)
     if "source" in ds.encoding and not ds.chunks and find_spec("dask") is not None:
         # Otherwise all of a file is read.
         ds = ds.chunk({d: 1 if d not in face else -1 for d in ds.dims})
-    return ds.stack(points_of_faces=dims, create_index=False)
+    return ds.stack({NODES: sorted(face)}, create_index=False)
 
 
 def _with_centres(ds: xr.Dataset) -> xr.Dataset:

@@ -200,4 +200,5 @@ def test_flags_of_vec_are_blank() -> None:
     assert field.shape == (63, 63)
     assert (field.valid.ravel() == (table[order, 4] > 0)).all()
     drawn, valid = np.asarray(field.velocity[0]).reshape(-1, 3), field.valid.ravel()
-    assert np.allclose(drawn[valid, :2], table[order][valid, 2:4])
+    assert (field.length_unit, field.time_unit) == ("mm", "s")
+    assert np.allclose(drawn[valid, :2], 1e3 * table[order][valid, 2:4])  # from m/s
