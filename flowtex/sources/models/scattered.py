@@ -20,7 +20,8 @@ from flowtex.sources.models.mesh import POINTS, Mesh
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Names of dimensions of the faces of a grid that covers the globe.
+#: Most faces of a grid that covers the globe, and names of their dimension.
+MOST_FACES = 30
 FACES_OF_GLOBE = re.compile(r"^(nf|n?faces?|n?tiles?|panels?)$", re.IGNORECASE)
 #: Types of features whose points follow each other in time or height.
 PATHS = ("trajectory", "profile", "timeseriesprofile", "trajectoryprofile")
@@ -121,7 +122,7 @@ def join_faces(
     """
     u = pair.u
     sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}
-    face = next((d for d, n in sizes.items() if n > 1 and d not in chosen), "")
+    face = next((d for d, n in sizes.items() if 1 < n <= MOST_FACES and d not in chosen), "")
     if not face:
         return None
     if (wanted or pair.along) != "earth":
@@ -149,7 +150,8 @@ def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
 
 def _with_centres(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset on HEALPix with the positions of its cells, if it has none."""
-    grids = [a for a in ds.variables.values() if a.attrs.get("grid_mapping_name") == "healpix"]
+    names = ("grid_mapping_name", "grid_name")
+    grids = [a for a in ds.variables.values() if "healpix" in (a.attrs.get(name) for name in names)]
     if not grids or any(True for _ in _positions([ds])):
         return ds
     attrs = {str(k).removeprefix("healpix_"): value for k, value in grids[0].attrs.items()}

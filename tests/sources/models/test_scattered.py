@@ -144,6 +144,9 @@ def test_healpix_cells_get_positions(order: str) -> None:
     assert faults(FlowField.from_xarray(ds, globe=True)) < 1e-6
     part = ds.isel(cell=slice(100, 400)).assign_coords(cell=cells[100:400])
     assert faults(FlowField.from_xarray(part, globe=True)) < 1e-6
+    ids = xr.Variable("cell", cells, {"grid_name": "healpix", "level": 3, "indexing_scheme": order})
+    named = ds.drop_vars("crs").assign_coords(cell_ids=ids)  # as xdggs has it
+    assert faults(FlowField.from_xarray(named, globe=True)) < 1e-6
     with pytest.raises(FieldError, match=r"does not fit 700 cells along 'cell'.*healpix_nside"):
         ds["crs"].attrs["healpix_nside"] = 4
         FlowField.from_xarray(ds.isel(cell=slice(700)))
