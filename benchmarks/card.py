@@ -131,7 +131,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
 def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Iterator[Any]:
     """Give the key, data and parts of the root and of tiles, and the tiles that cover some."""
     from flowtex.rendering import tile_choice as choice
-    from flowtex.web.source import TileSource
+    from flowtex.web.view import TileSource
 
     shown: dict[Any, Any] = {None: []}
     if whole.pyramid is not None:

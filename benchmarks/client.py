@@ -25,8 +25,7 @@ from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.scene.options import Options
 from flowtex.textures.tiles import TileKey
-from flowtex.web.source import TileSource
-from flowtex.web.view import web_views
+from flowtex.web.view import TileSource, web_views
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from webgl_page import ClientPage, packed

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from flowtex.plotting.offscreen.dynamic import dynamic_map
     from flowtex.plotting.offscreen.figure import axes, extent
     from flowtex.plotting.offscreen.movie import movie
-    from flowtex.plotting.offscreen.render import render
+    from flowtex.plotting.offscreen.plotter import render
     from flowtex.rendering.camera import Camera
     from flowtex.trace.structure import (
         ClosedOrbit,
@@ -77,7 +77,7 @@ _LAZY = {
     "extent": "plotting.offscreen.figure",
     "formula": "field.formula.make",
     "movie": "plotting.offscreen.movie",
-    "render": "plotting.offscreen.render",
+    "render": "plotting.offscreen.plotter",
     "separatrices": "trace.structure",
     "show": "app.display",
 }

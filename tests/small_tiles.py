@@ -15,13 +15,13 @@ BLOCK_CELLS, TILE_CELLS = 16, 64
 
 def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
     """Make small tiles, in all modules that know their size."""
-    from flowtex.pyramid import build, samples, stored
+    from flowtex.pyramid import build, stored
     from flowtex.textures.tiles.pyramid import block_places
 
     with suppress(ModuleNotFoundError):  # without VTK nothing is drawn by it
         from flowtex.rendering.vtk import surface as surface
 
-    del build, samples, stored  # what is not there could not be changed
+    del build, stored  # what is not there could not be changed
     change(block_places, "__defaults__", (BLOCK_CELLS,))
     for name, module in list(sys.modules.items()):
         for constant, value in (("BLOCK_CELLS", BLOCK_CELLS), ("TILE_CELLS", TILE_CELLS)):

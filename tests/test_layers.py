@@ -115,7 +115,7 @@ LIBRARIES = (
         on_load=("pyramid.objects",),
         in_functions=("pyramid",),
     ),
-    Library(("h5py",), in_functions=("sources.inspection.hdf5",)),
+    Library(("h5py",), in_functions=("sources.inspection.netcdf",)),
     Library(("av",), in_functions=("plotting.offscreen.encoders",)),
     Library(("cyclopts",), on_load=("cli",)),
 )

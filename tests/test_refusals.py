@@ -189,9 +189,8 @@ BUILT_IN = {"ValueError", "TypeError", "KeyError", "IndexError", "OverflowError"
 #: Where such errors are part of a protocol, and are caught in the package.
 PROTOCOLS = {
     # Messages between processes, and of pages.
-    "_util/child/messages.py: ValueError",
+    "_util/child/worker.py: ValueError",
     "app/server/sessions/local.py: ValueError",
-    "app/server/sessions/messages.py: ValueError",
     "app/server/sessions/process.py: ValueError",
     "app/server/site.py: ValueError",
     "sources/remote/packing.py: ValueError",

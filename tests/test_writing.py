@@ -39,13 +39,12 @@ MEMORY = {
     "plotting/offscreen/plotter.py: self._plotter.screenshot",
     "app/jupyter_backend.py: plotter.screenshot",
     "app/streaming/stream.py: Image.fromarray(pixels).save",
-    "pyramid/workers.py: import_extra('cloudpickle', 'store').Pickler(file).dump",
     "web/preview.py: reduced.save",
-    "widget/views.py: Image.fromarray(np.hstack(columns)).save",
+    "widget/flow_widget.py: Image.fromarray(np.hstack(columns)).save",
 }
 #: ... a file in a temporary folder, or one without a name, ...
 TEMPORARY = {
-    "app/server/uploads.py: path.open",
+    "app/server/files.py: path.open",
     "plotting/offscreen/encoders.py: tempfile.TemporaryFile",
 }
 #: ... or belongs to the system.

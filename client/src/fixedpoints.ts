@@ -200,7 +200,7 @@ export function separatrices(rate: Rate, ends: Ends, points: FixedPoint[], saddl
 
 /**
  * Whether lines beside a turn come to it or leave it, by the divergence over its time; as in
- * flowtex/trace/structure/isolation.py.
+ * flowtex/trace/structure/orbits.py.
  */
 function isIsolated(rate: Rate, turn: Pair[]): boolean {
   let growth = 0;

@@ -1,5 +1,5 @@
 // A flow from a formula: its velocity at any nodes, computed here. flowtex/field/formula/grammar.py makes
-// the trees, and flowtex/rendering/webgl/formula.py what else comes. As there is no finest level of a
+// the trees, and flowtex/rendering/webgl/velocity.py what else comes. As there is no finest level of a
 // formula, the source has tiles of every level, each a grid of nodes in the plane.
 
 import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Pair } from "./fixedpoints.ts";

@@ -1,5 +1,6 @@
-// The planes at the poles of a surface, in which paths next to them are traced: flowtex/field/poles.py and
-// flowtex/trace/charts.py have what they are, shaders/common/poles.glsl follows paths in them.
+// The planes at the poles of a surface, in which paths next to them are traced:
+// flowtex/field/grids/poles.py and flowtex/trace/sampler.py have what they are,
+// shaders/common/poles.glsl follows paths in them.
 
 import type { PoleHeader } from "./protocol.ts";
 import type { Uniform } from "./uniforms.ts";

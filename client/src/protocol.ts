@@ -272,7 +272,7 @@ export interface PoleHeader {
 /** A number, a name, or the name of an operation and what it is applied to. */
 export type Tree = number | string | Tree[];
 
-/** What the velocity is computed from, where the client does: flowtex/rendering/webgl/formula.py. */
+/** What the velocity is computed from, where the client does: flowtex/rendering/webgl/velocity.py. */
 export interface FormulaHeader {
   /** The rates of the two coordinates, their names and ends. */
   trees: [Tree, Tree];

@@ -139,8 +139,7 @@ class FrameFlags:
         Parameter(group=PICTURE, help="Draw larger by this factor along each side, and average."),
     ] = 1
     annotations: Annotated[
-        bool,
-        Parameter(group=PICTURE, help="Add legend, scale bar, time and name.", negative=""),
+        bool, Parameter(group=PICTURE, help="Add legend, scale bar, time and name.", negative="")
     ] = False
 
 
@@ -193,8 +192,7 @@ class ServeFlags(AddressFlags):
         ),
     ] = None
     idle: Annotated[
-        float,
-        Parameter(group=PAGE, help="Minutes during which a closed page can be opened again."),
+        float, Parameter(group=PAGE, help="Minutes during which a closed page can be opened again.")
     ] = 15.0
 
 

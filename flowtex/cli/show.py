@@ -11,8 +11,8 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_lines, drawing
-from flowtex.cli.console import load_field, notices
+from flowtex.cli.commands import begin, serve_library, serve_processes
+from flowtex.cli.console import check_lines, drawing, load_field, notices
 from flowtex.cli.options import (
     FLAT,
     SIZE,
@@ -24,7 +24,6 @@ from flowtex.cli.options import (
     arguments,
     pixels,
 )
-from flowtex.cli.page import begin, serve_library, serve_processes
 from flowtex.examples import NAMES
 from flowtex.field.formula import KNOWN
 

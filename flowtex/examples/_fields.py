@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.examples import _delta_wing, _double_gyre, _shipped
+from flowtex.examples import _double_gyre, _shipped
 from flowtex.examples._airfoil import Joukowski
 from flowtex.field import FlowField
 
@@ -177,22 +177,23 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
     )
 
 
-def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
+def delta_wing_field() -> FlowField:
     """Return the steady flow over the upper side of a winged body like a shuttle orbiter.
 
     A curved surface and a flow along it in closed form. It replaces the shuttle dataset of Li and
     Shen, which was not published, and has the same number of nodes.
 
-    Parameters
-    ----------
-    shape : tuple of int, default: (52, 62)
-        Number of nodes (J, I): across, from the left edge to the right, and from nose to tail.
-
     Returns
     -------
     FlowField
-        Lengths are in body lengths, with x along the body and z upward, and speeds in free-stream
-        speeds; the angle of attack is 12 degrees. The scalar is ``height``.
+        52 nodes across (j, from the left edge to the right) and 62 from nose to tail (i). Lengths
+        are in body lengths, with x along the body and z upward, and speeds in free-stream speeds;
+        the angle of attack is 12 degrees. The scalar is ``height``.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the data file of the example is missing.
 
     Notes
     -----
@@ -207,7 +208,8 @@ def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
     >>> field.surface.frame is None  # it is curved
     True
     """
-    points, velocity = _delta_wing.arrays(shape)
+    file = _shipped.load(_shipped.DELTA_WING)
+    points, velocity = file["points"], file["velocity"]
     return FlowField.from_arrays(
         points,
         velocity,

@@ -2,7 +2,7 @@
 
 The shipped flows were computed by the scripts in ``tools/example_data``. Values were rounded to
 16 bits, and the differences from node to node stored: smooth fields have small differences, which
-compress well, and whole numbers add up again without error.
+compress well, and whole numbers add up again without error; so do those from time to time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from flowtex._util.array_types import AnyArray, Floats
 
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
-CYLINDER, VORTEX = "cylinder.npz", "vortex.npz"
+CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
+OCEAN, WEATHER = "ocean.npz", "weather.npz"
 #: Names of the liquid-oxygen post's grid and solution.
 POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
@@ -25,7 +26,7 @@ POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
     """Return points (65, 161, 2), velocity (31, 65, 161, 2), and times (31,)."""
     file = load(CYLINDER)
-    velocity = unpack(file["velocity"], float(file["step"]), axis=2)
+    velocity = unpack(file["velocity"], float(file["step"]), axis=(0, 1, 2))
     columns = velocity.shape[2]
     theta = 2.0 * np.pi * np.arange(columns) / columns
     points = file["radii"][:, None, None] * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
@@ -58,7 +59,7 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     column repeat the first, one box further on.
     """
     file = load(VORTEX)
-    vorticity = unpack(file["vorticity"], float(file["step"]), axis=2)
+    vorticity = unpack(file["vorticity"], float(file["step"]), axis=(1, 2))
     velocity = np.array([periodic_velocity(scipy.fft.rfft2(w)) for w in vorticity])
     size = vorticity.shape[-1]
     axis = np.linspace(0.0, 1.0, size + 1)
@@ -103,11 +104,13 @@ def load(name: str) -> dict[str, AnyArray]:
         return dict(file)
 
 
-def unpack(differences: NDArray[np.int16], step: float, axis: int) -> Floats:
-    """Return numbers whose whole-numbered differences along an axis, modulo 2^16, were stored."""
+def unpack(differences: NDArray[np.int16], step: float, axis: int | tuple[int, ...]) -> Floats:
+    """Return numbers whose whole-numbered differences along axes, modulo 2^16, were stored."""
     # Unsigned numbers wrap around by definition.
-    whole = np.cumsum(differences.view(np.uint16), axis=axis, dtype=np.uint16).view(np.int16)
-    return whole.astype(np.float64) * step
+    whole = differences.view(np.uint16)
+    for each in np.atleast_1d(axis):
+        whole = np.cumsum(whole, axis=each, dtype=np.uint16)
+    return whole.view(np.int16).astype(np.float64) * step
 
 
 def find_post(folder: str | Path | None = None) -> Path:

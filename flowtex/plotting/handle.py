@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
-from flowtex.plotting.map_overlay import MapOverlay
-from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
-from flowtex.plotting.structure_overlay import StructureOverlay
+from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene.attributes import AppearanceAttributes
@@ -22,8 +22,39 @@ from flowtex.scene.scene import Change, Scene, share_field
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
-
 _count = itertools.count(1)
+#: A scalar bar at the left border of the picture.
+SCALAR_BAR: dict[str, Any] = {
+    "fmt": "%.3g",
+    "n_labels": 3,
+    "vertical": True,  # labels of a level bar would hang over its ends
+    "width": 0.08,
+    "height": 0.28,
+    "position_x": 0.02,
+    "position_y": 0.04,
+    "color": "black",
+    "title_font_size": 16,
+    "label_font_size": 14,
+    "unconstrained_font_size": True,
+}
+#: Arguments by which users set the position or size of a bar.
+BY_HAND = (
+    *("width", "height", "position_x", "position_y", "vertical", "interactive"),
+    *("title_font_size", "label_font_size"),
+)
+#: Arguments by which users set the background of a bar, and the default plate behind its texts:
+#: one behind the whole bar would cover as much as the title is wide.
+BEHIND, PLATE, PLATE_OPACITY = ("fill", "background_color", "color"), (1.0, 1.0, 1.0), 0.8
+#: Height of the text: a share of the view's, within limits in points; a title's is larger.
+TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 34, 10, 14, 1.15
+#: Height of a bar without its title: a share of the view's, and at least this many lines.
+HEIGHT_SHARE, LEAST_LINES = 0.28, 5
+#: Lengths in heights of the text: the width of the colours, and the room around texts.
+THICKNESS, TEXT_PAD = 1.1, 0.4
+#: Points in an inch.
+POINTS = 72
+#: Name of the bars that are arranged.
+BARS_NAME = "flowtex"
 
 
 class FlowHandle(AppearanceAttributes):
@@ -368,3 +399,75 @@ class FlowHandle(AppearanceAttributes):
     def __repr__(self) -> str:
         state = "removed" if self.closed else f"time {self.time:g}"
         return f"FlowHandle({self.field!r}, {state})"
+
+
+def arrange_with(
+    bar: vtkScalarBarActor, renderer: Any, options: Mapping[str, Any]
+) -> Callable[[], None]:
+    """Place a bar beside the others of a renderer whenever it draws, unless options place it.
+
+    Returns a function that ends this.
+    """
+    if not any(name in options for name in BEHIND):
+        for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+            text.SetBackgroundColor(*PLATE)
+            text.SetBackgroundOpacity(PLATE_OPACITY)
+    if any(name in options for name in BY_HAND):
+        return lambda: None
+    bar.SetObjectName(BARS_NAME)
+    observer = renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
+    return lambda: renderer.RemoveObserver(observer)
+
+
+def _arrange(renderer: Any) -> None:
+    """Place bars from left to right, and in a row above where there is no room."""
+    width, height = renderer.GetSize()
+    dpi = renderer.GetRenderWindow().GetDPI()
+    x = y = row = 0.0
+    for bar in renderer.GetViewProps():
+        if bar.GetObjectName() != BARS_NAME:
+            continue
+        points = min(max(height * TEXT_SHARE * POINTS / dpi, LEAST_TEXT), MOST_TEXT)
+        wide, high, title = _fit(bar, points, (width, height), dpi)
+        line = points * dpi / POINTS
+        gap = TEXT_PAD * line
+        if x and x + wide + 2 * gap > width:
+            x, y, row = 0.0, y + row + gap, 0.0
+        # The lowest label hangs over the end of the bar.
+        bar.SetPosition((x + gap) / width, (y + gap + line / 2) / height)
+        bar.SetWidth(wide / width)
+        bar.SetHeight((high + title) / height)
+        # VTK keeps room for the title in the bar, and yet writes it above.
+        x, row = x + gap + wide, max(row, high + 2 * title + line / 2)
+
+
+def _fit(
+    bar: vtkScalarBarActor, points: float, view: tuple[int, int], dpi: int
+) -> tuple[float, float, float]:
+    """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
+    title, labels = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
+    labels.SetFontSize(round(points))
+    title.SetFontSize(round(TITLE_SHARE * points))
+    em = points * dpi / POINTS
+    pad = round(TEXT_PAD * em)
+    room = view[0] - 6 * pad
+    title_width, title_height = _size(title, bar.GetTitle(), dpi)
+    if title_width > room:
+        title.SetFontSize(max(int(title.GetFontSize() * room / title_width), 1))
+        title_width, title_height = _size(title, bar.GetTitle(), dpi)
+    low, high = bar.GetLookupTable().GetRange()
+    form = bar.GetLabelFormat()
+    texts = [form % v if "%" in form else form.format(v) for v in (low, (low + high) / 2, high)]
+    label_width = max(_size(labels, text, dpi)[0] for text in texts)
+    thick = THICKNESS * em
+    bar_width = max(title_width, thick + label_width + 2 * pad) + 2 * pad
+    bar.SetTextPad(pad)
+    bar.SetBarRatio(thick / bar_width)
+    return bar_width, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), title_height
+
+
+def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:
+    """Return the width and height of a text in pixels."""
+    box = [0, 0, 0, 0]
+    vtkTextRenderer.GetInstance().GetBoundingBox(text, words, box, dpi)
+    return box[1] - box[0] + 1, box[3] - box[2] + 1

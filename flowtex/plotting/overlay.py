@@ -1,12 +1,15 @@
 """Overlays above and below a flow, as VTK actors that follow the actor of the flow.
 
 They have its visibility and its place, cannot be picked, and do not affect the bounds. Lines and
-dots have the same width in pixels everywhere.
+dots have the same width in pixels everywhere. Those of the Earth are coasts, meridians and
+parallels, and land and the globe below; those of the structure belong to the step that is nearest.
 """
 
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,12 +17,49 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera
 
-from flowtex._util.array_types import Floats
-from flowtex.rendering.map_overlay import SPACING_PX, USUAL_HEIGHT_PX, WIDTH_RANGE
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.threads import pool
+from flowtex.field import FlowField
+from flowtex.field.earth import MapLines
+from flowtex.plotting.vtk_camera import read_camera
+from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
+    globe_radius,
+    land_cells,
+    map_lines,
+)
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import FlowMapper
+from flowtex.rendering.webgl.marks import (
+    DOT_PX,
+    KIND_MARKS,
+    LINE_COLORS,
+    LINE_PX,
+    MIDDLE_COLOR,
+    NULLCLINE_COLORS,
+    RIM_COLOR,
+    RIM_OPACITY,
+)
+from flowtex.scene.scene import Scene
+from flowtex.trace.structure import CriticalPoints
+
+#: How much farther than the surface land is, as a share of the distance.
+LAND_FARTHER = 2e-4
+#: Pixels by which the globe is lower: coarse triangles sink by up to this many.
+GLOBE_LOWER_PX = 0.5
+#: Nearest that the front of the globe is drawn, as a share of the farthest.
+NEAREST = 1e-3
+#: Cells along a meridian of the globe below the surface.
+GLOBE_CELLS = 180
+#: Structures are found one after the other, in the background.
+_pool = pool(1, "flowtex-structure")
 
 
 class Part(NamedTuple):
@@ -184,3 +224,208 @@ def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
     # Left and right change places at the other end.
     mesh.point_data[SIDE] = np.tile(np.array([1, -1, 2, -2], dtype=np.float32), len(start))
     return mesh
+
+
+class MapOverlay(Overlay):
+    """The Earth behind one flow whose field has a projection."""
+
+    def __init__(
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+    ) -> None:
+        super().__init__(actor, renderer, surface)
+        self._scene, self._field = scene, scene.whole
+        self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
+        self._radius: float | None = None
+        self.show()
+
+    def show(self) -> None:
+        """Follow the appearance, and the coarsest level of a large field."""
+        if self._field is not self._scene.whole:
+            self._field, self._lines = self._scene.whole, {}
+        self._clear()
+        appearance = self._scene.appearance
+        if appearance.land is not None:
+            self._add_land(appearance.land)
+        for option, stroke in STROKES.items():
+            if getattr(appearance, option) is not False and (forms := self._forms_of(option)):
+                self._add_lines(forms, stroke.width, stroke.color, stroke.opacity)
+
+    def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
+        """Return the lines of an option, from coarse to fine; all are made once, together.
+
+        A field far from any coast has none.
+        """
+        has_globe = self._radius is not None
+        if (option, has_globe) not in self._lines:
+            for name, lines in map_lines(self._field, has_globe=has_globe).items():
+                forms = ((s, lines.thinned(s) if s else lines) for s in SPACINGS)
+                self._lines[name, has_globe] = tuple(
+                    (s, _line_mesh(form)) for s, form in forms if len(form.points)
+                )
+        return self._lines[option, has_globe]
+
+    def _add_land(self, color: Any) -> None:
+        """Draw cells without data, and the globe where the field does not cover it."""
+        is_lit = self._scene.is_lit
+        meshes = []
+        # Behind a transparent flow there is the background instead of land.
+        tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
+        if (land := land_cells(self._field, tiled=tiled)).any():
+            meshes.append((_cell_mesh(self._field, land), -LAND_FARTHER))
+        self._radius = globe_radius(self._field)
+        if self._radius is not None:
+            around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
+            globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
+            meshes.append((globe, 0.0))
+        for mesh, nearer in meshes:
+            if self._field.surface.on_globe:
+                mesh.point_data.active_normals = mesh.points / np.linalg.norm(
+                    mesh.points, axis=1, keepdims=True
+                )
+            actor = self._add(mesh, nearer)
+            actor.prop.color, actor.prop.lighting = color, is_lit
+            if is_lit:
+                actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
+
+    def _clear(self) -> None:
+        super()._clear()
+        self._radius = None
+
+    def _look(self, camera: vtkCamera) -> None:
+        if self._radius is None:
+            return
+        self._include_globe(camera, self._radius)
+        for part in self._parts:
+            if not part.nearer:
+                part.actor.SetScale(1 - GLOBE_LOWER_PX * self._horizon_pixel() / self._radius)
+
+    def _horizon_pixel(self) -> float:
+        """Return the length of a pixel on the horizon, the farthest visible point of the globe."""
+        view, eye = self._surface.view, self._surface.view.eye
+        if not eye[3]:
+            return view.pixel
+        horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - (self._radius or 0.0) ** 2, 0.0))
+        return view.pixel * float(horizon / np.linalg.norm(eye[:3] - view.focus))
+
+    def _include_globe(self, camera: vtkCamera, radius: float) -> None:
+        """Extend the clipping range to the globe, which has no bounds in VTK."""
+        near, far = camera.GetClippingRange()
+        matrix, view = pv.array_from_vtkmatrix(self._actor.GetMatrix()), read_camera(camera)
+        depth = float(np.subtract(matrix[:3, 3], view.position) @ view.axes[2])
+        radius *= float(np.linalg.norm(matrix[:3, 0]))
+        far = max(far, depth + radius)
+        near = min(near, max(depth - radius, NEAREST * far))
+        camera.SetClippingRange(near, far)
+
+
+def _line_mesh(lines: MapLines) -> pv.PolyData:
+    joined = np.ones(len(lines.points), dtype=bool)
+    joined[lines.starts[1:] - 1] = False
+    first = np.flatnonzero(joined)
+    return piece_mesh(lines.points[first], lines.points[first + 1])
+
+
+def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
+    """Return the mesh of ``cells`` of a field's surface."""
+    faces = field.surface.nodes_of(cells)
+    points, numbers = np.unique(faces, return_inverse=True)
+    shape: Any = numbers.reshape(faces.shape)
+    return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[points], shape)
+
+
+class StructureOverlay(Overlay):
+    """The structure of one flow, as the settings request it."""
+
+    def __init__(
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+    ) -> None:
+        super().__init__(actor, renderer, surface)
+        self._shown: tuple[int, ...] = ()
+        self._notify: Callable[[], None] | None = None
+        self._request: tuple[object, ...] = ()
+        self._found: Future[None] | None = None
+        self._scene = scene
+        self.show(scene)
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Show the structure when it is found, and notify from a thread; else a change waits."""
+        self._notify = notify
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is still to be found."""
+        return self._found is not None and not self._found.done()
+
+    @property
+    def _key(self) -> tuple[int, ...]:
+        scene, settings = self._scene, self._scene.settings
+        counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
+        return id(scene.field), scene.step, *counts
+
+    def show(self, scene: Scene) -> None:
+        """Follow the settings and the time of a scene."""
+        self._scene = scene
+        if self._shown != self._key:
+            self._clear()
+            self._shown = ()
+            self._show()
+
+    def _before_frame(self) -> None:
+        if self._shown != self._key:
+            self._show()
+        super()._before_frame()
+
+    def _show(self) -> None:
+        """Draw the requested structure, or find it in the background first."""
+        scene, settings = self._scene, self._scene.settings
+        request = (scene.step, settings.critical_points, settings.separatrices)
+        if any(request[1:]) and self._notify is not None and not scene.structure.has(*request):
+            if self._request != (scene.structure, request):
+                self._request, notify = (scene.structure, request), self._notify
+                self._found = _pool.submit(scene.structure.find, *request)
+                self._found.add_done_callback(lambda _: notify())
+            return
+        self._shown = self._key
+        if settings.nullclines:
+            self._add_nullclines(scene.structure.nullclines(scene.step))
+        if settings.separatrices:
+            self._add_paths(scene.structure.paths(scene.step, settings.separatrices))
+        if settings.critical_points:
+            self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
+
+    def _add_nullclines(self, lines: Sequence[Floats]) -> None:
+        outer, inner = LINE_PX
+        drawn = [(inner, color, 1.0, 1) for color in NULLCLINE_COLORS.values()]
+        looks = ((outer, RIM_COLOR, RIM_OPACITY, 0), *drawn)
+        for pieces, (width, color, opacity, above) in zip(
+            (np.concatenate(lines), *lines), looks, strict=True
+        ):
+            if len(pieces):
+                mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
+                self._add_lines(((0.0, mesh),), width, color, opacity, above=above)
+
+    def _add_paths(self, by_name: Mapping[str, Sequence[Floats]]) -> None:
+        outer, inner = LINE_PX
+        all_paths = [path for paths in by_name.values() for path in paths]
+        self._add_pieces(all_paths, outer, RIM_COLOR, RIM_OPACITY, above=0)
+        for above, (name, color) in enumerate(LINE_COLORS.items(), 1):
+            self._add_pieces(by_name[name], inner, color, above=above)
+
+    def _add_points(self, points: CriticalPoints) -> None:
+        outer, inner, middle = DOT_PX
+        all_dots = [point.position[None] for point in points]
+        self._add_pieces(all_dots, outer, RIM_COLOR, RIM_OPACITY, above=5)
+        for kind, mark in KIND_MARKS.items():
+            dots = [point.position[None] for point in points.of_kind(kind)]
+            self._add_pieces(dots, inner, mark.color, above=6)
+            if mark.turns:
+                self._add_pieces(dots, middle, MIDDLE_COLOR, above=7)
+
+    def _add_pieces(
+        self, paths: Sequence[Floats], width: float, color: str, opacity: float = 1.0, *, above: int
+    ) -> None:
+        """Add paths (N, 3) each as lines, or as dots where they have one point."""
+        if paths:
+            start = np.concatenate([path[:-1] if len(path) > 1 else path for path in paths])
+            end = np.concatenate([path[1:] if len(path) > 1 else path for path in paths])
+            self._add_lines(((0.0, piece_mesh(start, end)),), width, color, opacity, above=above)

@@ -28,12 +28,12 @@ from flowtex.pyramid.layout import (
     parts_of,
     tiles_of,
 )
-from flowtex.pyramid.lease import Lease
-from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.levels import SAMPLES, Levels, create_samples, ranges_of
 from flowtex.pyramid.places import (
     DOCUMENT,
     ChangedError,
     DamageError,
+    Lease,
     PyramidError,
     check_room,
     is_store,
@@ -43,7 +43,6 @@ from flowtex.pyramid.places import (
     store_at,
     sync,
 )
-from flowtex.pyramid.samples import SAMPLES, create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
 from flowtex.pyramid.tasks import (
     TileTask,

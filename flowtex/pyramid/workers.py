@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import io
 import os
 import traceback
 from collections.abc import Callable, Generator, Sequence
@@ -182,34 +181,17 @@ def _set_allocator() -> None:
             libc.mallopt(parameter, value)
 
 
-class _Limited(io.BytesIO):
-    """A file in memory of limited size."""
-
-    def write(self, data: Any) -> int:
-        """Take some bytes."""
-        if self.tell() + memoryview(data).nbytes > MOST_SENT:
-            raise _TooLargeError
-        return super().write(data)
-
-
-class _TooLargeError(Exception):
-    """A value is too large to be sent."""
-
-
 def _packed(value: object) -> bytes | None:
     """Return a value as bytes to send; ``None`` where these are too many."""
-    file = _Limited()
     try:
-        import_extra("cloudpickle", "store").Pickler(file).dump(value)
-    except _TooLargeError:
-        return None
+        data: bytes = import_extra("cloudpickle", "store").dumps(value)
     except Exception as error:
         msg = (
             f"the dataset cannot be sent to the workers ({type(error).__name__}: {error}); open it "
             "from a file or a store, or build without a scheduler"
         )
         raise PyramidError(msg) from error
-    return file.getvalue()
+    return data if len(data) <= MOST_SENT else None
 
 
 def _unpacked(data: bytes) -> Any:

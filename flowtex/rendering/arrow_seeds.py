@@ -269,7 +269,7 @@ def _mixed(key: Hashes) -> Hashes:
     """Hash numbers."""
     for factor in HASH_FACTORS:
         key = (key ^ (key >> HASH_SHIFT)) * factor
-    return key ^ (key >> HASH_SHIFT)
+    return np.asarray(key ^ (key >> HASH_SHIFT))
 
 
 def _shares(key: Hashes) -> Floats:

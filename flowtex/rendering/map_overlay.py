@@ -23,10 +23,7 @@ class Stroke(NamedTuple):
 
 
 #: Lines by their options, from below to above.
-STROKES = {
-    "graticule": Stroke("black", 0.4, 1.0),
-    "coastlines": Stroke("black", 0.8, 1.1),
-}
+STROKES = {"graticule": Stroke("black", 0.4, 1.0), "coastlines": Stroke("black", 0.8, 1.1)}
 #: Height of a picture in which lines have their width, and how it changes with that at most.
 USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
 #: Distances of the points of lines in metres, and how many pixels they may have.

@@ -20,7 +20,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
 from flowtex._util.vectors import dot, norm
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.tiles import BLOCK_CELLS, block_places
 
 #: Distance on the screen between a node and the triangle that replaces it.
@@ -391,3 +391,42 @@ def _snapped(places: Ints, level: Ints) -> Ints:
     """Move places along borders, (N, M), to those of their levels, (N,); the ends stay."""
     step = (1 << level)[:, None]
     return np.where(places == places[:, -1:], places, places // step * step)
+
+
+class TriangleBlocks:
+    """The triangles of a surface that has no rows and columns, by the blocks that they lie in.
+
+    Its levels of detail are other surfaces, so all of a block is drawn or nothing. A triangle may
+    lie in several blocks, and is drawn where one of them is.
+    """
+
+    def __init__(self, geometry: TriangleGeometry) -> None:
+        #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).
+        self.blocks, self._masks = geometry.block_places, geometry.blocks
+
+    @property
+    def records(self) -> Floats:
+        """The places of blocks, by which a client chooses, (rows, columns, 5)."""
+        return self.blocks
+
+    def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
+        """Return the level of each block, (block rows, block columns): 0, which has every node."""
+        del eye, half_height, pixels
+        return np.zeros(self.blocks.shape[:2], dtype=np.int64)
+
+    def triangles(self, levels: Ints, joins: Ints | None = None) -> Indices:
+        """Return the vertices of the triangles, (N, 3), in blocks with a level of 0 or more."""
+        del joins
+        mask = np.bitwise_or.reduce(1 << np.flatnonzero(levels.ravel() >= 0), initial=0)
+        drawn = np.flatnonzero(self._masks & np.uint16(mask))
+        return 3 * drawn[:, None] + np.arange(3)
+
+
+def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels | TriangleBlocks:
+    """Return the triangles of a texture set's surface, by level and block.
+
+    ``placed`` says that fragments correct their place between the nodes.
+    """
+    if isinstance(textures.geometry, TriangleGeometry):
+        return TriangleBlocks(textures.geometry)
+    return MeshLevels.of(textures, placed=placed)

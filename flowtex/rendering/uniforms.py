@@ -231,7 +231,7 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
     """
     near = _pixel_at(textures, view, -0.5)
     side = settings.samples // 2 * _distance(textures, settings, view, near)
-    return side < FAR_CELLS * textures.critical_cell
+    return bool(side < FAR_CELLS * textures.critical_cell)
 
 
 def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:

@@ -18,8 +18,7 @@ from flowtex.field.interpolation import bracket
 from flowtex.field.locate import locate, locator, surface_point
 from flowtex.field.point_values import PointValues, values_at
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.levels import footprint, slice_level
+from flowtex.rendering.cpu.fragments import Fragments, footprint, slice_level
 from flowtex.rendering.cpu.pixel import LoadedTextures, Recorder, camera_facing, cover_place
 from flowtex.rendering.cpu.render import slices_at, view_state
 from flowtex.rendering.cpu.shade import tone

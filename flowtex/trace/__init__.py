@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from flowtex.trace.ftle import lyapunov_exponent
-from flowtex.trace.lines import changing_share, chosen_lines, judged_lines
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.store import SliceStore, shared_store
-from flowtex.trace.trace import paths, trace
+from flowtex.trace.store import SliceStore, changing_share, chosen_lines, judged_lines, shared_store
+from flowtex.trace.trace import lyapunov_exponent, paths, trace
 
 __all__ = [
     "SliceStore",

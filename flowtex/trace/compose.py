@@ -33,7 +33,7 @@ import scipy
 from flowtex._util.array_types import AnyArray, Bools, Complexes, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
-from flowtex.trace.node_grid import Corners, NodeGrid
+from flowtex.trace.sampler import Corners, NodeGrid
 
 #: Most pieces of a path, after which the rest is looked up at once despite its error.
 MOST_PIECES = 64

@@ -10,7 +10,7 @@ A path that leaves the domain, enters a blanked cell or stops is ended there. Th
 reach, and beyond it the path continues straight: interpolation between a path that has ended and
 its neighbour that has not then stays true up to the reach.
 
-Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.charts`): it
+Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.sampler`): it
 changes to another chart between two steps, and its positions are returned in index space.
 """
 
@@ -23,8 +23,7 @@ from typing import Any, Self
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.trace.charts import Numbers
-from flowtex.trace.sampler import Sampler
+from flowtex.trace.sampler import Numbers, Sampler
 
 #: A step may grow or shrink by these factors.
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9

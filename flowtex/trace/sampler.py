@@ -4,20 +4,24 @@ A sampler gives the rate of change of a particle's position in index space, (di,
 lag, anywhere: bilinear in space, linear in time, constant beyond the border of the domain and
 before the first time step. Blanked nodes take the velocity of the nearest valid one, so a path
 that grazes a blanked region bends as its neighbours do until it is ended there. Next to a pole it
-gives the same in the plane there (see :mod:`flowtex.trace.charts`).
+gives the same in the plane there (see :mod:`flowtex.trace.sampler`).
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+import scipy
+from numpy.typing import NDArray
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.grids.poles import Pole, Poles
+from flowtex.field.grids.signs import corner_signs
 from flowtex.field.interpolation import bracket, fill_blanked
-from flowtex.trace.charts import Charts, Numbers, Patch, cap
-from flowtex.trace.node_grid import LEAST_ROOM_CELLS, NodeGrid
 
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED_SPEED = 1e-7
@@ -27,6 +31,18 @@ METRIC = ((0, 0), (0, 1), (1, 1))
 RESTING_CELLS = 1e-3
 #: By time, a particle is at rest that goes no further than this, in cells, until the last lag.
 STILL_CELLS = 1e-5
+Numbers = NDArray[np.int8]
+#: Cells from a pole within which a path is followed in the plane: at least so many, and up to
+#: where cells have this ratio of width to length.
+LEAST_NEAR_CELLS, NEAR_ASPECT = 6, 0.5
+#: Cells from a pole within which slices are not interpolated between nodes.
+CLOSE_CELLS = 4
+#: Cells beyond those at which a path leaves the plane again, and cells beyond that with data.
+LEAVE_CELLS, SPARE_CELLS = 1, 3
+#: Cells that rounding may carry a path over a border that it follows.
+BORDER_ROUNDING_CELLS = 1e-6
+#: Cells that a particle may move at once: where nothing is blanked, and next to a blanked cell.
+MOST_ROOM_CELLS, LEAST_ROOM_CELLS = 4, 1
 
 
 class Sampler(ABC):
@@ -197,3 +213,302 @@ class TimeSampler(Sampler):
     def rest(self, unit: Floats, last: float) -> Floats:
         """Return rates below which a particle is at rest; in a time-varying flow none stays so."""
         return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)
+
+
+class Patch(NamedTuple):
+    """Nodal data on one chart: flat arrays of consecutive sets."""
+
+    grid: NodeGrid
+    data: list[Floats]
+    pole: Pole | None = None
+    #: First line of the grid that counts from the pole.
+    offset: int = 0
+    #: Signs of the corners of each cell, (4, J * I), where the first two arrays are sign-free.
+    signs: NDArray[np.int8] | None = None
+
+    def without_sign(self, vectors: Floats | None = None) -> Patch:
+        """Return the patch for sign-free data, in which v means the same as -v.
+
+        The vectors at the nodes (J, I, C) are by default those of the chart itself.
+        """
+        if vectors is None:
+            parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
+            vectors = np.stack(parts, axis=-1)
+        signs = corner_signs(vectors)
+        return self._replace(signs=None if signs is None else signs.reshape(4, -1))
+
+    def corners(self, position: Floats) -> Corners:
+        """Return cells of positions (2, N) of the chart."""
+        if self.pole is not None:
+            position = self.pole.index(position)
+            position[self.pole.component] -= self.offset
+        return self.grid.corners(position)
+
+    def blend(self, number: int, corners: Corners, step: Indices | int = 0) -> Floats:
+        """Interpolate one of the arrays in the set number ``step``."""
+        result = self.grid.blend(self.data[number], corners, step * self.grid.size)
+        if self.signs is not None and number < 2:
+            cut = np.flatnonzero((self.signs[:, corners.at] < 0).any(axis=0))
+            crossed = Corners(*(part[cut] for part in corners))
+            result[cut] = self._aligned(self.data[number], crossed)
+        return np.asarray(result)
+
+    def _aligned(self, data: Floats, corners: Corners) -> Floats:
+        """Interpolate in cells whose corners are given the sign of the nearest one."""
+        at, s, t = corners
+        weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
+        result = np.zeros(len(at))
+        if self.signs is not None:
+            offsets = (0, 1, self.grid.columns, self.grid.columns + 1)
+            for sign, weight, offset in zip(self.signs, weights, offsets, strict=True):
+                result += sign[at] * weight * data[at + offset]
+            result *= self.signs[(s >= 0.5) + 2 * (t >= 0.5), at]
+        return result
+
+
+class Charts:
+    """The charts of a surface with poles: index space, and next to a pole the tangent plane.
+
+    Cells around a pole have no width, and in index space the velocity there has no bound. In the
+    plane that touches the surface at the pole both are ordinary, so a path that comes within a few
+    cells of a pole is followed in that plane, across the pole if need be. Its positions are stored
+    in index space again.
+
+    Chart 0 is index space; the others are the planes of the poles, in cells towards the pole.
+    """
+
+    def __init__(self, poles: Poles) -> None:
+        self._poles = poles
+        cells = next(iter(poles)).cells
+        #: Cells from a pole within which its plane is used.
+        self.near = min(
+            max(LEAST_NEAR_CELLS, int(NEAR_ASPECT * cells / (2 * np.pi))),
+            max((poles.lines - 1) // 3, 1),
+        )
+
+    def choose(self, index: Floats, chart: Numbers | None = None) -> Numbers:
+        """Return charts (N,) for positions (2, N) in index space, with hysteresis by ``chart``."""
+        index = self._poles.fold(index)
+        result = np.zeros(index.shape[1], np.int8)
+        for number, pole in enumerate(self._poles, 1):
+            stay = 0 if chart is None else LEAVE_CELLS * (chart == number)
+            result[pole.depth(index) < self.near + stay] = number
+        return result
+
+    def close(self, index: Floats) -> Bools:
+        """Return whether positions (2, N) in index space are close to a pole, (N,)."""
+        index = self._poles.fold(index)
+        close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
+        return np.asarray(np.any(close, axis=0))
+
+    def enter(self, index: Floats, chart: Numbers) -> Floats:
+        """Return coordinates (2, N) on charts (N,) of positions (2, N) in index space."""
+        result = np.array(index)
+        for number, pole in enumerate(self._poles, 1):
+            mask = chart == number
+            if mask.any():
+                result[:, mask] = pole.place(self._poles.fold(index[:, mask]))
+        return result
+
+    def index(self, position: Floats, chart: Numbers, near: Floats | None = None) -> Floats:
+        """Return positions (2, N) in index space of coordinates (2, N) on charts (N,).
+
+        With positions ``near`` (2, N), those on the planes are as close to them as possible, if
+        necessary beyond the pole.
+        """
+        result = np.array(position)
+        for number, pole in enumerate(self._poles, 1):
+            mask = chart == number
+            if mask.any():
+                inside = pole.index(position[:, mask])
+                if near is not None:
+                    # A position as far as the other pole is folded back.
+                    beside = near[:, mask]
+                    far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
+                    beside = np.where(far, self._poles.fold(beside), beside)
+                    inside = pole.nearest(inside, beside)
+                result[:, mask] = inside
+        return result
+
+
+def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
+    """Lay out the data around a pole on its plane, up to ``near`` cells from it and some more.
+
+    The data are components along i and j, in cells, and other values, (sets * J * I,) each.
+    """
+    shape = (-1, grid.rows, grid.columns)
+    lines = (grid.rows if pole.component else grid.columns) - 1
+    depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
+    first = pole.line if pole.inward > 0 else pole.line - depth
+    # The second axis is that of the lines around the pole.
+    strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
+    strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
+    strips = [pole.lines(a, 1) for a in strips]
+    rows, columns = strips[0].shape[1:]
+    cells = np.ones((rows - 1, columns - 1), bool)
+    return Patch(
+        NodeGrid((rows, columns), grid.periodic, cells),
+        [np.ascontiguousarray(a).ravel() for a in strips],
+        pole,
+        first,
+    )
+
+
+def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
+    """Return velocities in the plane, two of (T, lines, n + 1), from those along the lines."""
+    rays = pole.rays / pole.size
+    turn = (np.roll(rays[:-1], -1, axis=0) - np.roll(rays[:-1], 1, axis=0)) / 2
+    turn = np.concatenate([turn, turn[:1]])
+    at = 0 if pole.inward > 0 else -1
+    depth = np.arange(around.shape[1], dtype=float)[:, None]
+    depth = depth if pole.inward > 0 else depth[::-1]
+    at_pole = pole.vector(across[:, at]) / pole.size
+    components = []
+    for c in range(2):
+        v = pole.inward * across * rays[:, c] + around * depth * turn[:, c]
+        v[:, at] = at_pole[:, c, None]
+        components.append(v)
+    return components
+
+
+class Corners(NamedTuple):
+    """Where particles lie: lower corner of the cell, and the fractions along i and j, (N,)."""
+
+    at: Indices
+    s: AnyArray
+    t: AnyArray
+
+
+class NodeGrid:
+    """The nodes of a surface in index space, (J, I), continued beyond its poles.
+
+    Every component is its own array: one gather of scalars costs a tenth of a gather of short rows,
+    and look-ups are most of what tracing does.
+
+    ``cells`` (J - 1, I - 1) are those that are not blanked.
+    """
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        periodic: tuple[bool, bool],
+        cells: Bools,
+        poles: Poles | None = None,
+    ) -> None:
+        self.rows, self.columns = shape
+        self.periodic = periodic
+        self.poles = poles
+        # One entry for each lower corner, so that Corners.at finds it.
+        self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
+
+    @classmethod
+    def of(cls, field: FlowField) -> NodeGrid:
+        """Make the grid of a field's nodes."""
+        surface = field.surface
+        return NodeGrid(field.shape, field.periodic, surface.cells, surface.poles)
+
+    @property
+    def size(self) -> int:
+        """Number of nodes."""
+        return self.rows * self.columns
+
+    @cached_property
+    def endless(self) -> bool:
+        """Whether no path can leave the domain: there are neither borders nor blanked cells."""
+        borders = {axis for axis, closed in enumerate(self.periodic) if not closed}
+        if self.poles is not None and self.poles.both:
+            borders -= {1 - self.poles.component}
+        return self._open is None and not borders
+
+    def corners(self, position: AnyArray) -> Corners:
+        """Return the cells of positions (2, N); those beyond a border are moved onto it."""
+        if self.poles is not None:
+            position = self.poles.fold(position)
+        i, s = _cell(position[0], self.columns - 1, closed=self.periodic[1])
+        j, t = _cell(position[1], self.rows - 1, closed=self.periodic[0])
+        j *= self.columns
+        j += i
+        return Corners(j, s, t)
+
+    @cached_property
+    def room(self) -> Bytes:
+        """Cells that a particle may move at once from each cell, (J * I,), 0 if it is blanked.
+
+        In longer steps it might pass a blanked cell unnoticed.
+        """
+        shape = (self.rows, self.columns)
+        if self._open is None:
+            return np.full(self.size, MOST_ROOM_CELLS, np.uint8)
+        around = MOST_ROOM_CELLS
+        cells = self._open.reshape(shape)[:-1, :-1]
+        for axis, closed in enumerate(self.periodic):
+            width = [(around * (a == axis),) * 2 for a in range(2)]
+            cells = np.pad(cells, width, mode="wrap" if closed else "edge")
+        far = scipy.ndimage.distance_transform_cdt(cells, "chessboard")[
+            around:-around, around:-around
+        ]
+        room = np.minimum(far, MOST_ROOM_CELLS)
+        return np.pad(room, ((0, 1), (0, 1))).astype(np.uint8).ravel()
+
+    def room_at(self, position: AnyArray) -> AnyArray | int:
+        """Return the cells that particles at positions (2, N) may move at once, for all or (N,)."""
+        if self._open is None:
+            return MOST_ROOM_CELLS
+        return np.maximum(self.room[self.corners(position).at], LEAST_ROOM_CELLS)
+
+    def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
+        """Interpolate nodal data of consecutive sets, (sets * J * I,).
+
+        The set of each particle begins at index ``base``.
+        """
+        at, first = (corners.at + base, 0) if np.ndim(base) else (corners.at, int(base))
+        # Products of complex numbers with complex ones are several times as fast.
+        s, t = (share.astype(data.dtype, copy=False) for share in (corners.s, corners.t))
+        low = _between(data[first:], at, s)
+        high = _between(data[first + self.columns :], at, s)
+        high -= low
+        high *= t
+        high += low
+        return high
+
+    def alive(self, position: AnyArray, edge: float = BORDER_ROUNDING_CELLS) -> Bools:
+        """Return whether positions (2, N) are inside the domain, in a cell that is not blanked.
+
+        ``edge`` cells beyond a border still count as inside.
+        """
+        result = np.ones(position.shape[1], dtype=bool)
+        if self.poles is not None:
+            position = self.poles.fold(position)
+        for x, cells, closed in zip(
+            position, (self.columns - 1, self.rows - 1), self.periodic[::-1], strict=True
+        ):
+            if not closed:
+                result &= (x >= -edge) & (x <= cells + edge)
+        if self._open is not None:
+            result &= self._open[self.corners(position).at]
+        return result
+
+
+def _cell(x: AnyArray, cells: int, *, closed: bool) -> tuple[Indices, AnyArray]:
+    """Return the number of the cell along one axis, and the fraction inside it."""
+    if closed:
+        inside = x - cells * np.floor(x * x.dtype.type(1 / cells))
+        # Rounding can leave the result outside, by more the further away the position is.
+        np.clip(inside, 0, cells, out=inside)
+    else:
+        inside = np.clip(x, 0, cells)
+    number = inside.astype(np.intp)
+    np.minimum(number, cells - 1, out=number)
+    inside -= number.astype(x.dtype)
+    return number, inside
+
+
+def _between(data: AnyArray, at: Indices, s: AnyArray) -> AnyArray:
+    """Interpolate between each node and the next one along i."""
+    # The indices are in range by construction; "clip" only spares NumPy's own check.
+    low = data.take(at, mode="clip")
+    high = data[1:].take(at, mode="clip")
+    high -= low
+    high *= s
+    high += low
+    return high

@@ -22,7 +22,10 @@ from flowtex._util.progress import track
 from flowtex._util.threads import pool
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.derived import FOLLOWED
+from flowtex.field.derived.gradient import node_gradient, true_positions
 from flowtex.field.interpolation import nearest_known
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
@@ -32,7 +35,6 @@ from flowtex.trace.triangles import triangle_paths, triangle_slices
 
 A = TypeVar("A")
 B = TypeVar("B")
-
 #: Lags that single precision holds, also in computations.
 LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
@@ -465,3 +467,60 @@ class _Tracing:
             rows, columns = nearest_known(self.followed)
             slices[:, :, blank] = slices[:, :, rows[blank], columns[blank]]
         return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
+
+
+def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
+    """Return the finite-time Lyapunov exponent at nodes and steps, (T, J, I), per unit of time.
+
+    The trace slices are the flow map (Shadden, Lekien and Marsden 2005, Definition and properties
+    of Lagrangian coherent structures from finite-time Lyapunov exponents in two-dimensional
+    aperiodic flows).
+    It is NaN where a particle leaves the domain within the horizon. Steps of a field that varies
+    are computed when they are read.
+    """
+    gradient = node_gradient(field.surface, field.projection)
+
+    def at_step(step: int) -> Floats:
+        moved = _moved(field, step, horizon)
+        change = gradient.derivative(np.moveaxis(moved, -1, 0)) + gradient.directions
+        (a, b), (_, d) = (
+            [np.einsum("c...,c...->...", one, two) for two in change] for one in change
+        )
+        largest = (a + d) / 2 + np.hypot((a - d) / 2, b)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return gradient.with_poles(np.log(largest) / (2 * abs(horizon)))
+
+    if field.steady:
+        return at_step(0)[None]
+    return LazySteps(len(field.times), at_step)
+
+
+FOLLOWED["ftle"] = lyapunov_exponent
+
+
+def _moved(field: FlowField, step: int, horizon: float) -> Floats:
+    """Return displacements of the particles at the nodes, (J, I, 3), on the true surface."""
+    times = field.times - field.times[step]
+    span, forward = (min(horizon, 0.0), max(horizon, 0.0)), horizon > 0
+    first = max(int(np.searchsorted(times, span[0], side="right")) - 1, 0)
+    last = min(int(np.searchsorted(times, span[1])), len(times) - 1)
+    part = field.at_steps(range(first, last + 1))
+    slices = trace(
+        part, lags=[1.0], unit=abs(horizon), parameter="time", steps=[step - first],
+        two_sided=forward, compose=False,
+    )  # fmt: skip
+    moved, reach = (
+        (slices.forward, slices.forward_reach) if forward else (slices.displacement, slices.reach)
+    )
+    assert moved is not None
+    assert reach is not None
+    # Particles at rest have not left.
+    moved, ended = moved[0, 0].astype(float), (reach[0] < 1) & (field.speed[step] > 0)
+    if not slices.in_space:
+        moved = field.surface.at(slices.nodes + moved) - field.points
+    before, after = (
+        true_positions(p, field.projection) for p in (field.points, field.points + moved)
+    )
+    result = after - before
+    result[ended | ~field.valid] = np.nan
+    return np.asarray(result)

@@ -37,10 +37,16 @@ from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts
 from flowtex.textures.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
-from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView, browser_options, web_views
-from flowtex.web.webmap import check_basemap, layer_script, map_pieces
+from flowtex.web.linked import (
+    StoreLink,
+    check_basemap,
+    first_parts,
+    layer_script,
+    linked_data,
+    map_pieces,
+    store_header,
+)
+from flowtex.web.view import TileSource, WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75

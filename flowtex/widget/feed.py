@@ -10,6 +10,7 @@ shows the same mesh many times holds it once, and asks for what it lacks.
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import threading
@@ -23,7 +24,7 @@ from functools import partial
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped
-from flowtex._util.threads import has_threads
+from flowtex._util.threads import has_threads, start
 from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
@@ -31,9 +32,7 @@ from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_in
 from flowtex.scene.scene import Change
 from flowtex.textures.tiles import TileKey
 from flowtex.web import preview
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView
-from flowtex.widget.worker import Worker, WorkerPool
+from flowtex.web.view import TileSource, WebView
 
 #: A field of more nodes, at all times together, is shown coarse first.
 LARGE_NODES = 60_000
@@ -53,18 +52,15 @@ COMING_S = 2.0
 _OF_STEP = re.compile(r"[a-z]+/([0-9]{1,9})(/[0-9]+)?")
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
-
 #: Digests of arrays that were sent to any page, and how many of them are remembered.
 _sent_digests: OrderedDict[str, None] = OrderedDict()
 _sent_lock = threading.Lock()
 MOST_DIGESTS = 10_000
-
-#: There are more answering threads than processors, as one may be tracing for long.
-ANSWER_POOL, BUILD_POOL = WorkerPool("flowtex-answer", 4), WorkerPool("flowtex-build", 2)
-
-
 #: Sends a message with its buffers.
 Send = Callable[[Header, list[memoryview]], None]
+Job = Callable[[], None]
+#: Negative urgency, order of arrival, worker, and job.
+Entry = tuple[int, int, "Worker", Job]
 
 
 class Feed:
@@ -396,3 +392,99 @@ def _was_sent(digest: str) -> bool:
         while len(_sent_digests) > MOST_DIGESTS:
             _sent_digests.popitem(last=False)
         return was_sent
+
+
+class WorkerPool:
+    """At most ``size`` threads that do the jobs of many workers, one at a time for each worker.
+
+    The urgent jobs come first. Thirty widgets with their own threads would slow each other down,
+    and behind a single thread all would wait for one long trace. Threads exist while there is work,
+    and are daemons, so that a long trace does not keep a kernel from ending.
+    """
+
+    def __init__(self, name: str, size: int) -> None:
+        self._name, self._size = name, size
+        # Garbage collection may close a widget in a thread that holds the lock.
+        self._lock = threading.RLock()
+        self._count = itertools.count()
+        self._waiting: list[Entry] = []
+        self._busy: set[Worker] = set()
+        self._threads = 0
+
+    def put(self, worker: Worker, job: Job, urgency: int) -> None:
+        """Add a job, which is done when its turn comes."""
+        with self._lock:
+            self._waiting.append((-urgency, next(self._count), worker, job))
+            if self._threads == self._size:
+                return
+            self._threads += 1
+        start(self._work, self._name)
+
+    def has(self, worker: Worker) -> bool:
+        """Return whether a job of a worker waits or runs."""
+        with self._lock:
+            return worker in self._busy or any(entry[2] is worker for entry in self._waiting)
+
+    def drop(self, worker: Worker) -> None:
+        """Forget the jobs of a worker that have not begun."""
+        with self._lock:
+            self._waiting = [entry for entry in self._waiting if entry[2] is not worker]
+
+    def _work(self) -> None:
+        done: Worker | None = None
+        while (entry := self._next(done)) is not None:
+            _, _, done, job = entry
+            done.run(job)
+
+    def _next(self, done: Worker | None) -> Entry | None:
+        with self._lock:
+            if done is not None:
+                self._busy.discard(done)
+            free = [entry for entry in self._waiting if entry[2] not in self._busy]
+            if not free:
+                self._threads -= 1
+                return None
+            entry = min(free, key=lambda e: e[:2])
+            self._waiting = [other for other in self._waiting if other is not entry]
+            self._busy.add(entry[2])
+            return entry
+
+
+class Worker:
+    """Jobs that a pool does one after the other.
+
+    ``failed`` is called with an error that a job raised; the next job is done all the same.
+    """
+
+    def __init__(self, pool: WorkerPool, failed: Callable[[Exception], None]) -> None:
+        self._pool, self._failed = pool, failed
+        self._closed = False
+
+    def do(self, job: Job, *, urgency: int = 0) -> None:
+        """Do a job after all that are as urgent or more so, also those of other workers."""
+        if not self._closed:
+            self._pool.put(self, job, urgency)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being done, or waits."""
+        return self._pool.has(self)
+
+    def close(self) -> None:
+        """Begin no other job."""
+        self._closed = True
+        self._pool.drop(self)
+
+    def run(self, job: Job) -> None:
+        """Do a job in the calling thread."""
+        if self._closed:
+            return
+        try:
+            job()
+        except Exception as error:  # the caller is in another thread
+            if not self._closed:
+                self._failed(error)
+
+
+#: There are more answering threads than processors, as one may be tracing for long.
+ANSWER_POOL, BUILD_POOL = WorkerPool("flowtex-answer", 4), WorkerPool("flowtex-build", 2)

@@ -1,4 +1,4 @@
-// The numbers of the method. flowtex/rendering/constants.py has the same, by the same names.
+// The numbers of the method, which flowtex/rendering/constants.py reads.
 
 // Lengths of the arrays that a renderer sets.
 const int FLOWTEX_MOST_LAGS = 32;
@@ -8,7 +8,7 @@ const int FLOWTEX_HALF_LEVELS = 32;
 const int FLOWTEX_KERNEL_HANN = 0;
 const int FLOWTEX_KERNEL_BOX = 1;
 const int FLOWTEX_KERNEL_RAMP = 2;
-const float FLOWTEX_PI = 3.14159265;
+const float FLOWTEX_PI = 3.141592653589793;
 const float FLOWTEX_LEAST_WEIGHT = 1e-3; // of the sample at the fragment itself
 const float FLOWTEX_LEAST_SPEED = 1e-6;  // a particle that is slower stands still
 // Correlation of the noise at two points d grains apart: exp(-d^2 (BELL + BELL_BEND d^2)).
@@ -41,7 +41,7 @@ const float FLOWTEX_LEVEL_DARKEST = 0.35;
 const float FLOWTEX_LEVEL_STRENGTH = 0.5; // of a picture over the colours of the levels
 
 // Noise that is even in space.
-const float FLOWTEX_SQRT_HALF = 0.70710678;
+const float FLOWTEX_SQRT_HALF = 0.7071067811865476;
 const float FLOWTEX_LAST_OCTAVE = 58.99;    // and between two, as the next ones
 const float FLOWTEX_LAST_HALF_LEVEL = 30.99;
 const float FLOWTEX_LEAST_RATE = 0.25;      // turns in a base period of a grain in motion
@@ -66,7 +66,7 @@ const float FLOWTEX_DASH_LOW = 0.02831827;
 const float FLOWTEX_DASH_PHASES = 256.0;
 // Their sides are as long as this over the tangent of the angle to paths half a side's length beside.
 const float FLOWTEX_TOGETHER = 0.5;
-const float FLOWTEX_GRAIN_VARIANCE = 1.537228672809129e18; // a third of its square
+const float FLOWTEX_GRAIN_VARIANCE = 1.5372286728091292e18; // a third of its square
 
 // Shading: the lightness that black and white are drawn to, and how far the texture goes from it.
 const float FLOWTEX_BASE_DARK = 0.36;
@@ -95,13 +95,13 @@ const mat3 FLOWTEX_TO_LAB = mat3(
   0.7936177850, -2.4285922050, 0.7827717662,
   -0.0040720468, 0.4505937099, -0.8086757660);
 const mat3 FLOWTEX_FROM_LAB = mat3(
-  1.0, 1.0, 1.0,
-  0.3963377774, -0.1055613458, -0.0894841775,
-  0.2158037573, -0.0638541728, -1.2914855480);
+  0.9999999984505199, 1.0000000088817607, 1.0000000546724108,
+  0.3963377921737679, -0.10556134232365635, -0.08948418209496575,
+  0.2158037580607588, -0.06385417477170591, -1.2914855378640917);
 const mat3 FLOWTEX_FROM_CONES = mat3(
-  4.0767416621, -1.2684380046, -0.0041960863,
-  -3.3077115913, 2.6097574011, -0.7034186147,
-  0.2309699292, -0.3413193965, 1.7076147010);
+  4.076741661347995, -1.268438004092176, -0.004196086541836943,
+  -3.3077115904081937, 2.6097574006633715, -0.7034186144594496,
+  0.23096992872942781, -0.3413193963102195, 1.7076147009309446);
 
 // Tracing.
 const float FLOWTEX_ENDLESS = 1e30;        // reach of a path that has not ended

@@ -1,5 +1,5 @@
 // Around a pole cells have no width, and rates along them no bound: a path is followed in the plane that
-// touches the surface there, in cells towards the pole, as flowtex/trace/charts.py does.
+// touches the surface there, in cells towards the pole, as flowtex/trace/sampler.py does.
 
 //#include common/constants.glsl
 

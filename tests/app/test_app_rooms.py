@@ -8,7 +8,7 @@ from pathlib import Path
 
 APP = Path(__file__).resolve().parents[2] / "flowtex" / "app"
 #: From the bottom to the top: a room imports from itself and from those before it.
-ROOMS = ("server", "streaming", "controllers", "ui", "flow_app", "__init__")
+ROOMS = ("server", "streaming", "controllers", "flow_app", "__init__")
 
 
 def app_imports() -> dict[str, set[str]]:

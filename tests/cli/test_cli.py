@@ -381,7 +381,7 @@ def test_the_terminal_says_what_takes_long(
     app = pytest.importorskip("flowtex.app.flow_app")
     monkeypatch.setenv("FORCE_COLOR", "1")  # to rich a terminal
     monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr("flowtex.cli.page.FORKS", False)
+    monkeypatch.setattr("flowtex.cli.commands.FORKS", False)
     monkeypatch.setattr(app, "serve", lambda _, announce, **__: announce("http://here"))
     code, out, err = run("show", gyre, "--no-browser")
     assert code == 0

@@ -75,7 +75,8 @@ def test_the_currents_are_in_balance_with_the_height(ocean: Dataset) -> None:
     north, east = np.gradient(z.values, axis=(0, 1))
     east /= np.cos(np.radians(z.latitude.values))[:, None]
     u, v = (ocean[name].isel(time=3).values for name in ("uo", "vo"))
-    across = (u * east + v * north) / (np.hypot(u, v) * np.hypot(east, north))
+    with np.errstate(invalid="ignore"):  # the sea is level at some nodes
+        across = (u * east + v * north) / (np.hypot(u, v) * np.hypot(east, north))
     known = np.isfinite(across)
     assert known.mean() > 0.7
     assert np.median(np.abs(across[known])) < 1e-6
@@ -112,8 +113,9 @@ def test_the_wind_at_a_pole_is_one_vector(weather: Dataset, pole: int) -> None:
         up = np.sign(float(at.latitude))
         x = -np.sin(lon) * at.u.values - up * np.cos(lon) * at.v.values
         y = np.cos(lon) * at.u.values - up * np.sin(lon) * at.v.values
-        assert np.ptp(x) < 1e-9
-        assert np.ptp(y) < 1e-9
+        rounding = np.abs(weather.u.values).max() / 16_000
+        assert np.ptp(x) < 2 * rounding
+        assert np.ptp(y) < 2 * rounding
         assert np.hypot(x, y).max() > 0.2
     assert field.valid.all()
     assert field.periodic == (False, True)

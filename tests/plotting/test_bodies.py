@@ -14,7 +14,7 @@ from page_reader import Reader
 from webgl_page import packed
 
 import flowtex
-from flowtex.plotting import bodies as reading
+from flowtex.plotting import component as reading
 from flowtex.rendering.webgl.bodies import Body
 from flowtex.web.view import browser_options, web_views
 

@@ -15,7 +15,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import rgb
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.structure_marks import KIND_MARKS, LINE_COLORS
+from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
 from flowtex.textures.tiles import structure

@@ -20,7 +20,7 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import Built, PyramidError, build, client_parts, is_store, open_store, tasks
+from flowtex.pyramid import Built, PyramidError, build, is_store, open_store, tasks
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
@@ -226,7 +226,7 @@ def test_a_second_run_makes_what_is_missing(tmp_path: Path, stores: Stores) -> N
 
 def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Though of themselves chunks of zeros are not written, and what is not there is missing."""
-    for name in ("layout", "samples"):
+    for name in ("layout", "levels"):
         monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "SHARD_CHUNKS", (1, 1))
     x, y = grid(40, 140)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
@@ -252,7 +252,7 @@ def test_a_build_that_ends_early_goes_on(
 ) -> None:
     store, count = tmp_path / "a.zarr", iter(range(100))
     with monkeypatch.context() as patch:
-        write = client_parts.write_tile
+        write = tasks.write_tile
 
         def broken(*given: Any) -> None:
             if next(count) > 2:

@@ -143,7 +143,7 @@ def test_the_shell_shows_a_store_on_a_page(
         shown.append(library)
         return 0
 
-    monkeypatch.setattr("flowtex.cli.page.FORKS", False)
+    monkeypatch.setattr("flowtex.cli.commands.FORKS", False)
     monkeypatch.setattr("flowtex.cli.show.serve_library", serve)
     monkeypatch.setattr("flowtex.rendering.diagnostics.has_display", lambda: False)
     assert main(["show", str(store)]) == 0

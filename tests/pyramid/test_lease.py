@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 from flowtex import FlowField
-from flowtex.pyramid import PyramidError, build, lease
-from flowtex.pyramid.lease import STALE_S, Lease
-from flowtex.pyramid.places import LEASE
+from flowtex.pyramid import PyramidError, build, places
+from flowtex.pyramid.places import LEASE, STALE_S, Lease
 
 zarr = pytest.importorskip("zarr")
 
@@ -34,7 +33,7 @@ def place(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mo
     """A folder, and storage that writes on a condition."""
     if request.param == "objects":
         memory = pytest.importorskip("obstore.store").MemoryStore()
-        monkeypatch.setattr(lease, "store_at", lambda *_, **__: zarr.storage.ObjectStore(memory))
+        monkeypatch.setattr(places, "store_at", lambda *_, **__: zarr.storage.ObjectStore(memory))
     return str(tmp_path / "flow.zarr")
 
 

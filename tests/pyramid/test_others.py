@@ -34,7 +34,7 @@ TOLD: dict[str, Any] = {
 def _small(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 500)
-        for module in ("others", "source"):
+        for module in ("stored", "source"):
             patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 1000)
         yield
 
@@ -171,8 +171,8 @@ def test_metadata_may_lie_apart_where_nothing_is_listed(
 
 
 def test_a_map_and_one_level_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.pyramid.others.SLOW_BYTES", 1000)
-    monkeypatch.setattr("flowtex.pyramid.others.SLOW_NODES", 1000)
+    monkeypatch.setattr("flowtex.pyramid.stored.SLOW_BYTES", 1000)
+    monkeypatch.setattr("flowtex.pyramid.stored.SLOW_NODES", 1000)
     dataset(earth=True).to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
     assert has_parts(tmp_path / "a.zarr")
     with pytest.warns(Notice) as told:
@@ -199,6 +199,6 @@ def test_what_is_no_velocity_is_told(tmp_path: Path) -> None:
 def test_a_coarser_level_on_other_lines_is_told(
     stores: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.pyramid.others.read_datasets", lambda *_, **__: object())
+    monkeypatch.setattr("flowtex.pyramid.stored.read_datasets", lambda *_, **__: object())
     with pytest.raises(FieldError, match="a coarser level is not on rows and columns"):
         open_store(stores["convention"])

@@ -287,7 +287,7 @@ def test_a_file_that_changes_while_it_is_read(
 def test_robust_ranges_of_large_data_are_those_of_a_sample(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.pyramid.samples.MOST_SAMPLES", 1000)
+    monkeypatch.setattr("flowtex.pyramid.levels.MOST_SAMPLES", 1000)
     field = FlowField.from_xarray(around())
     build(around(), tmp_path / "a.zarr", progress=False)
     ranges = Levels(tmp_path / "a.zarr").about["ranges"]

@@ -30,9 +30,8 @@ from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
-from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
+from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_limits
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
-from flowtex.rendering.triangle_blocks import TriangleBlocks
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import Marks

@@ -1,4 +1,4 @@
-"""GLSL and NumPy have the same numbers, by the same names."""
+"""The numbers of the shaders as Python has them."""
 
 from __future__ import annotations
 
@@ -9,34 +9,31 @@ import pytest
 
 from flowtex.rendering import constants
 from flowtex.rendering.shaders import shader_names, shader_source
-from flowtex.textures.paper import HALF_LEVELS
-from flowtex.textures.texture_set import MOST_LAGS
+from flowtex.textures import paper, texture_set
 
-#: Type, name and value of each constant in GLSL.
-GLSL = {
-    name: (kind, [float(int(n.rstrip("u"), 0)) if "u" in n else float(n) for n in numbers])
-    for kind, name, value in re.findall(
-        r"const (\w+) FLOWTEX_(\w+) = ([^;]*);", shader_source("common/constants.glsl")
-    )
-    for numbers in [re.findall(r"0x[0-9a-f]+u|-?[\d.]+(?:e-?\d+)?u?", re.sub(r"\w+\(", "", value))]
-}
-#: Kernels by name, and what legends are made by, in Python alone.
-PYTHON_ONLY = {"KERNELS", "MEAN_VALUES"}
+NAMES = re.findall(r"FLOWTEX_(\w+) =", shader_source("common/constants.glsl"))
 
 
-@pytest.mark.parametrize("name", GLSL)
-def test_a_constant_of_the_shaders_is_that_of_python(name: str) -> None:
-    kind, numbers = GLSL[name]
-    expected = np.ravel(getattr(constants, name)).astype(float)
-    assert len(numbers) == {"mat3": 9, "uvec3": 3, "uvec2": 2}.get(kind, 1)
-    # Single precision, and the inverse matrices are written with ten digits.
-    tolerance = 1e-6 if kind == "mat3" else 1e-8 * abs(expected)
-    assert np.all(np.abs(np.array(numbers) - expected) <= tolerance)
+def test_types_are_those_of_the_shaders() -> None:
+    assert constants.MOST_STEPS == 512 and isinstance(constants.MOST_STEPS, int)
+    assert constants.LEAST_TRAVEL == 1e-30 and isinstance(constants.LEAST_TRAVEL, float)
+    assert constants.HASH_SHIFT == 15 and constants.HASH_SHIFT.dtype == np.uint32
+    assert constants.AXIS_PRIMES.tolist() == [0x8DA6B343, 0xD8163841, 0xCB1AB31F]
+    assert constants.TO_LAB[2].tolist() == [-0.0040720468, 0.4505937099, -0.8086757660]
 
 
-def test_python_has_no_constant_that_the_shaders_lack() -> None:
-    names = {name for name in vars(constants) if name.isupper()}
-    assert names - PYTHON_ONLY == set(GLSL)
+def test_matrices_of_colours_are_inverse() -> None:
+    for there, back in (("TO_CONES", "FROM_CONES"), ("TO_LAB", "FROM_LAB")):
+        product = getattr(constants, there) @ getattr(constants, back)
+        np.testing.assert_allclose(product, np.eye(3), atol=1e-7)
+
+
+def test_numbers_that_follow_from_others_do() -> None:
+    assert pytest.approx(np.pi) == constants.PI
+    assert pytest.approx(np.sqrt(0.5)) == constants.SQRT_HALF
+    assert pytest.approx(constants.MOST_GRAIN**2 / 3) == constants.GRAIN_VARIANCE
+    assert [f"KERNEL_{kernel.upper()}" for kernel in constants.KERNELS] == NAMES[2:5]
+    assert [getattr(constants, name) for name in NAMES[2:5]] == [0, 1, 2]
 
 
 def test_every_constant_of_the_shaders_is_used() -> None:
@@ -45,9 +42,15 @@ def test_every_constant_of_the_shaders_is_used() -> None:
     )
     used = set(re.findall(r"\bFLOWTEX_(\w+)", re.sub(r"//.*", "", text)))
     # The kernel without its own branch.
-    assert set(GLSL) - used == {"KERNEL_HANN"}
+    assert set(NAMES) - used == {"KERNEL_HANN"}
 
 
-def test_arrays_of_the_shaders_have_the_length_that_the_textures_have() -> None:
-    assert GLSL["MOST_LAGS"][1] == [MOST_LAGS]
-    assert GLSL["HALF_LEVELS"][1] == [HALF_LEVELS]
+@pytest.mark.parametrize("name", ["AGREED", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"])
+def test_textures_are_made_by_the_numbers_of_the_shaders(name: str) -> None:
+    assert getattr(constants, name) == getattr(texture_set, name)
+    assert constants.HALF_LEVELS == paper.HALF_LEVELS
+
+
+def test_a_name_that_the_shaders_lack_is_an_error() -> None:
+    with pytest.raises(AttributeError, match="MISSING"):
+        _ = constants.MISSING

@@ -17,7 +17,7 @@ import flowtex
 from flowtex import FlowField
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.triangle_blocks import TriangleBlocks
+from flowtex.rendering.mesh_levels import TriangleBlocks
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
 from flowtex.textures import TriangleGeometry

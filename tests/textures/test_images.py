@@ -21,7 +21,7 @@ from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
 from flowtex.textures.images import LARGEST, load_image
-from flowtex.textures.patterns import SPOT_GRAIN, SQUARES
+from flowtex.textures.paper import SPOT_GRAIN, SQUARES
 from flowtex.trace import SliceStore
 
 SIZE = (240, 140)

@@ -24,7 +24,7 @@ def concerned_tests() -> Iterator[Callable[[set[str]], list[str]]]:
 def test_a_module_concerns_its_folder_and_who_imports_it(
     concerned_tests: Callable[[set[str]], list[str]],
 ) -> None:
-    found = concerned_tests({"flowtex/textures/tiles/boxes.py"})
+    found = concerned_tests({"flowtex/textures/tiles/triangle_pyramid.py"})
     assert {"tests/textures/tiles", "tests/test_layers.py"} <= set(found)
     assert "tests/cli" not in found
     assert not [path for path in found if path.startswith("tests/textures/tiles/")]

@@ -20,8 +20,7 @@ from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.child import Child, ChildError
 from flowtex._util.child.forkserver import FORKS
-from flowtex._util.child.messages import MessageError, read_message, write_message
-from flowtex._util.child.worker import settle
+from flowtex._util.child.worker import MessageError, read_message, settle, write_message
 from flowtex._util.progress import Stopped, stoppable
 
 ENTRY = "child_handler:Handler"

@@ -19,8 +19,8 @@ from flowtex.scene.options import Options
 from flowtex.textures import TextureSet
 from flowtex.textures.tiles import Pyramid
 from flowtex.web.view import web_views
-from flowtex.widget.views import Views
-from flowtex.widget.worker import Worker, WorkerPool
+from flowtex.widget.feed import Worker, WorkerPool
+from flowtex.widget.flow_widget import Views
 
 
 def swirl(times: int = 1) -> Any:

@@ -1,7 +1,7 @@
 """Make the shipped files of the examples again: ``python tools/example_data/build.py``.
 
-The vortices take about half a minute, the cylinder five. A folder may be named; by default the
-files replace those of the package.
+The vortices take about half a minute, the cylinder five, the others a second. A folder may be
+named; by default the files replace those of the package.
 """
 
 from __future__ import annotations
@@ -11,7 +11,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cylinder_run
+import delta_wing_run
+import ocean_run
 import vortex_run
+import weather_run
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -60,9 +63,22 @@ def _build_cylinder(progress: Progress, folder: Path | None) -> None:
     )
 
 
+def _builder(name: str, write: Callable[[Path | None], None]) -> Callable[..., None]:
+    """Return the builder of an example that takes a moment."""
+
+    def build(progress: Progress, folder: Path | None) -> None:
+        for _ in progress.track([folder], description=name):
+            write(folder)
+
+    return build
+
+
 BUILDERS: dict[str, Callable[[Progress, Path | None], None]] = {
     "vortex": _build_vortex,
     "cylinder": _build_cylinder,
+    "delta_wing": _builder("delta_wing", delta_wing_run.write),
+    "ocean": _builder("ocean", ocean_run.write),
+    "weather": _builder("weather", weather_run.write),
 }
 
 if __name__ == "__main__":

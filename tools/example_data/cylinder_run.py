@@ -183,7 +183,7 @@ def run(
 
 def write(shedding: Shedding, folder: Path | None = None) -> None:
     """Write the example's file, and the state from which the run can be taken up."""
-    packed, step = pack(shedding.velocity, axis=2)
+    packed, step = pack(shedding.velocity, axis=(0, 1, 2))
     setup = shedding.setup
     facts = {
         "times": shedding.times,

@@ -17,15 +17,17 @@ from numpy.typing import ArrayLike, NDArray
 STEPS = 32000
 
 
-def pack(values: NDArray[np.float64], axis: int) -> tuple[NDArray[np.int16], float]:
-    """Whole-numbered differences along an axis, and what one step is worth.
+def pack(
+    values: NDArray[np.float64], axis: int | tuple[int, ...]
+) -> tuple[NDArray[np.int16], float]:
+    """Whole-numbered differences along one axis or several, and what one step is worth.
 
     Parameters
     ----------
     values : ndarray
         Finite numbers.
-    axis : int
-        Axis along which they are smooth.
+    axis : int or tuple of int
+        Axes along which they are smooth.
 
     Returns
     -------
@@ -37,7 +39,9 @@ def pack(values: NDArray[np.float64], axis: int) -> tuple[NDArray[np.int16], flo
     step = float(np.abs(values).max()) / STEPS or 1.0
     whole = np.round(values / step).astype(np.int16)
     # Unsigned numbers wrap around by definition, and cumulative sums wrap back.
-    unsigned = np.diff(whole.view(np.uint16), axis=axis, prepend=np.uint16(0))
+    unsigned = whole.view(np.uint16)
+    for each in np.atleast_1d(axis):
+        unsigned = np.diff(unsigned, axis=each, prepend=np.uint16(0))
     return unsigned.astype(np.uint16).view(np.int16), step
 
 

@@ -60,5 +60,5 @@ def run(tell: Callable[[int], None] = lambda _: None) -> tuple[Real, Real]:
 
 def write(vorticity: Real, times: Real, folder: Path | None = None) -> None:
     """Write the file."""
-    packed, step = pack(vorticity, axis=2)
+    packed, step = pack(vorticity, axis=(1, 2))
     save((folder or DATA) / VORTEX, {"vorticity": packed, "step": step, "times": times})

@@ -1,5 +1,5 @@
 // A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py
-// describes the layout, and flowtex/pyramid/client_parts.py the surface of a tile.
+// describes the layout, and flowtex/pyramid/tasks.py the surface of a tile.
 
 import { HALVES } from "../half.ts";
 import {

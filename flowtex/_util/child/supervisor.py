@@ -18,8 +18,7 @@ from typing import IO, Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.child.forkserver import FORKS, STATUS_BYTES, fork_server
-from flowtex._util.child.messages import MessageError, read_message, write_message
-from flowtex._util.child.worker import command, spawned
+from flowtex._util.child.worker import MessageError, command, read_message, spawned, write_message
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 

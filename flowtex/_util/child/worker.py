@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import re
+import struct
 import sys
 import threading
 import traceback
@@ -14,8 +17,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import IO, Any
 
+import numpy as np
+
 from flowtex._util.array_types import AnyArray
-from flowtex._util.child.messages import read_message, write_message
 from flowtex._util.progress import stoppable
 from flowtex._util.temporary import remove_folders
 
@@ -23,7 +27,6 @@ from flowtex._util.temporary import remove_folders
 Answer = tuple[Any, Sequence[AnyArray]]
 #: Answers a request, which is a value of JSON.
 Handler = Callable[[Any], Answer]
-
 _PROGRAM = (
     "import json, sys; from importlib import import_module; start = json.loads(sys.argv[1]); "
     "sys.path[:] = start['path']; module, function = start['entry']; "
@@ -33,6 +36,12 @@ _PROGRAM = (
 OOM_SCORE = "800"
 #: Errors whose text is sufficient without a trace, and most characters of the text.
 QUIET, TEXT_LENGTH = ("Stopped", "MemoryError", "FieldError"), 4_000
+#: Length of the header.
+_PREFIX = struct.Struct(">I")
+#: Most bytes of a header.
+HEADER_BYTES = 16_000_000
+#: Types of arrays: numbers and truth values.
+_TYPE = re.compile(r"[<>|][biuf]\d{1,2}")
 
 
 def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
@@ -127,3 +136,81 @@ def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled:
     finally:
         remove_folders()
         os._exit(0)
+
+
+class MessageError(ValueError):
+    """The bytes that were received are not a message."""
+
+
+def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()) -> None:
+    """Write a header with a value of JSON, and arrays of numbers.
+
+    Nothing is unpickled: a process that parses an untrusted file may be compromised.
+    """
+    contiguous = [np.ascontiguousarray(array) for array in arrays]
+    infos = [[array.dtype.str, np.shape(array)] for array in arrays]
+    header = json.dumps({"value": value, "arrays": infos}).encode()
+    if len(header) > HEADER_BYTES:
+        msg = f"the header of a message has {len(header):,} bytes; expected {HEADER_BYTES:,}"
+        raise MessageError(msg)
+    stream.write(_PREFIX.pack(len(header)) + header)
+    for array in contiguous:
+        stream.write(array.reshape(-1).view(np.uint8).data)
+    stream.flush()
+
+
+def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray]] | None:
+    """Return a value and arrays, of ``most_bytes`` at most; ``None`` at the end of the stream."""
+    prefix = bytearray(_PREFIX.size)
+    if not _fill(stream, memoryview(prefix)):
+        return None
+    (length,) = _PREFIX.unpack(prefix)
+    if length > HEADER_BYTES:
+        msg = f"the header of a message has {length:,} bytes; expected {HEADER_BYTES:,} at most"
+        raise MessageError(msg)
+    header = bytearray(length)
+    if not _fill(stream, memoryview(header)):
+        return None
+    try:
+        message = json.loads(header)
+        value, infos = message["value"], message["arrays"]
+        types = [(_type(kind), _shape(shape)) for kind, shape in infos]
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        msg = f"the header of a message is malformed: {error}"
+        raise MessageError(msg) from error
+    size = sum(kind.itemsize * math.prod(shape) for kind, shape in types)
+    if size > most_bytes:
+        msg = f"a message declares {size:,} bytes of arrays; expected {most_bytes:,} at most"
+        raise MessageError(msg)
+    arrays: list[AnyArray] = []
+    for kind, shape in types:
+        arrays.append(np.empty(shape, kind))
+        if not _fill(stream, arrays[-1].reshape(-1).view(np.uint8).data):
+            return None
+    return value, arrays
+
+
+def _type(text: Any) -> np.dtype[Any]:
+    if not _TYPE.fullmatch(text):
+        msg = f"the type {text!r} of an array"
+        raise ValueError(msg)
+    kind: np.dtype[Any] = np.dtype(text)
+    return kind
+
+
+def _shape(sizes: Any) -> tuple[int, ...]:
+    if not all(type(n) is int and n >= 0 for n in sizes):
+        msg = f"the shape {sizes!r} of an array"
+        raise ValueError(msg)
+    return tuple(sizes)
+
+
+def _fill(stream: IO[bytes], view: memoryview) -> bool:
+    """Fill a buffer from a stream; return ``False`` where the stream ends before."""
+    filled = 0
+    while filled < len(view):
+        count = stream.readinto(view[filled:])  # type: ignore[attr-defined]
+        if not count:
+            return False
+        filled += count
+    return True

@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 from flowtex.app.controllers.appearance import Appearance
 from flowtex.app.controllers.context import Context, Controller, State
-from flowtex.app.controllers.data import Data
-from flowtex.app.controllers.file_beside import FileBeside
+from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.sharing import Sharing
 from flowtex.app.server.validation import name_among
@@ -66,11 +65,7 @@ class Controllers:
     """
 
     def __init__(
-        self,
-        context: Context,
-        name: str,
-        choice: Choice,
-        restore_state: Callable[[State], None],
+        self, context: Context, name: str, choice: Choice, restore_state: Callable[[State], None]
     ) -> None:
         self.context = context
         self.data = Data(context, name, choice)

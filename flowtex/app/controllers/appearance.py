@@ -8,7 +8,7 @@ from typing import Any
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller, State
-from flowtex.app.controllers.file_beside import FileBeside
+from flowtex.app.controllers.data import FileBeside
 from flowtex.app.server.page import start_task
 from flowtex.app.server.validation import decode_picture, name_among, number, sent_picture
 from flowtex.app.streaming.element import PAINTERS

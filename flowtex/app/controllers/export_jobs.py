@@ -17,16 +17,15 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes
-from flowtex._util.progress import Stopped, stoppable
+from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
-from flowtex.app.streaming.window import Rect
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.annotations import annotate
@@ -216,21 +215,8 @@ class PictureJob(Job):
         from PIL import Image
 
         with whole_file(self.path) as file:
-            target = _StoppableFile(file, self._unwanted)
-            Image.fromarray(picture).save(target, "PNG")  # type: ignore[arg-type]
-
-
-class _StoppableFile:
-    """A file that raises ``Stopped`` once it is unwanted."""
-
-    def __init__(self, file: IO[bytes], unwanted: Callable[[], bool]) -> None:
-        self._file, self._unwanted = file, unwanted
-        self.flush = file.flush
-
-    def write(self, content: bytes) -> int:
-        if self._unwanted():
-            raise Stopped
-        return self._file.write(content)
+            Image.fromarray(picture).save(file, "PNG")
+            check()
 
 
 class MovieJob(Job):

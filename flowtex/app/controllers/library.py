@@ -20,7 +20,7 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.formula.line import is_line, line_field, line_python
+from flowtex.field.formula.make import is_line, line_field, line_python
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.options import FieldOptions

@@ -12,9 +12,8 @@ from typing import Any
 
 from flowtex._util.progress import Stopped
 from flowtex.app.controllers.context import Context, Controller, State
-from flowtex.app.controllers.data import Data
+from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
-from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number

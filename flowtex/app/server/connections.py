@@ -1,17 +1,14 @@
-"""Limits of the connections of a web server: their number, their duration, and their priority.
+"""Limits of the connections of a web server: their number and their duration.
 
 The head of a request has to arrive within :data:`HEAD_S`, also the next one of a connection that
-is kept, and the answer within :data:`ANSWER_S`. At the maximum number of connections, a new one
-replaces another: of the address that has most of them, the oldest that waits for a request, or else
-the oldest that is being answered. Those of pages are never replaced. So connections that were
-opened to keep others out replace each other.
+is kept, and the answer within :data:`ANSWER_S`. Beyond the maximum number of connections, new ones
+are closed.
 """
 
 from __future__ import annotations
 
 import asyncio
 import socket as sockets
-from collections import Counter
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
@@ -27,34 +24,31 @@ LINGER_S, SHUTDOWN_S = 2.0, 2.0
 
 #: Answers a request.
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
-#: The time limit of each connection that is being answered.
-ANSWERING = web.AppKey("answering", dict[web.RequestHandler, asyncio.Timeout])
+#: The time limit of a request.
+LIMIT = web.RequestKey("limit", asyncio.Timeout)
 
 
 def limit_time(application: web.Application) -> None:
     """End requests that take too long, except those that are kept."""
-    answering = application[ANSWERING] = {}
 
     @web.middleware
     async def in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
         try:
-            async with asyncio.timeout(ANSWER_S) as answering[request.protocol]:
+            async with asyncio.timeout(ANSWER_S) as request[LIMIT]:
                 return await handler(request)
         except TimeoutError:
             raise web.HTTPRequestTimeout from None
-        finally:
-            answering.pop(request.protocol, None)
 
     application.middlewares.append(in_time)
 
 
 def keep(request: web.Request) -> None:
     """Lift the time limit of a request's connection."""
-    request.app[ANSWERING][request.protocol].reschedule(None)
+    request[LIMIT].reschedule(None)
 
 
 class LimitedServer:
-    """A web application on a port, after :func:`limit_time`.
+    """A web application on a port.
 
     It has ``most`` connections at one time; by default half of the files that the process may open
     are left for others. Options are arguments of ``aiohttp.web.AppRunner``.
@@ -63,7 +57,6 @@ class LimitedServer:
     def __init__(
         self, application: web.Application, *, most: int | None = None, **options: Any
     ) -> None:
-        self._answering = application[ANSWERING]
         self._most = usual_most() if most is None else most
         # The program handles signals, not the web server.
         self._runner = web.AppRunner(
@@ -103,44 +96,19 @@ class LimitedServer:
         await self._runner.cleanup()
 
     def _admit(self) -> asyncio.Protocol:
-        """Return the protocol of a new connection, for which another one may have to end."""
+        """Return the protocol of a new connection, which ends it if there are too many."""
         server = self._runner.server
         if server is None or self._server is None:  # accepted just before the server stopped
             return _Refusal()
-        present = [
-            connection
-            for connection in server.connections
-            if connection.transport is not None and not connection.transport.is_closing()
-        ]
-        if len(present) >= self._most:
-            loser = self._loser(present)
-            if loser is None or loser.transport is None:
-                return _Refusal()
-            loser.transport.abort()
-        return server()
-
-    def _loser(self, present: list[web.RequestHandler]) -> web.RequestHandler | None:
-        """Return the connection to be replaced; ``present`` is in the order of arrival."""
-        times = self._answering
-        waiting = [connection for connection in present if connection not in times]
-        others = [c for c in present if c in times and times[c].when() is not None]
-        addresses = [_address(connection) for connection in waiting or others]
-        if not addresses:
-            return None
-        ((most_frequent, _),) = Counter(addresses).most_common(1)
-        return (waiting or others)[addresses.index(most_frequent)]
+        transports = [connection.transport for connection in server.connections]
+        present = sum(t is not None and not t.is_closing() for t in transports)
+        return server() if present < self._most else _Refusal()
 
 
 class _Refusal(asyncio.Protocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         if isinstance(transport, asyncio.Transport):
             transport.abort()
-
-
-def _address(connection: web.RequestHandler) -> object:
-    transport = connection.transport
-    name = transport.get_extra_info("peername") if transport is not None else None
-    return name[0] if isinstance(name, tuple) else name
 
 
 def usual_most() -> int:

@@ -22,16 +22,17 @@ import math
 import os
 import signal
 import socket as sockets
+import time
 import webbrowser
-from collections.abc import Awaitable, Callable, Container, Iterable
-from contextlib import suppress
+from collections.abc import Awaitable, Callable, Container, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.terminal.ending import SIGNALS, Ended, announce_end
-from flowtex.app.server.bounded_log import bounded_log
 from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, known_hosts
@@ -50,7 +51,6 @@ DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 IDLE_MINUTES = 15.0
 #: Most bytes of a request of the door.
 REQUEST_BYTES = 4096
-
 WRONG = "This page opens only with the complete address that flowtex printed, including the secret."
 FULL = (
     "The limit is {pages} at a time, and all are in use. One becomes free soon after somebody "
@@ -59,8 +59,13 @@ FULL = (
 ENDS = "The server is shutting down. Start it again to open this page."
 BROKEN = "The page could not be opened: {error}"
 MALFORMED = "This request is not valid for this page."
-
 _log = logging.getLogger(__name__)
+#: Records of one place in the code that are written in a window, and its seconds.
+MOST_RECORDS, WINDOW_S = 5, 60.0
+#: Characters of a message, and of a traceback with it.
+MESSAGE_LENGTH, TRACEBACK_LENGTH = 2_000, 8_000
+#: Errors caused by clients, whose tracebacks are not logged.
+OTHERS_FAULTS = HttpProcessingError, web.RequestPayloadError
 
 
 class ServeError(FieldError):
@@ -302,3 +307,54 @@ def _open(address: str) -> None:
             webbrowser.open(address)
 
     asyncio.get_running_loop().run_in_executor(None, in_thread)
+
+
+class RepeatFilter(logging.Filter):
+    """Drops repeated records, and shortens long ones; ``clock`` is in seconds."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__()
+        self._clock = clock
+        self._formatter = logging.Formatter()
+        #: For each place in the code: when its window began, and its records since.
+        self._windows: dict[object, tuple[float, int]] = {}
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Return whether a record is written; cut it, and keep tracebacks of defects only."""
+        kind = record.exc_info[0] if record.exc_info else None
+        place, now = (record.pathname, record.lineno, kind), self._clock()
+        began, count = self._windows.get(place, (now, 0))
+        dropped = 0
+        if now - began >= WINDOW_S:
+            dropped, began, count = max(0, count - MOST_RECORDS), now, 0
+        self._windows[place] = began, count + 1
+        if count >= MOST_RECORDS:
+            return False
+        message = _cut(record.getMessage(), MESSAGE_LENGTH)
+        record.msg = f"{message} ({dropped:,} more were dropped)" if dropped else message
+        record.args = ()
+        if kind and issubclass(kind, OTHERS_FAULTS):
+            record.exc_info = record.exc_text = None
+        if record.exc_info:
+            text = self._formatter.formatException(record.exc_info)
+            record.exc_text = _cut(text, TRACEBACK_LENGTH)
+        return True
+
+
+def _cut(text: str, most: int) -> str:
+    """Return a text without its middle where it is long."""
+    return text if len(text) <= most else f"{text[: most // 2]} … {text[-most // 2 :]}"
+
+
+@contextmanager
+def bounded_log() -> Iterator[None]:
+    """Filter the log of this process, including that of libraries."""
+    handlers = logging.getLogger().handlers or [logging.lastResort or logging.NullHandler()]
+    repeats = RepeatFilter()
+    for handler in handlers:
+        handler.addFilter(repeats)
+    try:
+        yield
+    finally:
+        for handler in handlers:
+            handler.removeFilter(repeats)

@@ -23,8 +23,7 @@ from typing import Any
 import trame_rca.module
 
 from flowtex.app.server.page import PageElement, PageState, Signal, start_task
-from flowtex.app.streaming.element import Element
-from flowtex.app.streaming.player import Player
+from flowtex.app.streaming.element import Element, Player
 from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
@@ -76,12 +75,7 @@ class FlowArea(AppearanceAttributes):
     """
 
     def __init__(
-        self,
-        flow: Any,
-        *,
-        server: Any,
-        state: PageState | None = None,
-        **options: Any,
+        self, flow: Any, *, server: Any, state: PageState | None = None, **options: Any
     ) -> None:
         self.server = server
         self.state = state or PageState(server)

@@ -1,7 +1,7 @@
 """The Python side of ``<flowtex-view>``: the data sent to the page, and the user's actions there.
 
 The page asks for files of parts: of the whole surface, and of tiles, at some times;
-:mod:`flowtex.web.source` says what is in them. The page says which of two painters draws: the
+:mod:`flowtex.web.view` says what is in them. The page says which of two painters draws: the
 browser with WebGL2, or VTK here, whose pictures a stream sends. With VTK it has only the parts for
 controls and legend.
 """
@@ -12,7 +12,7 @@ import asyncio
 import itertools
 import logging
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any
 
@@ -21,27 +21,24 @@ import numpy as np
 from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
-from flowtex.app.server.page import PageState, Signal, running_loop
+from flowtex.app.server.page import PageState, Signal, running_loop, start_task
 from flowtex.app.server.validation import mapping, name_among, number
-from flowtex.app.streaming.player import Player
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Pane, Viewport
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.formula import PREFIX
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
+from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
 from flowtex.textures.tiles import TileKey
 from flowtex.web.assets import client_module
-from flowtex.web.source import TileSource
-from flowtex.web.view import WebView
+from flowtex.web.view import TileSource, WebView
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)
-
 #: Painters.
 PAINTERS = ("server", "browser")
 #: Name of the whole surface in place of a tile.
@@ -384,3 +381,93 @@ def some_parts(scene: ClientData, place: str) -> Parts:
     directions = np.concatenate([sphere, np.eye(3), -np.eye(3)])
     farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
     return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
+
+
+class Player:
+    """The time of a viewport."""
+
+    def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
+        #: Signals after a change of the time shown, and after the animation starts or stops.
+        self.time_changed, self.playing_changed = Signal(), Signal()
+        #: Name of the page that requested the time shown; empty for a request of the server.
+        self.page = ""
+        self._viewport = viewport
+        self._stream = stream
+        self._requested: float | None = None
+        self._reading: asyncio.Task[None] | None = None
+
+    @property
+    def playing(self) -> bool:
+        """Whether the animation runs."""
+        return self._stream.playing
+
+    @playing.setter
+    def playing(self, playing: bool) -> None:
+        self._stream.playing = bool(playing)
+        self._viewport.set_still(still=not playing)
+        if playing and self._viewport.field.steady:
+            for pane in self._viewport.panes:
+                if pane.handle.settings.motion == "off":
+                    pane.handle.settings.motion = "speed"
+        self.playing_changed.emit()
+        self._stream.moved()
+
+    @property
+    def time(self) -> float:
+        """The time shown, or the requested one that is being read."""
+        return self._viewport.handle.time if self._requested is None else self._requested
+
+    def go_to(self, time: float, page: str = "") -> None:
+        """Show a time, or the nearest one; the animation stops if that cannot be read.
+
+        Lazy steps are read in a thread: until then the time shown stays.
+        """
+        times = self._viewport.field.times
+        nearest = min(max(float(time), float(times[0])), float(times[-1]))
+        if nearest == self.time:
+            return
+        self.page = page
+        if running_loop() is None or not self._viewport.reads_late:
+            self._show(nearest)
+            return
+        self._requested = nearest
+        if self._reading is None or self._reading.done():
+            self._reading = start_task(self._read(), "a time step cannot be read")
+
+    async def _read(self) -> None:
+        """Read the latest requested time, and show it."""
+        while (time := self._requested) is not None:
+            fault, field = None, self._viewport.field
+            try:
+                await asyncio.to_thread(self._viewport.trace, time)
+            except FieldError as error:
+                fault = error
+            if field is not self._viewport.field:
+                self._requested = None
+            elif time == self._requested:
+                self._requested = None
+                self._stop(fault) if fault else self._show(time)
+
+    def _show(self, time: float) -> None:
+        before = self._viewport.handle.time
+        try:
+            self._viewport.set_time(time)
+        except FieldError as error:
+            with suppress(FieldError):
+                self._viewport.set_time(before)
+            self._stop(error)
+            return
+        self.time_changed.emit()
+        self._stream.changed()
+
+    def _stop(self, error: FieldError) -> None:
+        """Stop at the time shown, as another one cannot be read."""
+        self.playing, self.page = False, ""
+        self._stream.data_failed.emit(error)
+        self.time_changed.emit()
+        self._stream.changed()
+
+    def close(self) -> None:
+        """Cancel the time that is being read."""
+        if self._reading is not None:
+            self._reading.cancel()

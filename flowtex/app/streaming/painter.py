@@ -2,8 +2,7 @@
 
 A texture costs time for each pixel and each sample. :class:`Cost` learns that price from the
 drawn pictures, so a graphics card draws everything at full quality at once. Where that is too slow,
-as on a processor, the quick picture is the last full one moved to its new place when only the
-camera moved over a flat surface, and else a draft of fewer pixels and samples; the full picture is
+as on a processor, the quick picture is a draft of fewer pixels and samples; the full picture is
 drawn over it a tile at a time.
 """
 
@@ -18,11 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.array_types import Bytes
 from flowtex.app.server.validation import clipped
-from flowtex.app.streaming.reprojection import Snapshot, coverage, reproject, whole_shift
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
-from flowtex.app.streaming.window import Rect
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1
@@ -40,11 +37,6 @@ DRAFT_SAMPLES = 9
 COARSEST_DRAFT = 0.2
 #: A tile is never smaller than this, in pixels along a side.
 SMALLEST_TILE_PX = 64
-#: Limits of the magnification at which a drawn picture is used for a moved view; beyond them a
-#: draft shows more.
-MOST_STRETCH, LEAST_STRETCH = 4.0, 0.3
-#: Width of a draft beneath a moved picture over that of the view, so that it lasts for some time.
-DRAFT_MARGIN = 1.7
 #: Grey of the line between two panes.
 LINE_GREY = 128
 
@@ -108,14 +100,11 @@ class PanePainter:
         self.cost = cost or Cost()  #: Price of pictures, learnt from them.
         self.complete = False  #: Whether the last picture that was drawn is at full quality.
         self.drafting = False  #: Whether a setting is changed for the moment, for a draft.
-        self._snapshot: Snapshot | None = None
-        self._under: Snapshot | None = None
         self._last: Bytes | None = None
         self._state = 0
 
     def forget(self) -> None:
-        """Discard the drawn pictures, which no longer show the present state."""
-        self._snapshot = self._under = None
+        """Discard the drawn picture, which no longer shows the present state."""
         self.complete = False
         self._state += 1
 
@@ -125,37 +114,11 @@ class PanePainter:
 
     def quick(self, budget: float) -> Bytes:
         """Return a picture within about ``budget`` seconds, (h, w, 3) uint8."""
-        self._last = self._quick(budget)
-        return self._last
-
-    def _quick(self, budget: float) -> Bytes:
         width, height = self.pane.size
         quality = self.cost.choose(width * height, self._samples, budget)
-        view = self.pane.plane_view()
         self.complete = quality.scale >= 1.0 and quality.samples == self._samples
-        if self.complete:
-            pixels = self._draw(width, height)
-            self._snapshot = None if view is None else Snapshot(pixels, view, sharp=True)
-            return pixels
-        if self._snapshot is not None and view is not None:
-            share, stretch = coverage(self._snapshot, view)
-            if LEAST_STRETCH <= stretch <= MOST_STRETCH and share > 0.2:
-                under = None if share >= 1.0 else self._beneath(view, quality)
-                return reproject(self._snapshot, view, (width, height), under)
-        return self._draft(quality)
-
-    def _beneath(self, view: Floats, quality: Quality) -> Snapshot:
-        """Return a draft that covers the view and a margin around it."""
-        if self._under is not None:
-            share, stretch = coverage(self._under, view)
-            if share >= 1.0 and stretch < MOST_STRETCH / quality.scale:
-                return self._under
-        width, height = self.pane.size
-        margins = (round(width * (1 - DRAFT_MARGIN) / 2), round(height * (1 - DRAFT_MARGIN) / 2))
-        part = (*margins, width - 2 * margins[0], height - 2 * margins[1])
-        wider = np.diag([width / part[2], height / part[3], 1.0]) @ view
-        self._under = Snapshot(self._draft(quality, part), wider)
-        return self._under
+        self._last = self._draw(width, height) if self.complete else self._draft(quality)
+        return self._last
 
     def full(self) -> Generator[Bytes, None, None]:
         """Draw the full picture over the quick one; yield the picture after each tile.
@@ -163,63 +126,27 @@ class PanePainter:
         The array is the same one each time. Drawing may be cancelled between two tiles.
         """
         width, height = self.pane.size
-        view, state = self.pane.plane_view(), self._state
+        state, spent = self._state, 0.0
         start = self.quick(0.0) if self._last is None else self._last
         canvas = _resized(start, width, height).copy()
-        reused = self._reuse(canvas, view)
-        areas = [(0, 0, width, height)] if reused is None else _around(reused, width, height)
-        spent, drawn, complete = 0.0, 0, False
-        try:
-            for left, top, wide, high in self._tiles(areas, width, height):
-                started = time.perf_counter()
-                tile = self.pane.draw(wide, high, (left, top, wide, high))
-                canvas[top : top + high, left : left + wide] = tile
-                spent += time.perf_counter() - started
-                drawn += wide * high
-                yield canvas
-            if not drawn:
-                yield canvas
-            self.complete = complete = state == self._state
-            # For all tiles together, as one beside the surface is empty and costs nothing.
-            if reused is None:
-                self.cost.learn(spent, drawn, self._samples)
-        finally:
-            # Half of a full picture is better for a moved view than none, but not than a sharp one.
-            if view is not None and state == self._state and (complete or reused is None):
-                self._snapshot = Snapshot(canvas.copy(), view, sharp=complete)
+        for left, top, wide, high in self._tiles(width, height):
+            started = time.perf_counter()
+            tile = self.pane.draw(wide, high, (left, top, wide, high))
+            canvas[top : top + high, left : left + wide] = tile
+            spent += time.perf_counter() - started
+            yield canvas
+        self.complete = state == self._state
+        # For all tiles together, as one beside the surface is empty and costs nothing.
+        self.cost.learn(spent, width * height, self._samples)
 
-    def _reuse(self, canvas: Bytes, view: Floats | None) -> Rect | None:
-        """Copy the sharp picture to its new place; return the rectangle that it fills.
-
-        A drag over a flat surface shifts the picture by whole pixels, and most of it stays.
-        """
-        if view is None or self._snapshot is None or not self._snapshot.sharp:
-            return None
-        if (
-            self._snapshot.pixels.shape != canvas.shape
-            or (shift := whole_shift(self._snapshot, view)) is None
-        ):
-            return None
-        height, width = canvas.shape[:2]
-        left, top = max(shift[0], 0), max(shift[1], 0)
-        wide, high = width - abs(shift[0]), height - abs(shift[1])
-        x, y = max(-shift[0], 0), max(-shift[1], 0)
-        canvas[top : top + high, left : left + wide] = self._snapshot.pixels[
-            y : y + high, x : x + wide
-        ]
-        return left, top, wide, high
-
-    def _tiles(self, areas: list[Rect], width: int, height: int) -> list[Rect]:
+    def _tiles(self, width: int, height: int) -> list[Rect]:
         """Return tiles of about the same size, from the middle of the view outwards."""
         side = self.cost.tile(self._samples)
-        tiles = []
-        for left, top, wide, high in areas:
-            xs, ys = _cuts(left, wide, side), _cuts(top, high, side)
-            tiles += [
-                (x, y, right - x, below - y)
-                for y, below in pairwise(ys)
-                for x, right in pairwise(xs)
-            ]
+        tiles = [
+            (x, y, right - x, below - y)
+            for y, below in pairwise(_cuts(height, side))
+            for x, right in pairwise(_cuts(width, side))
+        ]
 
         def distance(tile: Rect) -> float:
             left, top, wide, high = tile
@@ -227,22 +154,20 @@ class PanePainter:
 
         return sorted(tiles, key=distance)
 
-    def _draft(self, quality: Quality, part: Rect | None = None) -> Bytes:
+    def _draft(self, quality: Quality) -> Bytes:
         width, height = self.pane.size
         settings = self.pane.handle.settings
         self.drafting = True
         chosen, settings.samples = settings.samples, quality.samples
         try:
-            return self._draw(
-                max(round(width * quality.scale), 16), max(round(height * quality.scale), 16), part
-            )
+            return self._draw(*(max(round(side * quality.scale), 16) for side in (width, height)))
         finally:
             settings.samples = chosen
             self.drafting = False
 
-    def _draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
+    def _draw(self, width: int, height: int) -> Bytes:
         started = time.perf_counter()
-        pixels = self.pane.draw(width, height, part)
+        pixels = self.pane.draw(width, height)
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 
@@ -256,21 +181,13 @@ def _resized(pixels: Bytes, width: int, height: int) -> Bytes:
     return np.asarray(Image.fromarray(pixels).resize((width, height), smooth))
 
 
-def _around(reused: Rect, width: int, height: int) -> list[Rect]:
-    """Return the rest of a picture around a rectangle that touches two of its borders."""
-    left, top, wide, high = reused
-    above = (0, 0, width, top) if top else (0, high, width, height - high)
-    beside = (0, top, left, high) if left else (wide, top, width - wide, high)
-    return [area for area in (above, beside) if area[2] > 0 and area[3] > 0]
-
-
-def _cuts(start: int, length: int, side: int) -> list[int]:
+def _cuts(length: int, side: int) -> list[int]:
     """Return the ends of parts of about equal length, even numbers except the last.
 
     Derivatives are taken in blocks of 2 x 2 pixels.
     """
     count = math.ceil(length / side)
-    return [start + 2 * round(length * n / count / 2) for n in range(count)] + [start + length]
+    return [2 * round(length * n / count / 2) for n in range(count)] + [length]
 
 
 class ViewPainter:

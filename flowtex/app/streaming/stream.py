@@ -6,9 +6,8 @@ picture shows the latest state. Pictures are sent by a remote controlled area (t
 
 The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
 OpenGL). It takes the still picture in one piece, where this one is cancelled between two tiles:
-messages of the page waited for 0.4 to 2.6 s (here 0.05 to 0.3 s), and a dragged double gyre came
-at 17 pictures a second (here 25). Where the network is slow it drops the last, sharp picture as
-well, and its JPEGs at rest have colours at half the resolution.
+messages of the page waited for 0.4 to 2.6 s (here 0.05 to 0.3 s). Where the network is slow it
+drops the last, sharp picture as well, and its JPEGs at rest have colours at half the resolution.
 """
 
 from __future__ import annotations

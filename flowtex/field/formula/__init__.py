@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from flowtex.field.formula.flow import Formula, Parameter
+from flowtex.field.formula.flow import KNOWN, Formula, Parameter
 from flowtex.field.formula.grammar import FormulaError
-from flowtex.field.formula.known import KNOWN
 
 __all__ = ["KNOWN", "Formula", "FormulaError", "Parameter"]

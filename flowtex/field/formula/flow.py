@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,15 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.formula.grammar import FormulaError, Tree, Values, evaluate, parse
-from flowtex.field.formula.symbols import is_symbolic, tree_of
+from flowtex.field.formula.grammar import (
+    FUNCTIONS,
+    MOST_DEPTH,
+    FormulaError,
+    Tree,
+    Values,
+    evaluate,
+    parse,
+)
 
 RANGE = (-5.0, 5.0)
 #: Greatest speed and length; values beyond are blanked.
@@ -37,6 +45,53 @@ SURFACES: Mapping[str, tuple[tuple[str, str, str], Mapping[str, tuple[float, flo
     "cylinder": (("cos(u)", "sin(u)", "v"), {"u": _TURN, "v": (-1.5, 1.5)}),
 }
 COMPONENTS = 3
+#: Words, expressions, ranges, and parameters with the ends of their sliders.
+KNOWN: Mapping[str, tuple[str, tuple[str, str], Mapping[str, Any]]] = {
+    "pendulum": (
+        "Pendulum",
+        ("y", "-sin(x) - b*y"),
+        {"x": (-7, 7), "y": (-4, 4), "b": (0.2, 0, 1)},
+    ),
+    "van_der_pol": (
+        "Van der Pol",
+        ("y", "mu*(1 - x^2)*y - x"),
+        {"x": (-5, 5), "y": (-4, 4), "mu": (1, 0, 4)},
+    ),
+    "lotka_volterra": (
+        "Lotka–Volterra",
+        ("x*(a - b*y)", "-y*(c - d*x)"),
+        {"x": (0, 4), "y": (0, 3), "a": (1, 0, 2), "b": (1, 0, 2), "c": (1, 0, 2), "d": (1, 0, 2)},
+    ),
+    "duffing": (
+        "Duffing",
+        ("y", "x - x^3 - d*y"),
+        {"x": (-2, 2), "y": (-1.5, 1.5), "d": (0.2, 0, 1)},
+    ),
+    "dipole": (
+        "Dipole",
+        (
+            "(x + a)/hypot(x + a, y)^3 - (x - a)/hypot(x - a, y)^3",
+            "y/hypot(x + a, y)^3 - y/hypot(x - a, y)^3",
+        ),
+        {"x": (-3, 3), "y": (-2, 2), "a": (1, 0.1, 2)},
+    ),
+    "saddle_node": (
+        "Saddle-node bifurcation",
+        ("r + x^2", "-y"),
+        {"x": (-3, 3), "y": (-2, 2), "r": (-1, -2, 2)},
+    ),
+}
+#: Operations for classes of sympy with other names.
+_NAMES = {
+    "Add": "+",
+    "Mul": "*",
+    "Pow": "^",
+    "StrictLessThan": "<",
+    "StrictGreaterThan": ">",
+    "LessThan": "<=",
+    "GreaterThan": ">=",
+    "ceiling": "ceil",
+}
 
 
 @dataclass(frozen=True)
@@ -261,3 +316,54 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
         msg = f"{name} is {ends!r}; expected two numbers, the lower one first, such as (-7, 7)"
         raise FieldError(msg)
     return low, high
+
+
+def is_symbolic(expression: object) -> bool:
+    """Return whether this is an expression of sympy's."""
+    return type(expression).__module__.startswith("sympy.") and hasattr(expression, "args")
+
+
+def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
+    """Return the tree of an expression with these names.
+
+    Raises a FormulaError for operations that formulas do not have.
+    """
+    kind = type(expression).__name__
+    if depth > MOST_DEPTH:
+        msg = f"{kind} is nested more than {MOST_DEPTH} levels deep; simplify it"
+        raise FormulaError(msg)
+    if kind in ("Symbol", "Dummy"):
+        if expression.name in names:
+            return str(expression.name)
+        listed = ", ".join(sorted(names))
+        msg = (
+            f"{expression.name} is unknown; known are {listed}. Give a parameter its value, as in "
+            f"{expression.name}=1"
+        )
+        raise FormulaError(msg)
+    if not expression.args:
+        try:
+            return float(expression)
+        except (TypeError, ValueError) as error:
+            msg = f"the sympy expression {expression} is not a real number; expected one"
+            raise FormulaError(msg) from error
+    if kind == "Piecewise":
+        pairs = [(p.args[0], p.args[1]) for p in expression.args]
+        values = [tree_of(value, names, depth + 1) for value, _ in pairs]
+        last: Tree = float("nan")
+        for value, (_, holds) in zip(values[::-1], pairs[::-1], strict=True):
+            always = type(holds).__name__ == "BooleanTrue"
+            last = value if always else ("where", tree_of(holds, names, depth + 1), value, last)
+        return last
+    name = _NAMES.get(kind, kind.lower())
+    if name not in (*_NAMES.values(), *FUNCTIONS):
+        functions = ", ".join(FUNCTIONS)
+        msg = (
+            f"the sympy function {kind} is not allowed in a formula; expected + - * / ^ and "
+            f"{functions}"
+        )
+        raise FormulaError(msg)
+    arguments = [tree_of(part, names, depth + 1) for part in expression.args]
+    if name == "^":
+        return reduce(lambda base, power: (name, base, power), arguments)
+    return (name, *arguments)

@@ -23,7 +23,7 @@ from flowtex._util.colours import rgb
 from flowtex.field import FlowField
 from flowtex.field.dates import DAY_S, date_text
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.structure_marks import (
+from flowtex.rendering.webgl.marks import (
     DOT_PX,
     KIND_MARKS,
     LINE_COLORS,

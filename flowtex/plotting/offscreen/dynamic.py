@@ -14,13 +14,7 @@ FIRST_SIZE = (600, 400)
 
 
 @accepts_options(FieldOptions, Appearance)
-def dynamic_map(
-    mesh: Any,
-    *,
-    clock: float = 0.0,
-    supersampling: int = 1,
-    **options: Any,
-) -> Any:
+def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **options: Any) -> Any:
     """Return a flat flow as a HoloViews element that is redrawn for the range of its plot.
 
     The flow is redrawn for each range and size of the plot, so that its texture stays sharp. A

@@ -31,13 +31,7 @@ from flowtex.plotting.offscreen.earth_axes import (
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.plotting.offscreen.scaled_axes import AxesScales, with_polar_scalars
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
-from flowtex.scene.options import (
-    Appearance,
-    FieldOptions,
-    Options,
-    ViewOptions,
-    accepts_options,
-)
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene.scene import Scene
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.opening.dataset_files import dataset_paths
@@ -442,10 +436,7 @@ def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> Non
         limits = ax.projection
         (left, right), (bottom, top) = (
             np.clip((low, high), *sorted(most)).tolist()
-            for low, high, most in (
-                (left, right, limits.x_limits),
-                (bottom, top, limits.y_limits),
-            )
+            for low, high, most in ((left, right, limits.x_limits), (bottom, top, limits.y_limits))
         )
     if kind == "polar":  # all around the centre
         left, right = ax.get_xlim()

@@ -8,8 +8,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering import constants as const
-from flowtex.rendering.cpu.path import Slices, TriangleSlices
-from flowtex.rendering.cpu.places import Places, TrianglePlaces
+from flowtex.rendering.cpu.path import Places, Slices, TrianglePlaces, TriangleSlices
 from flowtex.rendering.uniforms import Values
 
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Ints
 from flowtex.rendering import constants as const
 from flowtex.rendering.constants import LAST_HALF_LEVEL, LEAST_TEXELS
-from flowtex.rendering.cpu.fragments import Fragments, Varying
-from flowtex.rendering.cpu.levels import footprint, on_surface
+from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint, on_surface
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.rendering.uniforms import Values
@@ -287,4 +286,4 @@ def _level(texels: Floats, values: Values) -> Floats:
     """Mip level at which a texel is as wide as that many of the finest level."""
     if not values["u_lod"]:
         return np.zeros(len(texels))
-    return np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0)
+    return np.asarray(np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0))

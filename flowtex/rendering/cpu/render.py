@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.levels import level_colour, slice_level
+from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import PaperImages, PaperNoise, PaperPicture, SpaceNoise
 from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices

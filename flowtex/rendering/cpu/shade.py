@@ -70,4 +70,4 @@ def _from_oklab(lab: Floats) -> Floats:
     roots = lab @ const.FROM_LAB
     linear = np.clip(roots**3 @ const.FROM_CONES, 0.0, 1.0)
     curved = const.SRGB_SCALE * np.power(linear, 1.0 / const.SRGB_POWER) - const.SRGB_OFFSET
-    return np.where(linear < const.SRGB_LINEAR_KNEE, linear * const.SRGB_SLOPE, curved)
+    return np.asarray(np.where(linear < const.SRGB_LINEAR_KNEE, linear * const.SRGB_SLOPE, curved))

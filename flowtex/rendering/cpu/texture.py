@@ -12,8 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.path import AxisSlices, Path, Slices
-from flowtex.rendering.cpu.places import Places, TrianglePlaces, moved
+from flowtex.rendering.cpu.path import AxisSlices, Path, Places, Slices, TrianglePlaces, moved
 from flowtex.rendering.uniforms import Values
 
 

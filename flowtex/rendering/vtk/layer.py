@@ -24,17 +24,12 @@ from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkMapper
-from vtkmodules.vtkRenderingOpenGL2 import (
-    vtkOpenGLRenderWindow,
-    vtkShaderProgram,
-    vtkTextureObject,
-)
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
-from flowtex.rendering.mesh_levels import MeshLevels
+from flowtex.rendering.mesh_levels import MeshLevels, TriangleBlocks, mesh_levels_of
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
-from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
     ViewState,
@@ -47,8 +42,13 @@ from flowtex.rendering.uniforms import (
     uniforms,
     variants,
 )
-from flowtex.rendering.vtk.colours import MappedColours
-from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, set_triangles, vertex_attributes
+from flowtex.rendering.vtk.mesh import (
+    ATTRIBUTES,
+    MappedColours,
+    set_position,
+    set_triangles,
+    vertex_attributes,
+)
 from flowtex.settings import Settings
 from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
 

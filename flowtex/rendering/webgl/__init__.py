@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from flowtex.rendering.webgl.client_data import ClientData, Colours, single, tile_parts
-from flowtex.rendering.webgl.packing import Packing, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT
-from flowtex.rendering.webgl.velocity import can_trace
+from flowtex.rendering.webgl.velocity import Packing, can_trace, packing_of
 
 __all__ = [
     "FORMAT",

@@ -24,18 +24,23 @@ from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
-from flowtex.rendering.mesh_levels import mesh_limits
+from flowtex.rendering.mesh_levels import mesh_levels_of, mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
-from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
-from flowtex.rendering.webgl.formula import client_formula, formula_header, parameter_rows
 from flowtex.rendering.webgl.marks import Marks
-from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
+from flowtex.rendering.webgl.velocity import (
+    Packing,
+    client_formula,
+    formula_header,
+    half,
+    packing_of,
+    parameter_rows,
+)
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
 from flowtex.textures.tiles import PATH_CELLS, Pyramid, TileKey
@@ -57,10 +62,7 @@ SHADERS = {
     "probe": "webgl2/probe.glsl",
 }
 #: Those of a client that traces.
-TRACE_SHADERS = {
-    "trace": "webgl2/trace.glsl",
-    "layers": "webgl2/layers.glsl",
-}
+TRACE_SHADERS = {"trace": "webgl2/trace.glsl", "layers": "webgl2/layers.glsl"}
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5

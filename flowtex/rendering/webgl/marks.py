@@ -1,4 +1,4 @@
-"""Critical points and separatrices for browsers: two parts of each time step.
+"""Critical points and separatrices: how they look, and two parts of each time step for browsers.
 
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
 ``separatrices/3`` has one for each point of its closed orbits and lines, (N, 4): its position, and
@@ -10,22 +10,13 @@ piece, and the number of the component.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.colours import rgb
 from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
-from flowtex.rendering.structure_marks import (
-    DOT_PX,
-    KIND_MARKS,
-    LINE_COLORS,
-    LINE_PX,
-    MIDDLE_COLOR,
-    NULLCLINE_COLORS,
-    RIM_COLOR,
-    RIM_OPACITY,
-)
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 from flowtex.textures.tiles import Structure
@@ -38,6 +29,42 @@ MARK_PARTS = {
 }
 #: The number of a line is SADDLE times that of its saddle, plus a sum of flags.
 SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
+
+
+class KindMark(NamedTuple):
+    """The colour of a kind of critical point, and whether the flow turns there: a ring, not a disc.
+
+    Sources are warm, sinks cold.
+    """
+
+    color: str
+    turns: bool = False
+
+
+#: By kind, in the order of legends.
+KIND_MARKS = {
+    "saddle": KindMark("#ffd21f"),
+    "source": KindMark("#ff5a36"),
+    "spiral source": KindMark("#ff5a36", turns=True),
+    "centre": KindMark("#35c46a", turns=True),
+    "spiral sink": KindMark("#3b8bff", turns=True),
+    "sink": KindMark("#3b8bff"),
+}
+#: Lines along which the flow leaves saddles and comes to them, and closed orbits to which lines
+#: come or which they leave, in the order of legends.
+LINE_COLORS = {
+    "from saddle": "#ff5a36",
+    "to saddle": "#3b8bff",
+    "stable orbit": "#35c46a",
+    "unstable orbit": "#ffffff",
+}
+#: Lines along which the components along x and y are zero.
+NULLCLINE_COLORS = {"u = 0": "#ffa733", "v = 0": "#ff9ad5"}
+#: Around dots and lines, and in the middle of rings.
+RIM_COLOR, RIM_OPACITY, MIDDLE_COLOR = "#101418", 0.85, "#ffffff"
+#: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring; widths of
+#: the rim of a line and of its colour.
+DOT_PX, LINE_PX = (12.0, 9.0, 4.0), (3.6, 2.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,23 +6,29 @@ paths of the drawn ones may reach. It is the same for paths by length and by tim
 pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
 in the plane there, and composes longer ones of a flow that stands still;
 ``shaders/webgl2/layers.glsl`` makes texels of them as :class:`~flowtex.textures.TextureSet` does.
+A client that cannot trace gets the slices, packed once for all views of the same textures.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
+from flowtex._util.cache import ByteCache, WeakCache
 from flowtex._util.vectors import norm
+from flowtex.field.formula import Formula
 from flowtex.field.grids.poles import Poles
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
-from flowtex.rendering.webgl.packing import HALF_MAX, half
+from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.trace.charts import Charts
+from flowtex.textures.texture_set import UNCERTAIN_LAYER
+from flowtex.textures.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 from flowtex.trace.lags import drawn_lags
-from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
+from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4
@@ -35,6 +41,73 @@ RATE_UNIT, WIDE_CELLS, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 95, 2.0**-12, 2**9
 NODE_BYTES = 4
 #: Steps whose flow a client holds to follow the paths to one of them, at most.
 MOST_STEPS = 64
+#: Greatest number in half precision.
+HALF_MAX = 65504.0
+#: Bytes of packed steps that are cached, and how many steps at least.
+CACHE_BYTES, LEAST_STEPS = 64_000_000, 2
+#: Levels below the grid that is sent: enough for the deepest zoom.
+DEPTH = 20
+#: Before the name of a parameter among the settings, in the client as well.
+PREFIX = "formula."
+
+
+@dataclass(frozen=True, eq=False)
+class PackedStep:
+    """Slopes of one destination time, (layers, H, W, channels), and ``extra``, (n, H, W)."""
+
+    slopes: Halves
+    extra: Halves
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the slopes, which are nearly all of it."""
+        return self.slopes.nbytes
+
+
+class Packing:
+    """Packed slices of a texture set; those requested last are cached.
+
+    A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
+    layers whose fourth channel says something: unit, reach, speed, how far the direction is not
+    known, reach forward, that again, and speed again.
+    """
+
+    def __init__(self, textures: TextureSet) -> None:
+        self._textures = textures
+        self.channels = 2 if textures.geometry.planar or textures.paper is not None else 4
+        unknown = [UNCERTAIN_LAYER] if textures.geometry.field.uncertainty else []
+        ahead = [len(textures.lags) + n for n in (1, *unknown)] if textures.sides == 2 else []
+        last = [textures.count - 1] if textures.in_cells else []
+        self.extra = [0, 1, 2, *unknown, *ahead, *last]
+        self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
+
+    def step(self, step: int) -> PackedStep:
+        """Return a step, which is traced if necessary."""
+        return self._steps.get(step, lambda: self._packed(step))
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the steps that are cached."""
+        return self._steps.nbytes
+
+    def _packed(self, step: int) -> PackedStep:
+        layers = self._textures.layers(step)
+        parts = layers[..., : self.channels], layers[self.extra, :, :, 3]
+        return PackedStep(*(np.ascontiguousarray(part, dtype="<f2") for part in parts))
+
+
+_packings: WeakCache[Packing] = WeakCache()
+
+
+def packing_of(textures: TextureSet) -> Packing:
+    """Return the packing of a texture set, shared by all views that draw it."""
+    # A packing keeps its textures alive, so their number is its own while it lives.
+    return _packings.get(id(textures), lambda: Packing(textures))
+
+
+def half(values: AnyArray) -> Halves:
+    """Round to half precision, clipped to its greatest number."""
+    return np.ascontiguousarray(np.clip(values, -HALF_MAX, HALF_MAX), dtype="<f2")
 
 
 def can_trace(textures: TextureSet) -> bool:
@@ -186,3 +259,62 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     wide = np.maximum(np.percentile(across, WIDE_CELLS, axis=(1, 2)), LEAST_SIZE)
     unit = np.array([*RATE_UNIT / 2 ** np.rint(np.log2(wide)), *[SPEED_UNIT] * len(channels[2:])])
     return half(np.rint(np.stack(channels, axis=-1) / unit) * unit + 0.0)
+
+
+def client_formula(textures: TextureSet) -> Formula | None:
+    """Return the formula from which a client computes a flow itself, if it can.
+
+    It computes the rates at the nodes that it draws, and those of any level below: there is no
+    finest one. ``client/src/formula.ts`` is the other side.
+
+    That is one in the plane, of texts alone, that has a value everywhere; and the field still has
+    the nodes and velocities that it was made with.
+    """
+    field = textures.geometry.field
+    formula = field.formula
+    if formula is None or formula.surface or field.scalars or not field.valid.all():
+        return None
+    if any(each.tree is None for each in formula.expressions):
+        return None
+    u, v = formula.coordinates(field.shape)
+    pairs = [(field.points, formula.points(u, v))]
+    pairs += [
+        (field.velocity[n], formula.velocity(u, v, float(field.times[n])))
+        for n in {0, len(field.times) - 1}
+    ]
+    same = all(np.allclose(a[..., :2], b) and not a[..., 2].any() for a, b in pairs)
+    return formula if same else None
+
+
+def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
+    """Return a formula's part of the header, for a root of this many nodes (J, I)."""
+    shapes = [[(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape] for level in range(DEPTH + 1)]
+    return {
+        "formula": {
+            "trees": [each.tree for each in formula.expressions],
+            "names": list(formula.ranges),
+            "ends": [list(ends) for ends in formula.ranges.values()],
+        },
+        "pyramid": {
+            "depth": DEPTH,
+            "finest": 0,
+            "blocks": [[-(-(n - 1) // BLOCK_CELLS) for n in each] for each in shapes],
+            "shapes": shapes,
+            "tileBlocks": TILE_BLOCKS,
+            "cellPixels": CELL_PIXELS,
+            "pathCells": PATH_CELLS,
+        },
+    }
+
+
+def parameter_rows(formula: Formula) -> list[Header]:
+    """Return the parameters as rows of the table of settings."""
+    return [
+        {
+            **{"name": PREFIX + name, "label": name, "default": each.value, "low": each.low},
+            **{"high": each.high, "affects": "uniform", "text": "A parameter of the formula."},
+            **{"logarithmic": False, "condition": "", "control": "slider", "whole": False},
+            **{"choices": [], "needs": []},
+        }
+        for name, each in formula.parameters.items()
+    ]

@@ -36,6 +36,8 @@ PRESSURE_NAMES = re.compile(r"^(p|plev\w*|pressure\w*|isobaric\w*)$", re.IGNOREC
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
+#: Names of the dimensions of rows and columns of a vertical section.
+SECTION = ("y_of_section", "x_of_section")
 #: Words for choices along an axis, beside its name.
 LEVEL, TIME = "level", "time"
 #: Levels of pressure that models of weather use, in hPa.
@@ -163,6 +165,8 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
     for dim in (NODES, FACES):
         if dim in array.dims:
             return (dim,)
+    if {*SECTION} <= {*array.dims}:
+        return SECTION
     axes = marked_axes(array)
     dims = [str(d) for d in array.dims]
     if len(dims) < 2:

@@ -164,8 +164,7 @@ def _whole(
     scale = factor if flat else 1.0
 
     def vectors(step: int) -> Floats:
-        u, v = (nodes.at(part) * scale for part in read(step))
-        return nodes.vectors(u, v)
+        return nodes.vectors(*map(nodes.at, read(step))) * scale
 
     if spread is not None:
         extra[spread_name(uncertainty)] = later(partial(value, spread))
@@ -302,15 +301,16 @@ def _regions(
     seconds, _, start = as_seconds(times, "s" if times is None else "")
     named = _units(flow)
     others = {key: scalar.array.variable for key, scalar in scalars.items()}
-    if lines.projection is not None and not lines.projection.is_globe:
+    flat = lines.projection is not None and not lines.projection.is_globe
+    if flat:
         others.pop("speed", None)
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
-    inner = units.speed_unit(named["length_unit"], named["time_unit"])
+    factor, time, own = units.velocity_units(named["length_unit"], named["time_unit"], flow.unit)
     return Regions(
         Words(
             length_unit=named["length_unit"],
-            time_unit=named["time_unit"],
-            velocity_unit="" if "speed" in words["units"] else units.symbol(flow.unit),
+            time_unit=time,
+            velocity_unit="" if flat else own,
             times=np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
             start=start,
             reading=flow.record.reading,
@@ -318,7 +318,7 @@ def _regions(
         ),
         lines,
         flow.values,
-        (units.factor(flow.unit, inner) or 1.0) if flow.unit else 1.0,
+        factor,
         others,
     )
 

@@ -105,7 +105,7 @@ class Regions:
     def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
         u, v = self.components(step, rows, columns)
-        velocity = self.lines.vectors(u * self.factor, v * self.factor, rows, columns)
+        velocity = self.lines.vectors(u, v, rows, columns) * self.factor
         finite = np.isfinite(velocity).all(axis=-1)
         if valid is None:
             valid = np.zeros_like(finite)

@@ -22,6 +22,7 @@ from flowtex.field.steps import LazySteps
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
     LEVEL,
+    SECTION,
     TIME,
     Choice,
     axis_kind,
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
-#: Names of the dimensions of a section, which are those of rows and columns.
-ROWS, COLUMNS = "y_of_section", "x_of_section"
 
 
 def is_vertical(array: xr.DataArray) -> bool:
@@ -84,8 +83,8 @@ def read_section(
     choice = Choice(dict(sel), dict(isel))
     flat = [
         a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
-        .swap_dims({level: ROWS, along: COLUMNS})
-        .transpose(..., ROWS, COLUMNS)
+        .swap_dims({level: SECTION[0], along: SECTION[1]})
+        .transpose(..., *SECTION)
         for a in (one, two)
     ]
     first, second = align(flat[0], flat[1], choice, record)

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection import grib, hdf5, netcdf, vtk_legacy, vtk_xml
-from flowtex.sources.inspection.ensight import check_ensight
+from flowtex.sources.inspection import grib, netcdf, vtk_legacy, vtk_xml
 from flowtex.sources.inspection.others import check_other
-from flowtex.sources.inspection.surfaces import check_obj, check_ply, check_stl
+from flowtex.sources.inspection.surfaces import check_ply, check_stl
 from flowtex.sources.inspection.zarr_folder import DOCUMENTS, check_zarr
 
 #: Bytes that identify most files.
@@ -21,8 +20,6 @@ GRIB_SUFFIXES = (".grib", ".grb")
 MOST_MEMBERS = 100_000
 #: Checks by suffix, whatever the content, as the reader is chosen by the suffix.
 BY_SUFFIX: dict[str, Callable[[Path], None]] = {
-    ".case": check_ensight,
-    ".obj": check_obj,
     ".ply": check_ply,
     ".stl": check_stl,
     ".vtk": vtk_legacy.check_vtk_legacy,
@@ -65,7 +62,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     suffix = path.suffix.lower()
     check_other(path, head)
     if is_hdf5:
-        hdf5.check_hdf5(path, whole=whole)
+        netcdf.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):
         netcdf.check_netcdf(path, whole=whole)
     elif suffix in netcdf.SUFFIXES and not is_hdf5:
@@ -85,7 +82,7 @@ def _is_hdf5(stream: BinaryIO, size: int) -> bool:
     at = 0
     while at < size:
         stream.seek(at)
-        if stream.read(len(hdf5.MAGIC)) == hdf5.MAGIC:
+        if stream.read(len(netcdf.HDF5_MAGIC)) == netcdf.HDF5_MAGIC:
             return True
         at = 2 * at or 512
     return False

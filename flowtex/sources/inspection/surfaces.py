@@ -1,11 +1,10 @@
-"""OBJ, PLY and STL: declared elements are present, and faces have the corners that they name."""
+"""PLY and STL: declared elements are present."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import BinaryIO
 
-from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.limits import check_count
 from flowtex.sources.inspection.numbers import TextScanner
@@ -19,31 +18,6 @@ PLY_TYPES = {
 }
 #: A binary STL: a header of 80 bytes, the number of triangles, and 50 bytes for each.
 STL_HEAD, STL_TRIANGLE = 84, 50
-
-
-def check_obj(path: Path) -> None:
-    """Raise a FieldError for a cut last line, or faces with missing points.
-
-    The format has no counts: only points that no face uses indicate an early end after a line, and
-    a complete file may also have such points.
-    """
-    points = most = 0
-    with path.open("rb") as stream:
-        for line in stream:
-            if line.startswith((b"v ", b"v\t")):
-                points += 1
-                check_count(len(line.split()) - 1, 3, f"point {points}", "coordinates")
-            elif line.startswith((b"f ", b"f\t")):
-                corners = line.split()[1:]
-                check_count(len(corners), 3, "a face", "corners")
-                numbers = [corner.split(b"/")[0] for corner in corners]
-                most = max(most, 0, *(int(number) for number in numbers if number.isdigit()))
-    check_count(points, most, "a face", "points")
-    if 0 < most < points:
-        notify(
-            f"{path.name}: the last {points - most:,} of {points:,} points belong to no face; the "
-            "file may be truncated, which cannot be checked because the format has no counts"
-        )
 
 
 def check_stl(path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from flowtex.textures.tiles.clusters import levels_of
-from flowtex.textures.tiles.coarse import coarsened_field
 from flowtex.textures.tiles.loader import Tile, TileLoader
 from flowtex.textures.tiles.pyramid import (
     BLOCK_CELLS,
@@ -16,6 +15,7 @@ from flowtex.textures.tiles.pyramid import (
 )
 from flowtex.textures.tiles.shared import (
     attach_pyramid,
+    coarsened_field,
     drawn_speeds,
     ends_of,
     has_pyramid,

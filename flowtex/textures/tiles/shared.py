@@ -11,6 +11,8 @@ from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
+from flowtex.textures.tiles import triangle_pyramid
+from flowtex.textures.tiles.clusters import levels_of
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 
@@ -94,3 +96,22 @@ def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
     """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
     steps = field.index_velocity.speed if root.leaves_surface else norm(field.velocity)
     return np.asarray(steps)[:, field.valid] * field.speed_scale
+
+
+def coarsened_field(field: FlowField, nodes: int) -> FlowField:
+    """Return a field with about this many nodes: some of its lines, with the first and the last.
+
+    Nodes of triangles are averaged over bins, at most this many. A smaller field is returned as it
+    is, and so is one on triangles that is so large that it has levels.
+    """
+    if field.valid.size <= nodes:
+        return field
+    if field.triangles is not None:
+        has_levels = field.valid.size > triangle_pyramid.ROOT_NODES
+        return field if has_levels else levels_of(field, nodes)[-1].field
+    share = np.sqrt(nodes / field.valid.size)
+    rows, columns = (
+        np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
+        for n in field.shape
+    )
+    return field.at_lines(rows, columns)

@@ -10,8 +10,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings, SettingsError
-from flowtex.textures.tiles.coarse import coarsened_field
-from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
+from flowtex.textures.tiles.shared import coarsened_field, has_pyramid, shared_pyramid
 from flowtex.trace.structure import (
     ClosedOrbit,
     CriticalPoints,

@@ -10,14 +10,12 @@ import numpy as np
 import scipy
 
 from flowtex._util.arguments import check_field, checked_count
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.grids.poles import Pole
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.structure.records import Records, steady_parts
-from flowtex.trace.structure.strength import strengths
-from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -32,6 +30,10 @@ SAME_POINT_CELLS = 1e-3
 REST_SHARE = 1e-12
 #: Share of a neighbour's velocity that replaces one that is zero.
 LEAST_SHARE = 1e-7
+#: Speeds at which regions are compared, by the share of the nodes that are slower.
+SHARES = np.geomspace(1e-3, 1.0, 32)
+#: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
+ROUNDING_CELLS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -387,3 +389,164 @@ def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[Critic
     steepness = np.array([abs(np.prod(point.eigenvalues)) for point in points])
     found = strengths(field, np.array(nodes, dtype=np.intp), signs, steepness)
     return [replace(p, strength=float(s)) for p, s in zip(points, found, strict=True)]
+
+
+def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Floats) -> Floats:
+    """Return the strengths of critical points of a steady field as speeds, (K,).
+
+    The strength is the change of velocity that makes a point vanish. Two points of opposite index
+    vanish together once the velocity between them is changed by as much as the speed there (their
+    robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So it is the least speed below
+    which a region contains the point and a partner. Points of noise are pairs separated by a low
+    speed. A partner may lie beyond a border: without one, the least speed below which a region
+    contains the point and any other remaining one.
+
+    ``nodes`` are nodes beside the points, counted row by row, and ``signs`` their Poincare indices.
+    Where several have one partner, the steepest remain.
+    """
+    speed, valid = field.speed[0].ravel(), field.valid.ravel()
+    result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
+    if len(nodes) < 2:
+        return result
+    edges = _edges(field)
+    edges = edges[valid[edges].all(axis=1)]
+    needed = speed[edges].max(axis=1)
+    order = np.argsort(needed)
+    edges, needed = edges[order], needed[order]
+    remaining, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
+    for level in np.quantile(speed[valid], SHARES):
+        slower = edges[: int(np.searchsorted(needed, level, side="right"))]
+        graph = scipy.sparse.coo_array(
+            (np.ones(len(slower), bool), slower.T), shape=(speed.size, speed.size)
+        )
+        region = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+        regions = region[nodes[remaining]].astype(np.intp)
+        paired = _paired(regions, signs[remaining])
+        result[remaining[paired]] = level
+        remaining, regions = remaining[~paired], regions[~paired]
+        meets = (np.bincount(regions, minlength=1)[regions] > 1) & ~met[remaining]
+        result[remaining[meets]], met[remaining[meets]] = level, True
+    return result
+
+
+def _paired(region: Indices, signs: Indices) -> Bools:
+    """Return which points (K,) have a partner in their region; surplus ones are the first."""
+    kind = 2 * region + (signs > 0)
+    counts = np.bincount(kind, minlength=2 * int(region.max(initial=0)) + 2)
+    order = np.argsort(kind, kind="stable")
+    rank = np.empty(len(kind), dtype=np.intp)
+    rank[order] = np.arange(len(kind)) - (np.cumsum(counts) - counts)[kind[order]]
+    return np.asarray(rank >= counts[kind] - counts[kind ^ 1])
+
+
+def _edges(field: FlowField) -> Indices:
+    """Return pairs of neighbouring nodes, (E, 2), counted row by row."""
+    if field.triangles is not None:
+        corners = np.asarray(field.triangles)
+        return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    number = np.arange(field.valid.size).reshape(field.shape)
+    pairs = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
+    if field.periodic[1]:
+        pairs.append((number[:, :1], number[:, -1:]))
+    if field.periodic[0]:
+        pairs.append((number[:1], number[-1:]))
+    return np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
+
+
+def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
+    """Find the zeros of a velocity in cells.
+
+    ``corners`` are velocities at (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2).
+    Returns the number of each cell with a zero, (K,), and its place in the cell, (K, 2) from 0 to 1
+    as (i, j). A cell may have two.
+    """
+    near = ROUNDING_CELLS * np.abs(corners).max(axis=(1, 2), initial=0)[:, None]
+    crossed = ((corners.max(axis=1) >= -near) & (corners.min(axis=1) <= near)).all(axis=1)
+    cells = np.flatnonzero(crossed)
+    v = corners[cells]
+    v = v / np.maximum(np.abs(v).max(axis=(1, 2), keepdims=True), np.finfo(float).tiny)
+    a, b, c = v[:, 0], v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]
+    d = v[:, 3] - v[:, 2] - b
+    numbers, places = [], []
+    # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
+    for s in _roots(_cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)):
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            first, slope = a + b * s[:, None], c + d * s[:, None]
+            square = np.einsum("nc,nc->n", slope, slope)
+            t = -np.einsum("nc,nc->n", first, slope) / square
+        inside = _inside(s) & _inside(t)
+        numbers.append(cells[inside])
+        places.append(np.clip(np.stack([s[inside], t[inside]], axis=-1), 0.0, 1.0))
+    return np.concatenate(numbers), np.concatenate(places)
+
+
+def linear_zeros(points: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+    """Return where a linear velocity is zero, and its gradient.
+
+    Corners of triangles in a plane, and velocities there, are (N, 3, 2). The zero is given as
+    shares of the corners, (N, 3), not finite where there is no single one; the gradient is the
+    change of component m along direction n, (N, 2, 2).
+    """
+    edges = np.swapaxes(points[:, 1:] - points[:, :1], 1, 2)
+    change = np.swapaxes(vectors[:, 1:] - vectors[:, :1], 1, 2)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        gradient = change @ _inverse(edges)
+        shares = -np.einsum("nmk,nk->nm", _inverse(change), vectors[:, 0])
+    return np.concatenate([1 - shares.sum(axis=1, keepdims=True), shares], axis=1), gradient
+
+
+def triangle_indices(
+    points: Floats, normals: Floats, velocity: Floats, triangles: Indices
+) -> Indices:
+    """Return the Poincare index of each triangle, (M,): 1, 0, or -1 for a saddle.
+
+    Positions, unit normals and tangent velocities of nodes are (N, 3) each, triangles (M, 3), in
+    the sense of the normals. Angles are measured at each node against the edges in its tangent
+    plane, so two triangles agree about the edge they share, and on a closed surface the indices sum
+    to its Euler characteristic.
+    """
+    turned = np.full(len(triangles), 2 * np.pi)
+    for k in range(3):
+        start, end, last = (triangles[:, (k + n) % 3] for n in range(3))
+        edge = points[end] - points[start]
+        at_start, at_end = (_angle(velocity[n], edge, normals[n]) for n in (start, end))
+        turned += _folded(at_end - at_start)
+        # The edges themselves turn once; what is missing from that is curvature.
+        turned -= _folded(_angle(points[last] - points[end], edge, normals[end]))
+    return np.rint(turned / (2 * np.pi)).astype(np.intp)
+
+
+def _angle(vector: Floats, reference: Floats, normal: Floats) -> Floats:
+    """Return the angle (N,) from one vector to another about normals, (N, 3) each."""
+    along = np.einsum("nc,nc->n", vector, reference) - np.einsum(
+        "nc,nc,nd,nd->n", vector, normal, reference, normal
+    )
+    across = np.einsum("nc,nc->n", np.cross(reference, vector), normal)
+    return np.asarray(np.arctan2(across, along))
+
+
+def _folded(angle: Floats) -> Floats:
+    return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))
+
+
+def _roots(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """Return the real roots of a x^2 + b x + c, NaN or infinite where there are fewer."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
+        return q / a, c / q
+
+
+def _inside(share: Floats) -> Bools:
+    with np.errstate(invalid="ignore"):
+        return np.asarray((share >= -ROUNDING_CELLS) & (share <= 1 + ROUNDING_CELLS))
+
+
+def _cross(one: Floats, two: Floats) -> Floats:
+    return np.asarray(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+
+
+def _inverse(matrix: Floats) -> Floats:
+    """Return the inverses of matrices (N, 2, 2), not finite for singular ones."""
+    (a, b), (c, d) = np.moveaxis(matrix, 0, -1)
+    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=1)
+    return np.asarray(adjugate / (a * d - b * c)[:, None, None])

@@ -3,14 +3,14 @@
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
 ray from there. Where the flow returns to a ray one turn later (its Poincare map) shows the side of
 an orbit: from both sides it comes nearer, or moves away. Around a centre it returns to where it
-was but for errors of interpolation, which :mod:`isolation` distinguishes from an orbit.
+was but for errors of interpolation, which :class:`Isolation` distinguishes from an orbit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 import scipy
@@ -18,9 +18,9 @@ import scipy
 from flowtex._util.arguments import check_field
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.derived.gradient import node_gradient
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
-from flowtex.trace.structure.isolation import Isolation
 from flowtex.trace.structure.records import steady_parts
 from flowtex.trace.trace import paths
 
@@ -39,6 +39,9 @@ PARTS, ROUNDS = 64, 2
 REST_CELLS, WALL_CELLS = 0.25, 0.05
 #: Critical points around which orbits are searched for, the strongest ones.
 MOST_RAYS = 8
+#: Error of the divergence, in the change of the velocity's gradient over a cell: in a cell the
+#: interpolated gradient is that of its middle, half a cell away.
+ERROR_CELLS = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,3 +288,37 @@ class _Rays:
         period = float(np.sum(lengths * 0.5 * (slow + np.roll(slow, -1))))
         ordered = points if stable else points[::-1]
         return ClosedOrbit(ordered, stable, period, float(self._field.times[0]))
+
+
+class Isolation:
+    """Test of closed lines of a steady field: a limit cycle has no neighbours that close as well.
+
+    Over a turn, the distance of a line beside a closed one grows by a factor: the exponential of
+    the divergence of the velocity, integrated over the time of the turn. Lines approach or leave
+    where it is not 1. In a flow without divergence it is 1; there, lines nearly close by errors of
+    interpolation. So the integral must exceed its error by interpolation.
+    """
+
+    def __init__(self, field: FlowField) -> None:
+        self._field = field
+
+    @cached_property
+    def _nodal(self) -> Floats:
+        """Divergence, its error, and the velocity at the nodes, (J, I, 5)."""
+        surface, velocity = self._field.surface, self._field.velocity[0]
+        gradient = node_gradient(surface, None)
+        first = gradient.of_vectors(velocity)
+        second = gradient.derivative(first.reshape(4, *surface.shape))
+        error = ERROR_CELLS * surface.cell_size * np.sqrt((second**2).sum(axis=(0, 1)))
+        return np.concatenate([np.stack([first[0, 0] + first[1, 1], error], -1), velocity], -1)
+
+    def holds(self, turn: Floats) -> bool:
+        """Return whether a closed line, indices (N, 2) as (i, j), is isolated."""
+        surface = self._field.surface
+        places = surface.at(np.concatenate([turn, turn[:1]]))
+        rates = np.array([surface_point(surface, at[::-1]).interpolate(self._nodal) for at in turn])
+        lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            times = 0.5 * (lengths + np.roll(lengths, 1)) / np.linalg.norm(rates[:, 2:], axis=1)
+            growth, error = times @ rates[:, :2]
+        return bool(abs(growth) > error)

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
-from flowtex._util.progress import track
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.progress import check, track
 from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.trace.compose import Map
+from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.lags import small_cell
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangles.compose import DIRECT_STEPS, Composition, direct_lags
-from flowtex.trace.triangles.integrate import begin, integrate
+from flowtex.trace.triangles.integrate import TrianglePaths, all_shares, begin, integrate
 from flowtex.trace.triangles.motion import (
+    BEHIND,
     ChangingMotion,
     Motion,
     SteadyMotion,
@@ -27,6 +28,20 @@ from flowtex.trace.triangles.motion import (
 
 #: Particles followed together.
 BLOCK = 16384
+#: Length in small cells up to which paths are integrated, and least number of such slices.
+DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
+#: Rounds of steps for these, twice those that meshes need; more are circles about a node.
+DIRECT_STEPS = 150
+#: Paths that are continued together.
+PIECE_BLOCK = 8192
+#: Most edges crossed in search of a point: beyond a ridge no triangle may contain it.
+MOST_CROSSED = 24
+#: Share of a triangle, and of a lag, by which rounding may miss it.
+ROUNDING = 1e-9
+#: Lags that stand for the reach of endless paths, so that a path ends only beside those that do.
+FAR = 1e4
+#: Share of a lag by which the ends of a triangle's three paths may lie apart to be interpolated.
+ENDS_SHARE = 0.25
 
 
 def triangle_slices(
@@ -174,3 +189,236 @@ def _rates(field: FlowField, steps: Sequence[int], parameter: str) -> Floats:
             rate, speed[..., None], out=np.zeros_like(rate), where=(speed > floor)[..., None]
         )
     return np.where(field.valid[..., None], rate, 0.0)
+
+
+def direct_lags(lags: Floats, cells: float) -> int:
+    """Return how many of lags (M,), in units of ``cells`` small cells, are to be integrated.
+
+    These are all, unless each is twice the one before.
+    """
+    direct = int(np.searchsorted(lags * cells, DIRECT_CELLS, side="right"))
+    direct = max(direct, LEAST_DIRECT)
+    doubled = np.allclose(lags[1:], 2 * lags[:-1], rtol=ROUNDING, atol=0)
+    return direct if direct < len(lags) and doubled else len(lags)
+
+
+class Composition:
+    """Long paths of one direction through N nodes, put together from short ones.
+
+    It is done as in :mod:`flowtex.trace.compose`. A path in a triangle continues as the mean of the
+    paths of its three corners, weighted by its shares. That leads to a point in space, outside the
+    surface where it is curved; its triangle is found by walking over edges from the one in which
+    the path of a corner ends.
+
+    Where paths of neighbours part, second differences of a slice across edges are large for its
+    length, and paths are continued in shorter pieces. Where the paths of only some corners have
+    ended, pieces are half as long as those that were integrated, so that it is known how soon the
+    others end.
+
+    Lags (M,) are those of the motion. Displacements ``moved`` (M, N, 3) of the first ``direct`` are
+    filled, and the others are completed in place.
+    """
+
+    def __init__(
+        self, motion: SteadyMotion, points: Floats, lags: Floats, direct: int, moved: Floats32
+    ) -> None:
+        self.motion, self.mesh, self.points = motion, motion.mesh, points
+        self.lags, self.direct, self.moved = lags, direct, moved
+        count = len(points)
+        #: Lag at which each path ends, (N,); 0 for nodes that are not followed.
+        self.reach = np.zeros(count)
+        #: Triangles by lag, (M, N), and the shares of their second and third corner at the last.
+        self._triangle, self._shares = np.zeros((len(lags), count), np.int32), np.zeros((2, count))
+        self._ahead = np.zeros((3, count))
+        #: Nodes at the corners, (3, T).
+        self._corners = np.ascontiguousarray(self.mesh.corners.T)
+        #: Number of the longest slice by which paths are continued from each triangle.
+        self._longest = np.full(len(self.mesh.corners), direct - 1)
+
+    def begin(self, nodes: Indices, paths: TrianglePaths) -> None:
+        """Take the integrated paths of some nodes (n,)."""
+        self._triangle[: self.direct, nodes] = paths.triangle
+        self._shares[:, nodes], self._ahead[:, nodes] = paths.shares[-1], paths.ahead
+        self.reach[nodes] = paths.reach
+
+    def complete(self, nodes: Indices, run: Map) -> None:
+        """Fill the long slices at the nodes (n,) that are followed."""
+        search, self._bends = _Search(self.mesh, self.points), _Bends(self.mesh, self.points)
+        with np.errstate(all="ignore"):
+            for m in range(self.direct, len(self.lags)):
+                check()
+                self._judge(m - 1, search.normals)
+                self._triangle[m] = self._triangle[m - 1]
+                going = nodes[np.isinf(self.reach[nodes])]
+                blocks = [going[k : k + PIECE_BLOCK] for k in range(0, len(going), PIECE_BLOCK)]
+                list(run(partial(self._follow, m, search), blocks))
+                corners = self._corners.take(self._triangle[m, nodes], axis=1)
+                place = _blend(all_shares(self._shares[:, nodes]), self.points, corners)
+                beyond = np.maximum(self.lags[m] - self.reach[nodes], 0.0)
+                moved = place + self._ahead[:, nodes] * beyond - self.points[nodes].T
+                self.moved[m, nodes] = np.clip(moved.T, -MOST_CELLS, MOST_CELLS)
+
+    def _judge(self, j: int, normals: Floats) -> None:
+        """Find the triangles in which slice j continues paths."""
+        reach = self.reach[self._corners]
+        first, last = reach.min(axis=0), reach.max(axis=0)
+        apart = (last > self.lags[j]) | (last - first > ENDS_SHARE * self.lags[j])
+        good = (first > self.lags[j]) | ~apart
+        if j < self.direct:
+            self._longest[~good] = j - 1
+            return
+        # Lags by time are converted into lengths by the fastest corner.
+        table = self.motion.table
+        stretch = 1.0 if self.motion.by_length else table[:, 9] / table[:, 10]
+        bend = self._bends.of(self.points + self.moved[j], self._triangle[j], normals)
+        good &= bend <= 8 * (ERROR_SHARE * self.lags[j] * stretch + ERROR_CELLS * self.mesh.size)
+        self._longest[good & (self._longest == j - 1)] = j
+
+    # Threads do not inherit the error state.
+    @np.errstate(all="ignore")
+    def _follow(self, m: int, search: _Search, nodes: Indices) -> None:
+        """Continue the paths of some nodes, piece by piece, to lag m from the one before."""
+        triangle, shares = self._triangle[m - 1, nodes], self._shares[:, nodes]
+        lag, pieces = np.full(len(nodes), self.lags[m - 1]), 0
+        while len(nodes):
+            left = (self.lags[m] - lag) * (1 + ROUNDING)
+            number = np.searchsorted(self.lags, left, side="right") - 1
+            if pieces < MOST_PIECES:
+                number = np.minimum(number, self._longest[triangle])
+            pieces += 1
+            begin, target, ends = self._piece(m, nodes, number, triangle, shares)
+            triangle, shares, outside = search.find(begin, target)
+            self._triangle[m, nodes], self._shares[:, nodes] = triangle, shares
+            # Beside a border that bends, the chord of paths that continue may lie outside.
+            span = self.lags[number]
+            ended = (ends <= span) | (outside & np.isfinite(ends))
+            self.reach[nodes[ended]] = (lag + np.minimum(ends, span))[ended]
+            lag += span
+            on = ~ended & (lag < self.lags[m] * (1 - ROUNDING))
+            nodes, triangle, shares, lag = nodes[on], triangle[on], shares[:, on], lag[on]
+
+    def _piece(
+        self, m: int, nodes: Indices, number: Indices, triangle: Indices, shares: Floats
+    ) -> tuple[Indices, Floats, Floats]:
+        """Continue paths (n,) by the slices of these numbers, as means of their corners' paths.
+
+        Returns triangles to begin the search at, target positions (3, n), perhaps outside the
+        surface, and the lags from here (n,) at which paths end: infinite where no corner's path
+        does, and more than that of the slice where only some do.
+        """
+        corners, weights = self._corners.take(triangle, axis=1), all_shares(shares)
+        reach, span = self.reach[corners], self.lags[number]
+        ended = reach <= span
+        target = _blend(weights, self.points, corners)
+        for weight, nodal in zip(weights, corners, strict=True):
+            target += weight * self.moved[number, nodal].T
+        best = np.where(ended, -1.0, weights)
+        nearest = np.where(best[0] >= np.maximum(best[1], best[2]), 0, 1 + (best[2] > best[1]))
+        nodal = corners[nearest, np.arange(len(nodes))]
+        begin = self._triangle[number, nodal].astype(np.intp)
+        ends = np.full(len(nodes), np.inf)
+        near = np.flatnonzero(ended.any(axis=0))
+        if len(near):
+            part = weights[:, near] * ended[:, near]
+            ahead = np.einsum("kn,ckn->cn", part, self._ahead[:, corners[:, near]])
+            self._ahead[:, nodes[near]] = ahead = np.nan_to_num(ahead / part.sum(axis=0))
+            # Ends of other paths that are found at the same time do not count.
+            last = np.where(reach[:, near] <= self.lags[m - 1], reach[:, near], FAR * self.lags[m])
+            ends[near] = end = np.einsum("kn,kn->n", weights[:, near], last)
+            target[:, near] -= ahead * np.maximum(span[near] - end, 0.0)
+        return begin, target, ends
+
+
+class _Search:
+    """Search for the points of a surface nearest to positions in space."""
+
+    def __init__(self, mesh: TriangleMesh, points: Floats) -> None:
+        self._across = mesh.across
+        first, second, third = points[mesh.corners].transpose(1, 0, 2)
+        e, f = second - first, third - first
+        with np.errstate(all="ignore"):
+            ee, ef, ff = (
+                np.einsum("mc,mc->m", *pair)[:, None] for pair in ((e, e), (e, f), (f, f))
+            )
+            slopes = [ff * e - ef * f, ee * f - ef * e] / (ee * ff - ef * ef)
+            normals = np.cross(e, f)
+            normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        #: First corner, and slopes of the shares of the other two, (T, 9).
+        self._table = np.concatenate([first, *slopes], axis=1)
+        #: Unit normals of the triangles, (T, 3).
+        self.normals = normals
+
+    def find(self, triangle: Indices, place: Floats) -> tuple[Indices, Floats, Bools]:
+        """Return triangles (n,), shares (2, n), and if positions (3, n) lie beyond a border, (n,).
+
+        The search begins at some triangles (n,).
+        """
+        result, outside = triangle.copy(), np.zeros(len(triangle), dtype=bool)
+        shares, which, before = np.empty((3, len(triangle))), np.arange(len(triangle)), triangle
+        for _ in range(MOST_CROSSED):
+            row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
+            away = place - row[:3]
+            second, third = (np.einsum("cn,cn->n", row[k : k + 3], away) for k in (3, 6))
+            current = np.stack([1 - second - third, second, third])
+            result[which], shares[:, which] = triangle, current
+            out = np.flatnonzero(np.minimum(np.minimum(*current[:2]), current[2]) < -ROUNDING)
+            code = self._across[3 * triangle[out] + current[:, out].argmin(axis=0)]
+            outside[which[out[code < 0]]] = True
+            # Over a ridge the search would go to and fro.
+            on = (code >= 0) & (code >> 3 != before[out])
+            out, before = out[on], triangle[out[on]]
+            which, triangle, place = which[out], code[on] >> 3, place[:, out]
+            if not len(which):
+                break
+        np.fmin(np.fmax(shares, 0.0, out=shares), 1.0, out=shares)
+        total = shares.sum(axis=0)
+        return result, np.asarray(shares[1:] / np.where(total > 0, total, 1.0)), outside
+
+
+class _Bends:
+    """Second differences across the inner edges of a surface, each unfolded."""
+
+    def __init__(self, mesh: TriangleMesh, points: Floats) -> None:
+        near = np.flatnonzero(mesh.across >= 0)
+        near = near[near // 3 < mesh.across[near] >> 3]
+        code, (triangle, k) = mesh.across[near], np.divmod(near, 3)
+        far = 3 * (code >> 3) + BEHIND[code & 7]
+        flat = mesh.corners.ravel()
+        #: Edges by the corners opposite to them, in the triangles on both sides.
+        self._sides, self._count = (near, far), len(mesh.corners)
+        #: Nodes there, (2, E), and at the ends of the edges, (2, E).
+        self._tips = flat[np.stack(self._sides)]
+        self._ends = mesh.corners[triangle, (k + np.array([[1], [2]])) % 3]
+        begin, end = points[self._ends]
+        along = end - begin
+        away = points[self._tips] - begin
+        with np.errstate(all="ignore"):
+            foot = np.einsum("sec,ec->se", away, along) / np.einsum("ec,ec->e", along, along)
+            height = np.linalg.norm(away - foot[..., None] * along, axis=-1)
+            #: Share of the near tip in the far one, and that of the second end.
+            self._near = -height[1] / height[0]
+            self._second = foot[1] - self._near * foot[0]
+            #: By the smaller of the two triangles.
+            self._scale = np.minimum(height[0] / height[1], 1.0)
+
+    def of(self, place: Floats, triangle: Indices, normals: Floats) -> Floats:
+        """Return the greatest second difference of positions (N, 3) at each triangle's edges, (T,).
+
+        Components normal to the triangles (N,) of the positions are left out: they are due to the
+        bend of the surface.
+        """
+        near, second = self._near[:, None], self._second[:, None]
+        (tip, far), (begin, end) = place[self._tips], place[self._ends]
+        bend = far - begin - near * (tip - begin) - second * (end - begin)
+        normal = normals[triangle[self._tips[1]]]
+        bend -= np.einsum("ec,ec->e", bend, normal)[:, None] * normal
+        size = np.sqrt(np.einsum("ec,ec->e", bend, bend)) * self._scale
+        result = np.zeros(3 * self._count)
+        for side in self._sides:
+            result[side] = size
+        return np.maximum(np.maximum(result[::3], result[1::3]), result[2::3])
+
+
+def _blend(weights: Floats, nodal: Floats, corners: Indices) -> Floats:
+    """Return the mean (3, n) of nodal vectors (N, 3) at corners (3, n), by weights (3, n)."""
+    return np.asarray(sum(w * nodal[at].T for w, at in zip(weights, corners, strict=True)))

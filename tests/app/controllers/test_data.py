@@ -20,7 +20,7 @@ from waiting import PATIENCE_S, until
 
 from flowtex import examples
 from flowtex.app import FlowApp, Library
-from flowtex.app.controllers.loading import without_folder
+from flowtex.app.controllers.context import without_folder
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -15,7 +15,7 @@ pytest.importorskip("aiohttp")
 from aiohttp import web
 from aiohttp.http_exceptions import HttpBadRequest
 
-from flowtex.app.server.bounded_log import (
+from flowtex.app.server.site import (
     MESSAGE_LENGTH,
     MOST_RECORDS,
     TRACEBACK_LENGTH,

@@ -14,7 +14,7 @@ pytest.importorskip("trame_rca")
 import msgpack
 from wslink.chunking import generate_chunks
 
-from flowtex.app.server.sessions.messages import MESSAGE_BYTES, LimitedMessages, restrict
+from flowtex.app.server.sessions.local import MESSAGE_BYTES, LimitedMessages, restrict
 
 
 def taken(message: Any) -> Any:

@@ -13,7 +13,7 @@ pytest.importorskip("zarr")
 pytest.importorskip("aiohttp")
 
 from flowtex import FlowField
-from flowtex.app.server.served_store import ServedStore
+from flowtex.app.server.store_site import ServedStore
 from flowtex.pyramid import build
 
 

@@ -25,8 +25,7 @@ from page_reader import Reader
 from served import start
 
 from flowtex import FlowField
-from flowtex.app.server.served_store import ServedStore
-from flowtex.app.server.store_site import store_application
+from flowtex.app.server.store_site import ServedStore, store_application
 from flowtex.pyramid import build
 
 TILE = "0/flow/c/0/1/0/0"

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from flowtex.app.server import uploads
-from flowtex.app.server.files import Routes
-from flowtex.app.server.uploads import Uploads
+from flowtex.app.server import files
+from flowtex.app.server.files import Routes, Uploads
 from flowtex.errors import FieldError
 
 
@@ -66,15 +65,15 @@ def test_size_and_number_are_limited(
     taken: tuple[Uploads, list[tuple[str, Path]]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made, arrived = taken
-    monkeypatch.setattr(uploads, "UPLOAD_BYTES", 10)
+    monkeypatch.setattr(files, "UPLOAD_BYTES", 10)
     with pytest.raises(FieldError, match="MB at most"):
         send(made, "large.vts", b"12345678", b"9012")
     assert not list(made.folder.iterdir())
-    for _ in range(uploads.MOST_UPLOADS):
+    for _ in range(files.MOST_UPLOADS):
         send(made, "small.vts", b"1")
     with pytest.raises(FieldError, match="uploaded already"):
         send(made, "small.vts", b"1")
-    assert len({path for _, path in arrived}) == uploads.MOST_UPLOADS
+    assert len({path for _, path in arrived}) == files.MOST_UPLOADS
 
 
 @pytest.mark.parametrize(
@@ -102,7 +101,7 @@ def test_a_full_disk_is_told_and_leaves_nothing(
         yield b"one"
         raise full
 
-    for _ in range(uploads.MOST_UPLOADS + 1):
+    for _ in range(files.MOST_UPLOADS + 1):
         with pytest.raises(FieldError, match="No space left on device") as refused:
             asyncio.run(made.receive("wake.vts", content()))
         assert str(made.folder) not in str(refused.value)

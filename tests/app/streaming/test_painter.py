@@ -1,18 +1,15 @@
-"""Pictures as good as the time allows: drafts, tiles, and moved pictures."""
+"""Pictures as good as the time allows: drafts and tiles."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import pytest
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, panned, picture
+from small_pages import difference, picture
 
 from flowtex.app import FlowApp
 from flowtex.app.streaming.painter import COARSEST_DRAFT, Cost
-from flowtex.app.streaming.reprojection import Snapshot, coverage, reproject
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -39,56 +36,6 @@ def test_a_full_picture_is_the_whole_one(flat: FlowApp) -> None:
     *_, full = painter.full()
     assert painter.complete and difference(full, picture(flat)) < 0.5
     painter.cost = Cost()
-
-
-@pytest.mark.parametrize("by", [(30, 20), (-41, -20), (0, 12), (-12, 0)])
-def test_after_a_drag_only_what_came_into_view_is_drawn(
-    flat: FlowApp, by: tuple[int, int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    painter = flat.stream.painter.painters[0]
-    flat.area.reset_camera()
-    painter.forget()
-    painter.cost.learn(5.0, 240 * 160, 9)
-    painter.quick(0.01)
-    for _ in painter.full():
-        pass
-    panned(flat.viewport, -2 * by[0] / 240, 2 * by[1] / 160)
-    drawn = []
-    draw = type(painter.pane).draw
-
-    def counted(pane: Any, width: int, height: int, part: Any = None) -> Any:
-        drawn.append(width * height)
-        return draw(pane, width, height, part)
-
-    monkeypatch.setattr(type(painter.pane), "draw", counted)
-    painter.quick(0.01)
-    drawn.clear()
-    *_, full = painter.full()
-    exposed = 240 * 160 - (240 - abs(by[0])) * (160 - abs(by[1]))
-    assert painter.complete and sum(drawn) == exposed
-    assert difference(full, picture(flat)) < 0.5
-    painter.cost = Cost()
-    flat.area.reset_camera()
-
-
-def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
-    flat.area.reset_camera()
-    scene = flat.viewport
-    view = scene.panes[0].plane_view()
-    assert view is not None
-    shot = Snapshot(scene.draw(240, 160), view)
-    panned(scene, 0.2, -0.1)
-    moved = scene.panes[0].plane_view()
-    assert moved is not None
-    share, stretch = coverage(shot, moved)
-    assert 0.5 < share < 1 and stretch == pytest.approx(1)
-    shifted = reproject(shot, moved, (240, 160), Snapshot(shot.pixels * 0, moved))
-    drawn = scene.draw(240, 160)
-    assert difference(shifted[20:140, 40:190], drawn[20:140, 40:190]) < 1.5
-    scene.camera = scene.camera.zoom_by(2.0, 0, 0, aspect=1.5, whole=scene.whole)
-    closer = scene.panes[0].plane_view()
-    assert closer is not None and coverage(shot, closer)[1] == pytest.approx(2)
-    flat.area.reset_camera()
 
 
 def test_the_cost_of_a_picture_is_learnt() -> None:

@@ -18,8 +18,8 @@ import flowtex
 from flowtex import FieldError
 from flowtex.field.formula import KNOWN, FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
-from flowtex.field.formula.line import is_line, line_field, line_python, with_parameter
-from flowtex.rendering.webgl.formula import client_formula
+from flowtex.field.formula.make import is_line, line_field, line_python, with_parameter
+from flowtex.rendering.webgl.velocity import client_formula
 from flowtex.scene.scene import Scene
 
 VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.5}

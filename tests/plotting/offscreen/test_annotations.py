@@ -32,7 +32,7 @@ from flowtex.plotting.offscreen.annotations import (
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.rendering.structure_marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COLORS
+from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COLORS
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 

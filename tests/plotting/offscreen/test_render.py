@@ -18,8 +18,7 @@ from flows import swinging
 
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
-from flowtex.plotting.offscreen.plotter import OffscreenPlotter
-from flowtex.plotting.offscreen.render import _drawn
+from flowtex.plotting.offscreen.plotter import OffscreenPlotter, _drawn
 from flowtex.scene.options import Options
 from flowtex.sources.notices import DatasetNotice
 from flowtex.trace import store

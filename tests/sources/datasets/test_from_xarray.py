@@ -147,7 +147,8 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
     assert set(read) == {0}
     speed = field.at_step(4).speed
     assert set(read) == {0, 4}
-    assert speed.mean() == pytest.approx(0.05 * np.sqrt(2), rel=1e-6)
+    assert field.unit_of("speed") == "cm/s"
+    assert speed.mean() == pytest.approx(5 * np.sqrt(2), rel=1e-6)
     assert str(field.start) == "2000-01-01 00:00:00"
     one = FlowField.from_xarray(ds, time="2000-01-03", globe=True)
     assert one.steady and str(one.start)[:10] == "2000-01-03"
@@ -241,9 +242,11 @@ def test_units_are_those_of_velocities_and_the_same() -> None:
         FlowField.from_xarray(knots, globe=True).velocity,
         FlowField.from_xarray(ds, globe=True).velocity * 1852 / 3600,
     )
-    ds["v"].attrs["units"] = "cm/s"
-    with pytest.raises(FieldError, match="'m s-1' and 'cm/s'; expected the same unit"):
-        FlowField.from_xarray(ds, "u", "v")
+    whole = FlowField.from_xarray(ds, globe=True).velocity
+    ds["v"] = (100 * ds["v"]).assign_attrs(ds["v"].attrs | {"units": "cm/s"})
+    mixed = FlowField.from_xarray(ds, globe=True)
+    assert np.allclose(mixed.velocity, whole)
+    assert "v converted from cm/s to m s-1" in str(mixed.reading)
     ds["v"].attrs["units"] = "kg"
     with pytest.raises(FieldError, match="'kg', which is not a unit of velocity"):
         FlowField.from_xarray(ds, "u", "v")

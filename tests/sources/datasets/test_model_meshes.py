@@ -178,7 +178,7 @@ def test_fill_values_and_what_is_dry_are_blanked() -> None:
     ds["u"][:] = 1.0
     ds["u"][15:] = np.nan
     field = FlowField.from_xarray(ds)
-    assert 0 < field.valid.sum() < 30 and np.allclose(field.velocity[0][field.valid][:, 0], 1)
+    assert 0 < field.valid.sum() < 30 and np.allclose(field.speed[0][field.valid], 1)
     (wet,) = fvcom(globe(200))
     cells = np.ones((2, 396), dtype=int)
     cells[:, wet.nv.values[0] == 1] = cells[0, 300:] = 0

@@ -77,8 +77,8 @@ def test_what_is_chosen_along_other_axes_is_a_section() -> None:
     np.testing.assert_allclose(field.velocity[0][0, :, 0], (2 + lon) / DEGREE / 0.5)
 
 
-def furlongs(ds: xr.Dataset) -> xr.Dataset:
-    return ds.rename(lat="x").assign_coords(x=("x", LAT, {"units": "furlong"}))
+def kilograms(ds: xr.Dataset) -> xr.Dataset:
+    return ds.rename(lat="x").assign_coords(x=("x", LAT, {"units": "kg"}))
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def furlongs(ds: xr.Dataset) -> xr.Dataset:
             "the components have different axes: v has",
         ),
         (lambda ds: ds.drop_vars("level"), "level has no coordinate; add it, as in"),
-        (furlongs, "the unit of x is 'furlong'; expected degrees, m,"),
+        (kilograms, "the unit of x is 'kg'; expected degrees, or one of length"),
         (
             lambda ds: ds.rename(lat="lon").assign_coords(lon=("lon", LAT)),
             "the latitude of a section along lon is not known; add it",

@@ -70,8 +70,10 @@ def test_a_unit_is_read_by_any_name(key: str) -> None:
     slow = ds.copy(deep=True)
     for name in "uv":
         slow[name].attrs = {"standard_name": ds[name].attrs["standard_name"], key: "cm/s"}
-    slow, fast = (FlowField.from_xarray(d).speed.max() for d in (slow, ds))
-    assert slow == pytest.approx(fast / 100)
+    slow_field, fast_field = (FlowField.from_xarray(d) for d in (slow, ds))
+    low, high = slow_field.speed.max(), fast_field.speed.max()
+    assert slow_field.velocity.max() == pytest.approx(fast_field.velocity.max() / 100)
+    assert low == pytest.approx(high) and slow_field.unit_of("speed") == "cm/s"
 
 
 def test_steps_are_joined_on_the_positions_that_all_have() -> None:

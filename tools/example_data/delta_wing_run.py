@@ -14,9 +14,16 @@ one line and meets on another, as in pictures of oil flow on delta wings.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+from packing import save
 
 from flowtex._util.array_types import Floats
+from flowtex.examples._shipped import DATA, DELTA_WING
+
+#: Nodes across and along the body.
+SHAPE = (52, 62)
 
 #: Half span at the nose, of the body, and at the tail; where along the body the wings begin.
 NOSE, BODY, SPAN, WINGS = 0.012, 0.085, 0.46, 0.34
@@ -28,8 +35,8 @@ HEIGHT, THICK, CROWDED = 0.11, 0.035, 2.2
 SWIRL, INCIDENCE = 2.0, 12.0
 
 
-def arrays(shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Return nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
+def run(shape: tuple[int, int] = SHAPE) -> tuple[Floats, Floats]:
+    """Compute nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
     rows, columns = shape
     across, along = np.linspace(-1.0, 1.0, rows), np.linspace(0.0, 1.0, columns)
     s = np.sign(across) * _crowded(np.abs(across))
@@ -80,3 +87,10 @@ def _velocity(s: Floats, t: Floats) -> Floats:
     wing = np.clip((t - WINGS) / (1.0 - WINGS), 0.0, 1.0) ** 0.7
     side = np.sin(np.pi * s) * (0.62 - np.abs(s)) * (1.0 + 1.6 * np.abs(s))
     return np.asarray(stream + (SWIRL * wing * side)[..., None] * outward)
+
+
+def write(folder: Path | None = None) -> None:
+    """Compute and write the file."""
+    points, velocity = run()
+    arrays = {"points": points.astype(np.float32), "velocity": velocity.astype(np.float32)}
+    save((folder or DATA) / DELTA_WING, arrays)
