@@ -215,7 +215,7 @@ class FieldOptions:
                 raise FieldError(msg)
             return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
         if not isinstance(mesh, FlowField):
-            self._refuse(choices, OF_EARTH, "data of the Earth, but this is a mesh")
+            self._refuse(choices, OF_EARTH, "datasets, but this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
             msg = (

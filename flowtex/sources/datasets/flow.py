@@ -300,10 +300,11 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
         flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
         return False
     if share == 1.0 and wanted is None and part.ndim == axes:  # not only in the first step
-        flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used", notable=True)
+        flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used")
         return False
     if share:
-        flow.record("mask", f"{share:.0%} masked: {mask.text}; mask=False draws it")
+        text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
+        flow.record("mask", text, notable=mask.is_flag)
     return True
 
 

@@ -17,7 +17,7 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import as_slice
+from flowtex.sources.datasets.axes import TIMES, as_slice
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.opening.components import split_components
@@ -187,6 +187,11 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         for axis, names in marks.items():
             for name in names:
                 guessed[name].attrs.setdefault("axis", axis)
+    for name, c in guessed.coords.items():  # such as months, which are no times of a series
+        is_guess = "axis" not in ds[name].attrs and c.attrs.get("axis") == "T"
+        is_time = units.measures(str(c.attrs.get("units", "")), units.TIMES)
+        if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
+            del c.attrs["axis"]
     return guessed
 
 
