@@ -158,7 +158,8 @@ class FieldConstructors:
             (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
             with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
             or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
-            GRIB, or the JSON of wind maps; ``model.nc/ocean`` is a group of a file. Several such
+            GRIB, GeoJSON of points, CSV with a header, or the JSON of wind maps;
+            ``model.nc/ocean`` is a group of a file. Several such
             files, the parts of a model's output or the steps of a series, are given as a list.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
@@ -208,7 +209,7 @@ class FieldConstructors:
     @classmethod
     def from_xarray(
         cls,
-        data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+        data: xr.Dataset | xr.DataTree | xr.DataArray | Sequence[Any] | Any,
         u: str | None = None,
         v: str | None = None,
         *,
@@ -222,15 +223,20 @@ class FieldConstructors:
         components: str | None = None,
         **selection: Any,
     ) -> Self:
-        """Make a field from an xarray dataset, such as the output of an ocean or weather model.
+        """Make a field from xarray datasets, arrays or tables, such as the output of a model.
 
         Parameters
         ----------
         data
             A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
             and of coordinates, or the steps of a series; or a DataTree, of which one group has a
-            velocity. Only coordinates and one step are read at first, or three where data are
-            missing; further steps are read when they are drawn.
+            velocity. A DataArray has an axis of two or three components, or is one of a list. A
+            DataFrame of pandas, GeoPandas or Polars has columns for positions, perhaps for time,
+            and for the components: rows of a grid become a grid, other rows are points. Points
+            along one dimension are joined by triangles to their neighbours, but not across gaps;
+            so are HEALPix, reduced Gaussian grids and cubed spheres. Only coordinates and one step
+            are read at first, or three where data are missing; further steps are read when they
+            are drawn.
         u, v
             Names of the components. By default the only pair that is recognised as the velocity by
             CF standard names, long names or names.

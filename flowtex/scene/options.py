@@ -524,7 +524,7 @@ class Options:
 def _axes_of(data: Any) -> set[str]:
     """Return the names of the dimensions of datasets."""
     several = data if isinstance(data, (list, tuple)) else [data]
-    return {str(dim) for one in several for dim in one.dims}
+    return {str(dim) for one in several for dim in getattr(one, "dims", ())}
 
 
 _KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}

@@ -32,7 +32,8 @@ pytestmark = pytest.mark.filterwarnings(
 
 KNOWN = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset (.nc, .zarr, .grib, .json)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
+    ".grib, .json, .geojson, .csv, .vec)"
 )
 
 
