@@ -17,7 +17,7 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIMES, as_slice
+from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.opening.components import split_components
@@ -149,6 +149,8 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset with dates along its axis of time, if texts or numbers have them."""
     for name in (*LETTERS, *(n for n, c in ds.coords.items() if c.dims == (n,))):
         if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
+            continue
+        if ds[name].dtype.kind == "O" and is_dates(ds[name]):
             continue
         dim = str(ds[name].dims[0])
         rows = ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
