@@ -277,6 +277,9 @@ def _units(flow: Flow) -> dict[str, str]:
     time = "s" if is_date else flow.drawn.time_unit
     if not flow.places.is_earth:
         length = flow.places.unit
+        if not length and unit and units.factor(unit, "m/s") not in (None, 1.0):
+            length = "m"
+            record("units", f"{flow.places.why} have no unit; m is assumed", notable=True)
         if not unit and length and time:
             record("units", f"{names} have no unit; {length}/{time} is assumed", notable=True)
         return {"length_unit": length, "time_unit": time}
