@@ -8,7 +8,7 @@
 
 import type { CustomLayerInterface, CustomRenderMethodInput, Map as MapLibreMap } from "maplibre-gl";
 import { BareView, type BareHost } from "./bareview.ts";
-import { eastNorth } from "./lonlat.ts";
+import { velocityOnEarth } from "./onearth.ts";
 import { MapPicture } from "./mappicture.ts";
 import { Mercator, placeOn, type MapLook } from "./mercator.ts";
 import { Player } from "./player.ts";
@@ -23,6 +23,11 @@ import type { Vector } from "./vectors.ts";
  * what lies beyond its sides, as small as it is there. */
 const MOST_PIXELS = 4096;
 const MOST_SHARE = 4;
+/** The view in which points are looked up: its pixels, and half its height in cells of the finest level. */
+const CLOSE_PIXELS = 32;
+const CLOSE_CELLS = 0.25;
+/** Milliseconds for which a point waits for its tile. */
+const PATIENCE_MS = 10_000;
 
 // The declarations of what is public name no type of other modules: they are one file of the package.
 
@@ -67,7 +72,9 @@ interface Scene {
   settings: FlowSettings;
   player: Player;
   mercator: Mercator;
-  add(): Promise<MapPicture>;
+  add(): Promise<BareView>;
+  /** Make a view, and give it the parts that are known. */
+  make(host: BareHost, taken: (view: BareView) => void): Promise<BareView>;
 }
 
 export class FlowtexLayer implements CustomLayerInterface {
@@ -85,6 +92,9 @@ export class FlowtexLayer implements CustomLayerInterface {
   private look = "";
   private globe = false;
   private shownOpacity = 1;
+  /** The view in which points are looked up, and the last one that is being looked up. */
+  private close: Promise<BareView> | null = null;
+  private asked: Promise<FlowPoint | null> = Promise.resolve(null);
   /** Settings and colours that were chosen, also before the scene is here. */
   private readonly own: FlowSettings;
   private readonly colours: FlowColours = {};
@@ -108,6 +118,8 @@ export class FlowtexLayer implements CustomLayerInterface {
   onRemove(): void {
     const { gl } = this;
     for (const picture of this.pictures) picture.dispose(gl);
+    void this.close?.then((view) => view.dispose());
+    this.close = null;
     gl?.deleteVertexArray(this.array);
     this.programs?.dispose();
     this.map = this.gl = this.scene = null;
@@ -125,32 +137,35 @@ export class FlowtexLayer implements CustomLayerInterface {
     const source = header.store ? new Stream(header, base) : embedded;
     const shared = { header, settings: { ...header.settings, ...header.own, ...this.own }, player: new Player() };
     this.shownOpacity = opacity ?? headers[0].opacity;
-    const add = async () => {
+    const make: Scene["make"] = async (host, taken) => {
       let isComing = true;
-      const view: BareView = new BareView(this.hostOf(() => picture), { ...shared, source, isComing: () => isComing });
-      const picture: MapPicture = new MapPicture(gl, view);
-      this.pictures.push(picture);
+      const view = new BareView(host, { ...shared, source, isComing: () => isComing });
+      taken(view);
       for (const part of embedded.parts) {
         const unpacked = await embedded.kept(part);
-        if (!this.pictures.includes(picture)) break; // the layer has gone
+        if (view.lifetime.isOver) break; // the layer has gone
         view.setPart(unpacked);
       }
       isComing = false;
       if (Object.keys(this.colours).length) view.chooseColours(this.colours);
-      return picture;
+      return view;
     };
-    const { view } = await add();
+    const add = () => {
+      let picture: MapPicture | null = null;
+      return make(this.hostOf(() => picture), (view) => this.pictures.push((picture = new MapPicture(gl, view))));
+    };
+    const view = await add();
     if (this.gl !== gl) return;
-    this.scene = { ...shared, add, mercator: new Mercator(header.earth, view.parts.get("lonlat")) };
+    this.scene = { ...shared, add, make, mercator: new Mercator(header.earth, view.parts.get("lonlat")) };
     view.requests.open();
     this.options.onOpen?.();
     this.map?.triggerRepaint();
   }
 
-  private readonly hostOf = (picture: () => MapPicture): BareHost => ({
+  private readonly hostOf = (picture: () => MapPicture | null): BareHost => ({
     isHeld: () => this.map?.isMoving() ?? false,
     painted: (isComplete) => {
-      picture().painted(isComplete);
+      picture()?.painted(isComplete);
       this.map?.triggerRepaint();
     },
     advanced: () => this.options.onTime?.(this.time),
@@ -223,24 +238,53 @@ export class FlowtexLayer implements CustomLayerInterface {
     for (const { view } of this.pictures) view.change();
   }
 
-  /** What is at a place of the picture; null beside the flow, and before the first picture is complete. */
-  pointAt(lngLat: { lng: number; lat: number }): FlowPoint | null {
+  /** What is at a place, at every zoom; null beside the flow. */
+  async pointAt(lngLat: { lng: number; lat: number }): Promise<FlowPoint | null> {
     const { mercator, header } = this.scene ?? {};
-    if (!mercator || !header?.earth) return null;
+    if (!mercator || !header) return null;
     const place: Vector = [...mercator.positionOf(placeOn(lngLat)), header.geometry.center[2]];
-    for (const { view, isUsed } of this.pictures) {
-      const { camera, parts, settings } = view;
-      const at = (isUsed && camera?.project(place)) || [2, 2];
-      if (Math.max(...at.map(Math.abs)) > 1) continue;
-      const [found, moment] = [view.find(at[0], at[1]), view.painter.shown];
-      if (!camera || !found || !moment) continue;
-      const position = found.point.position as Vector;
-      const through = { scene: found.layer.scene, moment, place: found.place, position };
-      const { path, velocity } = pathThrough(through, settings, camera, view.rows);
-      const [eastward, northward] = eastNorth(header.earth, position, velocity, parts.get("lonlat"));
-      return { eastward, northward, values: found.point.values, path: path.map((each) => mercator.lngLatOf(each)) };
-    }
-    return null;
+    const views = this.pictures.filter(({ isUsed }) => isUsed).map(({ view }) => view);
+    await until(() => views.every(({ painter }) => painter.canPick && painter.shown));
+    // The path is that of the picture; it is as long as the map's scale allows.
+    const shown = views.map((view) => this.pointIn(view, place)).find(Boolean) ?? null;
+    if (shown && !header.pyramid) return shown;
+    this.asked = this.asked.then(() => this.pointClose(place)).catch(() => null);
+    const found = await this.asked;
+    return found && { ...found, path: shown?.path ?? found.path };
+  }
+
+  /** What a view shows at a place. */
+  private pointIn(view: BareView, place: Vector): FlowPoint | null {
+    const { camera, parts, settings } = view;
+    const { mercator } = this.scene ?? {};
+    const at = camera?.project(place) ?? [2, 2];
+    const found = Math.max(...at.map(Math.abs)) > 1 ? null : view.find(at[0], at[1]);
+    const moment = view.painter.shown;
+    if (!mercator || !camera || !found || !moment) return null;
+    const position = found.point.position as Vector;
+    const through = { scene: found.layer.scene, moment, place: found.place, position };
+    const [eastward, northward] = velocityOnEarth(through, parts.get("lonlat")) ?? [NaN, NaN];
+    const { path } = pathThrough(through, settings, camera, view.rows);
+    return { eastward, northward, values: found.point.values, path: path.map((each) => mercator.lngLatOf(each)) };
+  }
+
+  /** What the finest level has at a place, for which its tile is requested. */
+  private async pointClose(place: Vector): Promise<FlowPoint | null> {
+    const { scene } = this;
+    if (!scene) return null;
+    let isPainted = false;
+    const host = { ...this.hostOf(() => null), painted: () => void (isPainted = true), advanced: () => undefined };
+    const view = await (this.close ??= scene.make(host, (made) => made.requests.open()));
+    const { box } = scene.mercator;
+    const { pyramid, geometry } = scene.header;
+    const half = (CLOSE_CELLS * (box[2] - box[0])) / (pyramid?.shapes[0] ?? geometry.shape)[1];
+    const [x, y, z] = place;
+    const state = { up: [0, 1, 0], view_angle: 30, position: [x, y, z + half], focal_point: place, parallel: true, parallel_scale: half };
+    view.isVisible = true;
+    view.look(state, CLOSE_PIXELS, CLOSE_PIXELS, 1);
+    await until(() => isPainted && view.painter.canPick && !view.tiles?.pending && !view.tiles?.missing.length);
+    view.isVisible = false;
+    return this.pointIn(view, place);
   }
 
   private failed(problem: string, detail: string): void {
@@ -301,6 +345,12 @@ function lookOf(map: MapLibreMap, globe: boolean): { what: MapLook; ratio: numbe
   };
   const ratio = map.getPixelRatio();
   return { what, ratio, text: JSON.stringify([what, ratio]) };
+}
+
+/** Wait for something, for some time. */
+async function until(isSo: () => unknown): Promise<void> {
+  const last = performance.now() + PATIENCE_MS;
+  while (!isSo() && performance.now() < last) await new Promise(requestAnimationFrame);
 }
 
 async function fetched(address: string): Promise<PackedScene> {

@@ -2,6 +2,7 @@
 
 import { atPixel, projection, type Camera } from "./camera.ts";
 import { interpolated, type Corners } from "./mesh.ts";
+import { placeOnEarth, cornersOn } from "./onearth.ts";
 import type { Geometry, Header, Padding } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { fullIndex } from "./tilechoice.ts";
@@ -15,6 +16,8 @@ export interface Point {
   /** Place between the nodes of the whole surface, (i, j); of triangles that of `placeIn`. */
   index: [number, number];
   values: Record<string, number>;
+  /** Velocity on the Earth, to the east and to the north. */
+  eastNorth?: [number, number];
   /** The kind of the critical point that is marked here, if any. */
   mark?: string;
 }
@@ -56,9 +59,10 @@ export function pickedPoint(context: PickContext, x: number, y: number): Found |
   const [u, v] = new Float32Array(bits.buffer, 0, 2);
   const layer = layers[bits[2]];
   const { geometry } = layer.scene.header;
-  const place = geometry.triangles ? placeIn(bits[3] - 1, u, v) : placeAmong(geometry, u, v);
-  const corners = layer.scene.cornersAt(place);
-  const position = positionAt(layer.scene, camera, corners, x, y);
+  const near = geometry.triangles ? placeIn(bits[3] - 1, u, v) : placeAmong(geometry, u, v);
+  const position = positionAt(layer.scene, camera, layer.scene.cornersAt(near), x, y);
+  const place = placeOnEarth(layer.scene, near, position, layers[0].scene.parts.get("lonlat"));
+  const corners = cornersOn(layer.scene, place);
   const index = geometry.triangles ? place : wholeIndex(header, layer, place);
   return { point: { position, index, values: valuesAt(layer.scene, moment, corners) }, layer, place };
 }

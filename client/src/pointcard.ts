@@ -3,7 +3,8 @@
 import type { Camera } from "./camera.ts";
 import { dom, numberText, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
-import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
+import { lonLatOf, lonLatText } from "./lonlat.ts";
+import { cornersOn, velocityOnEarth } from "./onearth.ts";
 import type { Options, Reading } from "./options.ts";
 import { pathShapes, type Dot, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
@@ -190,7 +191,8 @@ export class PointCard {
     }
     const at = { scene, moment: shown, place, position };
     const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
-    this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
+    const eastNorth = velocityOnEarth(at, this.host.parts.get("lonlat")) ?? undefined;
+    this.tell({ ...point, values: valuesAt(scene, shown, cornersOn(scene, place)), eastNorth }, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
     this.share(path, position, samples);
@@ -203,14 +205,15 @@ export class PointCard {
     camera: Camera,
     words: NonNullable<Reading["words"]> = [],
   ): void {
-    const { label, unit } = header.speed;
-    const size = Math.hypot(...velocity);
+    const { unit } = header.speed;
+    const { eastNorth } = point;
+    // On a map this is the speed on the Earth, and not in the surface.
+    const label = eastNorth ? "speed" : header.speed.label;
+    const size = Math.hypot(...(eastNorth ?? velocity));
     const lines = new Map<string, string>();
-    const { earth } = header;
-    const { parts } = this.host;
-    const where = placeText(point.position, header, parts, camera, true);
-    if (earth && lonLatOf(earth, point.position, parts.get("lonlat"))) {
-      const [east, north] = eastNorth(earth, point.position, velocity, parts.get("lonlat"));
+    const where = placeText(point.position, header, this.host.parts, camera, true);
+    if (eastNorth) {
+      const [east, north] = eastNorth;
       lines.set("place", where);
       lines.set("eastward", withUnit(numberText(east, VELOCITY_DIGITS), unit));
       lines.set("northward", withUnit(numberText(north, VELOCITY_DIGITS), unit));

@@ -137,6 +137,11 @@ export function mover({ scene, place, position }: PathPlace): (moved: Vector) =>
   };
 }
 
+/** Position of a place between the nodes. */
+export function nodeAt(scene: Scene, place: [number, number]): Vector {
+  return add(pointAt(scene, place), scene.header.geometry.center as Vector);
+}
+
 function pointAt(scene: Scene, place: [number, number]): Vector {
   const { data } = scene.part("position");
   const corners = scene.cornersAt(place);
@@ -226,18 +231,27 @@ function upTo(start: Vector, side: Vector[], most: number): Vector[] {
   return result;
 }
 
+/** Velocity in the surface. */
+export function velocityAt(at: PathPlace): Vector {
+  const { scene, position } = at;
+  const { slices, paper, speed } = scene.header;
+  const layers = layersAt(at);
+  const [x, y, z] = layers(0);
+  const slope: Vector = [x, y, z];
+  const small = scale(slope, (SMALL * (paper ? 1 / paper.size[0] : slices.cell)) / (length(slope) || 1));
+  const along = length(slope) > LEAST_SLOPE ? subtract(mover(at)(small) ?? position, position) : slope;
+  return scale(unit(along), layers(2)[3] * speed.typical);
+}
+
 /** The path through a point as the picture has it that is so many of the page's pixels high. */
 export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, rows: number): PointPath {
   const { scene, position } = at;
-  const { slices, paper, speed } = scene.header;
+  const { slices, paper } = scene.header;
   const layers = layersAt(at);
   const directed = !isSignFree(scene.header);
   const base = layers(0);
   const slope: Vector = [base[0], base[1], base[2]];
   const moved = mover(at);
-  const small = scale(slope, (SMALL * (paper ? 1 / paper.size[0] : slices.cell)) / (length(slope) || 1));
-  const along = length(slope) > LEAST_SLOPE ? subtract(moved(small) ?? position, position) : slope;
-  const velocity = scale(unit(along), layers(2)[3] * speed.typical);
   const whole: Vector[][] = [];
   const sides = settings.two_sided || !directed ? slices.sides : 1;
   for (let side = 0; side < sides && length(slope) > LEAST_SLOPE; side += 1) {
@@ -256,5 +270,5 @@ export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, r
     return [...back.reverse(), position, ...ahead];
   };
   const path = joined(PATH_LENGTH * Math.max(count, FEWEST_SAMPLES) * step);
-  return { path, sampled: joined(count * step), directed, velocity };
+  return { path, sampled: joined(count * step), directed, velocity: velocityAt(at) };
 }

@@ -9,7 +9,7 @@ const FOLDER = fileURLToPath(new URL("..", import.meta.url));
 const USE = `
 import type { Map } from "maplibre-gl";
 import { FlowtexLayer, type FlowPoint } from "./flow";
-export function add(map: Map): FlowPoint | null {
+export function add(map: Map): Promise<FlowPoint | null> {
   const flow = new FlowtexLayer({ id: "flow", scene: "winds.json", opacity: 0.8, onTime: (time) => time.toFixed() });
   map.addLayer(flow);
   flow.set({ samples: 15 });

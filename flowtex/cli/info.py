@@ -201,6 +201,8 @@ def _field_table(field: FlowField) -> Table:
             "cells", f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest"
         )
     table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
+    for step in field.reading:
+        table.add_row(step.step, step.text)
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table
 

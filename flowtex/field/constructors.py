@@ -54,7 +54,9 @@ class FieldConstructors:
             array that can be the velocity, or the active vectors of the mesh. Components in
             separate arrays are named with commas between, as in ``"u,v,w"``. They are found
             automatically if the mesh has no array of vectors and their names differ only in the
-            component, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
+            component, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``. Two components
+            lie in the plane of a flat mesh: in y = 0 they are along x and z. Those of a volume or a
+            curved surface are along x and y, unless their names say otherwise.
         plane
             Index plane to draw of a three-dimensional structured mesh: ``"k=20"``, ``"j=0"`` or
             ``"i=-1"``, where negative numbers count from the end. On a k-plane the surface's (i, j)
@@ -69,7 +71,7 @@ class FieldConstructors:
             An array and a value, ``"pressure=101325"``: the isosurface in a volume.
         times
             Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
-            field data of every step, or 0, 1, 2, ...
+            field data of every step, by which steps are sorted, or 0, 1, 2, ...
         periodic, name, sign_free
             As for :meth:`from_arrays`; ``periodic`` and ``sign_free`` are for structured meshes
             only.
@@ -94,13 +96,15 @@ class FieldConstructors:
         Warns
         -----
         Notice
-            When flowtex made a choice, such as the outer surface of a volume, or when most of the
-            flow is normal to a surface of triangles.
+            When flowtex made a choice, such as the outer surface of a volume, or when 5 % of the
+            flow are normal to a surface, or half of it to a cut of a volume.
 
         Notes
         -----
         Points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0 (PLOT3D), and points
-        that a sampling filter marked in ``vtkValidPointMask`` are not drawn. The mesh is not
+        that a sampling filter marked in ``vtkValidPointMask`` are not drawn, and neither are
+        vectors with a fill value, such as -999. Steps whose nodes are in another order are matched
+        by ``GlobalPointIds`` or by position. :attr:`reading` tells all of this. The mesh is not
         changed.
 
         Examples
@@ -115,7 +119,7 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
         (10, 12)
         """
-        from flowtex.sources.meshes.from_pyvista import read_meshes
+        from flowtex.sources.meshes.read import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
@@ -154,7 +158,8 @@ class FieldConstructors:
             (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
             with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
             or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
-            GRIB, or the JSON of wind maps; ``model.nc/ocean`` is a group of a file. Several such
+            GRIB, GeoJSON of points, CSV with a header, or the JSON of wind maps;
+            ``model.nc/ocean`` is a group of a file. Several such
             files, the parts of a model's output or the steps of a series, are given as a list.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
@@ -204,7 +209,7 @@ class FieldConstructors:
     @classmethod
     def from_xarray(
         cls,
-        data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+        data: xr.Dataset | xr.DataTree | xr.DataArray | Sequence[Any] | Any,
         u: str | None = None,
         v: str | None = None,
         *,
@@ -218,15 +223,20 @@ class FieldConstructors:
         components: str | None = None,
         **selection: Any,
     ) -> Self:
-        """Make a field from an xarray dataset, such as the output of an ocean or weather model.
+        """Make a field from xarray datasets, arrays or tables, such as the output of a model.
 
         Parameters
         ----------
         data
             A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
             and of coordinates, or the steps of a series; or a DataTree, of which one group has a
-            velocity. Only coordinates and one step are read at first, or three where data are
-            missing; further steps are read when they are drawn.
+            velocity. A DataArray has an axis of two or three components, or is one of a list. A
+            DataFrame of pandas, GeoPandas or Polars has columns for positions, perhaps for time,
+            and for the components: rows of a grid become a grid, other rows are points. Points
+            along one dimension are joined by triangles to their neighbours, but not across gaps;
+            so are HEALPix, reduced Gaussian grids and cubed spheres. Only coordinates and one step
+            are read at first, or three where data are missing; further steps are read when they
+            are drawn.
         u, v
             Names of the components. By default the only pair that is recognised as the velocity by
             CF standard names, long names or names.

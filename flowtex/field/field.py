@@ -18,7 +18,7 @@ from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.arrays import NOTHING, FieldArrays, Reading, SectionAxes, TriangleArrays
+from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import as_seconds
 from flowtex.field.derived.methods import FieldQuantities
@@ -41,11 +41,6 @@ WHOLE_SHAPE = "_whole_shape"
 
 #: Attributes that are computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
-#: Share of the flow normal to the surface from which on the speed in it has another name. A curved
-#: mesh alone has 1 or 2 %; at 5 % the speeds differ by a thousandth.
-NOTABLE_SHARE = 0.05
-#: Share of the flow normal to a surface of triangles from which on a notice says so.
-MOST_LOST = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -142,15 +137,17 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.of(arrays).shape
         (2, 3)
         """
-        on_triangles = isinstance(arrays, TriangleArrays)
-        make: Any = cls.from_triangles if on_triangles else cls.from_arrays
+        make: Any = cls.from_triangles if hasattr(arrays, "triangles") else cls.from_arrays
         arguments = dict(vars(arrays))
+        notable = arguments.pop("notable_normal")
         kept = {name: arguments.pop(name, None) for name in ("section", "reading")}
         field: FlowField = make(**arguments).same_flow(**kept)
-        late = isinstance(field.velocity, LazySteps)
-        if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
-            notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")
-        return field
+        if isinstance(field.velocity, LazySteps) or arrays.projection is not None:
+            return field
+        reading = field.reading.with_normal_share(field.normal_share, notable)
+        if reading != field.reading and reading[-1].notable:
+            notify(reading[-1].text)
+        return field.same_flow(reading=reading)
 
     @classmethod
     def from_arrays(

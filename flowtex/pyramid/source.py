@@ -250,7 +250,7 @@ def _source_of(data: Any, uncertainty: Any, **options: Any) -> Source:
     if not all(isinstance(each, (str, Path)) for each in items):
         names = (*OF_MESHES, "vectors", "times", "name")
         others = {name: value for name, value in options.items() if name not in names}
-        refuse(others, "data of the Earth, but this is a mesh")
+        refuse(others, "datasets, but this is a mesh")
         return FieldSource(FlowField.from_pyvista(data, **options))
     files: str | Path | Sequence[str | Path] = data
     if isinstance(files, (str, Path)) and has_parts(files):

@@ -215,7 +215,7 @@ class FieldOptions:
                 raise FieldError(msg)
             return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
         if not isinstance(mesh, FlowField):
-            self._refuse(choices, OF_EARTH, "data of the Earth, but this is a mesh")
+            self._refuse(choices, OF_EARTH, "datasets, but this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
             msg = (
@@ -524,7 +524,7 @@ class Options:
 def _axes_of(data: Any) -> set[str]:
     """Return the names of the dimensions of datasets."""
     several = data if isinstance(data, (list, tuple)) else [data]
-    return {str(dim) for one in several for dim in one.dims}
+    return {str(dim) for one in several for dim in getattr(one, "dims", ())}
 
 
 _KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}

@@ -13,6 +13,7 @@ from flowtex.field.field import FlowField
 from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
+from flowtex.sources.files import one_path
 from flowtex.sources.maps.grid_map import projection_of
 from flowtex.sources.mesh_source import FlowSource, Source
 from flowtex.sources.notices import DatasetNotice
@@ -79,12 +80,6 @@ def open_source(path: str | Path | Sequence[str | Path]) -> Source:
     """Open a file, or several of data of the Earth; errors start with the path."""
     paths = dataset_paths(path)
     if not paths:
-        if not isinstance(path, (str, Path)):
-            msg = (
-                f"{len(path)} files are given, but several are read only as data of the Earth; for "
-                "the steps of a mesh give a .pvd file, or in Python a list of meshes"
-            )
-            raise FieldError(msg)
-        return FlowSource.from_file(path)
+        return FlowSource.from_file(one_path(path))
     with errors_of_file(paths[0]):
         return DatasetSource(open_datasets(paths), name=common_name(paths))

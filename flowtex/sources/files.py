@@ -1,4 +1,4 @@
-"""From files to the arrays of a field: of a mesh, or of data of the Earth.
+"""From files to the arrays of a field: of a mesh, or of a dataset.
 
 PyVista's readers open most files; PLOT3D, which does not describe itself, is read by
 :mod:`flowtex.sources.meshes.plot3d`.
@@ -22,8 +22,8 @@ from flowtex.sources.datasets.regions import Regions
 from flowtex.sources.datasets.select import two_names
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.meshes import beside, plot3d
-from flowtex.sources.meshes.from_pyvista import read_meshes
 from flowtex.sources.meshes.parts import time_steps, times_of
+from flowtex.sources.meshes.read import read_meshes
 from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
 from flowtex.sources.reader_errors import errors_of_file
 
@@ -80,16 +80,12 @@ class _CGNSReader:
 
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or data of the Earth (.nc, .zarr, .grib, "
-    ".json)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
+    ".grib, .json, .geojson, .csv, .vec)"
 )
-
-
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
-
-
-#: Arguments for meshes; the others are for data of the Earth.
+#: Arguments for meshes; the others are for datasets.
 OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
 
 
@@ -103,28 +99,9 @@ class OpenFile:
     problem: str = ""  #: The reason if nothing can be drawn.
 
 
-def read_file(
-    path: str | Path,
-    *,
-    time: float | None = None,
-    block: int | str | None = None,
-    vectors: str | None = None,
-    **options: Any,
-) -> GridArrays | TriangleArrays:
-    """Read the arrays of a field from a mesh; callers name errors by :func:`errors_of`."""
-    file = open_file(path)
-    if file.problem:
-        raise FieldError(file.problem)
-    source = file.source
-    if time is not None:
-        source, options["times"] = _at_time(source, time), [time]
-    name = vectors if vectors is not None else file.velocity
-    return read_meshes(source, vectors=name, block=block, name=Path(path).stem, **options)
-
-
 def open_file(path: str | Path) -> OpenFile:
     """Open a file; callers name errors by :func:`errors_of`."""
-    file = Path(path).expanduser()
+    file = one_path(path)
     _check_path(file)
     inspect_file(file)
     require_pyvista("its format")
@@ -151,47 +128,45 @@ def open_file(path: str | Path) -> OpenFile:
 
 def _check_path(file: Path) -> None:
     """Raise a FieldError for a path to nothing readable, before any reader opens it."""
-    problem = ""
+    if problem := _path_problem(file):
+        raise FieldError(problem)
+
+
+def _path_problem(file: Path) -> str:
     if _ADDRESS.match(str(file)) and not file.exists():
-        problem = (
+        return (
             "this address has no flowtex pyramid, and files are read only from folders; open the "
             "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
         )
-    elif file.suffix.lower() == ".foam" and not [
+    if file.suffix.lower() == ".foam" and not [
         *file.parent.glob("constant"),
         *file.parent.glob("processor*"),
     ]:
-        problem = "its folder has no folder constant; expected the folder of an OpenFOAM case"
-    elif not file.exists():
-        problem = "the file does not exist; check the spelling and the folder"
+        return "its folder has no folder constant; expected the folder of an OpenFOAM case"
+    if "*" in file.name and not file.exists():
+        text = "the file does not exist, and patterns are not expanded; give a list of files"
+        return f"{text}, as in sorted(glob.glob(pattern))"
+    if not file.exists():
         similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
-        if "*" in file.name:
-            problem = (
-                "the file does not exist, and patterns are not expanded; give a list of files, as "
-                "in sorted(glob.glob(pattern))"
-            )
-        elif similar:
-            problem += f". Similar names: {', '.join(similar[:5])}"
-    elif file.is_dir():
-        problem = "this is a folder; expected a file: name the mesh inside it"
-        if (file / "constant" / "polyMesh").exists():
-            case = f"{file.name}.foam"
-            problem = f"this is a case of OpenFOAM; make an empty file {case} in it, and name that"
-    elif file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
-        problem = (
+        names = f". Similar names: {', '.join(similar[:5])}" if similar else ""
+        return f"the file does not exist; check the spelling and the folder{names}"
+    if (file / "constant" / "polyMesh").exists():
+        text = "this is a case of OpenFOAM; make an empty file"
+        return f"{text} {file.name}.foam in it, and name that"
+    if file.is_dir():
+        return "this is a folder; expected a file: name the mesh inside it"
+    if file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
+        return (
             "this is a pickle, which can run any program when it is loaded, so it is refused; "
             'save the mesh as VTK instead, as in mesh.save("flow.vts")'
         )
-    else:
-        try:
-            with file.open("rb") as stream:
-                # OpenFOAM marks a case with an empty file.
-                if not stream.read(1) and file.suffix != ".foam":
-                    problem = "the file is empty; expected " + _KNOWN_FORMATS
-        except OSError as error:
-            problem = f"cannot be opened ({error.strerror}); check its permissions"
-    if problem:
-        raise FieldError(problem)
+    try:
+        with file.open("rb") as stream:
+            # OpenFOAM marks a case with an empty file.
+            is_empty = not stream.read(1) and file.suffix != ".foam"
+    except OSError as error:
+        return f"cannot be opened ({error.strerror}); check its permissions"
+    return f"the file is empty; expected {_KNOWN_FORMATS}" if is_empty else ""
 
 
 def _at_time(source: Any, time: float) -> Any:
@@ -226,24 +201,36 @@ def read_files(
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}
     if paths:
-        refuse(of_meshes, "meshes, but this is data of the Earth")
+        refuse(of_meshes, "meshes, but this is a dataset")
         if time is not None:
             chosen["sel"] = {**chosen.get("sel", {}), "time": time}
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
         return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
-    if isinstance(path, (str, Path)):
-        _check_path(Path(path).expanduser())
-    refuse(chosen, "data of the Earth, but this is a mesh")
-    if not isinstance(path, (str, Path)):
-        msg = (
-            f"{len(path)} files are given, but several are read only as data of the Earth; for the "
-            "steps of a mesh give a .pvd file, or in Python a list of meshes"
-        )
-        raise FieldError(msg)
+    file = one_path(path)
+    _check_path(file)
+    refuse(chosen, "datasets, but this is a mesh")
     if isinstance(time, str):
         msg = f"time is {time!r}; expected a number, one of the times of the file"
         raise FieldError(msg)
-    return read_file(path, time=time, vectors=vectors, **of_meshes)
+    opened = open_file(file)
+    if opened.problem:
+        raise FieldError(opened.problem)
+    source = opened.source
+    if time is not None:
+        source, of_meshes["times"] = _at_time(source, time), [time]
+    name = vectors if vectors is not None else opened.velocity
+    return read_meshes(source, vectors=name, name=file.stem, **of_meshes)
+
+
+def one_path(path: str | Path | Sequence[str | Path]) -> Path:
+    """Return the path of a mesh; raises a FieldError for several."""
+    if isinstance(path, (str, Path)):
+        return Path(path).expanduser()
+    msg = (
+        f"{len(path)} files are given, but several are read only as datasets; for the steps of a "
+        "mesh give a .pvd file, or in Python a list of meshes"
+    )
+    raise FieldError(msg)
 
 
 def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:

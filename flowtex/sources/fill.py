@@ -16,7 +16,7 @@ _USUAL = re.compile(
 )
 #: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data,
 #: if it exceeds the others by this factor. Below it an inlet or a moving wall may look the same.
-_HUGE, _HUGE_RATIO = 1e11, 1e3
+_HUGE, _HUGE_RATIO, _USUAL_RATIO = 1e11, 1e3, 0.5
 #: Least number of values, or share of all, that a repeated value has.
 _FEW, _SHARE = 10, 0.01
 
@@ -25,14 +25,16 @@ def undeclared_fill(values: Floats) -> float | None:
     """Return the value of an array that stands for missing data, or ``None``.
 
     It is the least or the greatest value, repeats exactly, and lies far outside the others: further
-    from them than they extend, zero included. There may be another one once it is masked.
+    from them than half their extent, zero included. There may be another one once it is masked.
     """
     finite = np.ravel(values)
-    known = np.isfinite(finite)
-    finite = finite if known.all() else finite[known]
     if not finite.size:
         return None
-    for value in sorted({float(finite.min()), float(finite.max())}, key=abs, reverse=True):
+    least, most = float(finite.min()), float(finite.max())
+    if not np.isfinite(least + most):
+        finite = finite[np.isfinite(finite)]
+        least, most = float(finite.min(initial=0.0)), float(finite.max(initial=0.0))
+    for value in sorted({least, most}, key=abs, reverse=True):
         is_huge = abs(value) >= _HUGE
         if not (is_huge or _USUAL.fullmatch(str(np.float32(value)))):
             continue
@@ -43,6 +45,6 @@ def undeclared_fill(values: Floats) -> float | None:
             continue
         low, high = min(float(rest.min()), 0.0), max(float(rest.max()), 0.0)
         distance = max(low - value, value - high)
-        if distance > (high - low) * (_HUGE_RATIO if is_huge else 1):
+        if distance > (high - low) * (_HUGE_RATIO if is_huge else _USUAL_RATIO):
             return value
     return None

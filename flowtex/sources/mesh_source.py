@@ -116,7 +116,7 @@ class Source:
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, in the form of :attr:`default_plane`."""
-        msg = f"level is {level!r}; expected data of the Earth, but this is a mesh"
+        msg = f"level is {level!r}; expected a dataset, but this is a mesh"
         raise FieldError(msg)
 
     def field(
@@ -150,7 +150,7 @@ class FlowSource(Source):
 
     The ``mesh`` is as for :meth:`FlowField.from_pyvista`, or a field. ``velocity`` is the name of
     the velocity where the format of a file fixes it, ``path`` the file, for errors, and ``block``
-    the path of the block in a reader that has several at each time.
+    the path of the block if there are several.
     """
 
     def __init__(
@@ -163,16 +163,15 @@ class FlowSource(Source):
         block: str | None = None,
     ) -> None:
         super().__init__(name)
-        self._grids: Parts = {}
         self._parts: dict[str, FlowSource] = {}
         self._lock = threading.Lock()
         self._mesh = mesh
         self._velocity, self._path, self._block = velocity, path, block
         if isinstance(mesh, FlowField):
             self.name, self.nbytes = name or mesh.name, mesh.nbytes
-            return
-        self._describe(self._series(mesh)[0].grid)
-        self.reads_late = is_reader(self._mesh)
+        else:
+            self._describe(self._first(mesh))
+            self.reads_late = is_reader(self._mesh)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
@@ -214,19 +213,13 @@ class FlowSource(Source):
             msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
             raise FieldError(msg)
         # Pages share a source, and there is one reader.
-        with self._lock:
+        with self._lock, self._errors():
             if block not in self._parts:
-                self._parts[block] = self._open_part(block)
+                options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
+                part = FlowSource(self._mesh, **options, path=self._path, block=block)
+                self.nbytes += part.nbytes if is_reader(self._mesh) else 0
+                self._parts[block] = part
         return self._parts[block]
-
-    def _open_part(self, block: str) -> FlowSource:
-        options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
-        if block in self._grids:
-            return FlowSource(self._grids[block], **options)
-        with self._errors():
-            part = FlowSource(self._mesh, **options, path=self._path, block=block)
-        self.nbytes += part.nbytes
-        return part
 
     def _errors(self) -> AbstractContextManager[None]:
         """Name the file, where there is one and it is read again."""
@@ -236,55 +229,50 @@ class FlowSource(Source):
         """Set the dimensions, the planes and the names of the vectors."""
         self.vectors = self._names(mesh)
         if is_structured(mesh):
-            dimensions = tuple(int(n) for n in mesh.dimensions)
-            self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
+            i, j, k = map(int, mesh.dimensions)
+            self.dimensions = i, j, k
         if mesh.max_cell_dimensionality < 3:
             return
-        ends = np.reshape(mesh.bounds, (3, 2)).tolist()
-        self.ends = {
-            axis: (low, high) for axis, (low, high) in zip("xyz", ends, strict=True) if low < high
-        }
+        ends = zip("xyz", np.reshape(mesh.bounds, (3, 2)).tolist(), strict=True)
+        self.ends = {axis: (low, high) for axis, (low, high) in ends if low < high}
         if self.dimensions is not None:
             self.default_plane = f"k={self.dimensions[2] // 2}"
             return
         # The inside shows more than walls, where nothing flows.
         self.default_plane = f"{OUTER}=0"
-        if self.ends:
-            shortest = min(self.ends, key=lambda axis: np.ptp(self.ends[axis]))
-            if mesh.slice(normal=shortest).n_cells:
-                self.default_plane = self.plane_at(shortest, CUTS // 2)
+        shortest = min(self.ends, key=lambda axis: np.ptp(self.ends[axis]), default="")
+        if shortest and mesh.slice(normal=shortest).n_cells:
+            self.default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
         """Return the names of possible velocities of a grid, the preferred one first."""
         names = [array.name for array in candidates(grid)]
         first = grid.active_vectors_name if self._velocity is None else self._velocity
-        if self._velocity is not None or first in names:
-            names = [first, *names]
-        return tuple(dict.fromkeys(names))
+        preferred = [first] if self._velocity is not None or first in names else []
+        return tuple(dict.fromkeys([*preferred, *names]))
 
-    def _series(self, mesh: Any) -> list[TimeStep]:
-        """Return the steps of a mesh, in memory where they fit; of several blocks the first."""
+    def _first(self, mesh: Any) -> Any:
+        """Return the mesh of the first step, or the first of several blocks.
+
+        Series and blocks stay in memory where they fit.
+        """
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
-        blocks = {} if self._block is not None else _choices(first, series=series)
-        if blocks:
+        if self._block is None and (blocks := _choices(first, series=series)):
             self.blocks = tuple(blocks)
             self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
             if not series:
-                self._grids = blocks
-                self.nbytes = sum(_bytes(grid) for grid in blocks.values())
-            return [TimeStep(next(iter(blocks.values())), None, "the mesh")]
+                self._mesh, self.nbytes = first, sum(map(_bytes, blocks.values()))
+            return next(iter(blocks.values()))
         steps: list[TimeStep] = []
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Notice)
-            for step in time_steps(mesh if series else first, self._block):
-                steps.append(step)
-                self.nbytes += _bytes(step.grid)
-                if self.nbytes > MAX_SERIES_BYTES:
-                    return steps[:1]
+        for step in time_steps(mesh if series else first, self._block):
+            steps.append(step)
+            self.nbytes += _bytes(step.grid)
+            if self.nbytes > MAX_SERIES_BYTES:
+                return steps[0].grid
         self._mesh = steps[0].grid if len(steps) == 1 else steps
         self._block = None
-        return steps
+        return steps[0].grid
 
 
 def _choices(mesh: Any, *, series: bool) -> Parts:
@@ -292,7 +280,7 @@ def _choices(mesh: Any, *, series: bool) -> Parts:
     if isinstance(mesh, (list, tuple)):
         return {}
     drawn, combination = drawn_parts(mesh, series=series)
-    if combination == "together" or (combination == "steps" and len(drawn) > 1):
+    if combination in ("together", "steps"):
         return {}
     others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
     parts = {**drawn, **others}

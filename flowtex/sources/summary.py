@@ -2,42 +2,30 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.sources.files import OpenFile, open_file
-from flowtex.sources.meshes.cuts import cut_faults
+from flowtex.sources.meshes.nodes import hidden_nodes
 from flowtex.sources.meshes.parts import (
-    Parts,
     drawn_parts,
-    hidden_nodes,
     is_reader,
-    is_structured,
     leaves,
     part_size,
     parts_of,
     pick,
     several_fault,
-    several_parts,
     time_steps,
     times_of,
 )
-from flowtex.sources.meshes.planes import plane_faults
-from flowtex.sources.meshes.vectors import (
-    MeshArray,
-    candidates,
-    catalogue,
-    values_of,
-    vector_faults,
-)
+from flowtex.sources.meshes.read import choose
+from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, values_of
 from flowtex.sources.reader_errors import errors_of_file
+from flowtex.sources.record import Record
 
 
 class ArraySummary(NamedTuple):
@@ -88,31 +76,36 @@ def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
 
 
 def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
-    parts = list(leaves(mesh))
+    parts, meshes = list(leaves(mesh)), list(parts_of(mesh))
     drawn = list(drawn_parts(mesh)[0].values())
     part = (drawn or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
-    data = hasattr(part, "point_data")
-    arrays = catalogue(part) if data else []
-    velocities = candidates(part) if data else []
-    vectors = file.velocity
-    names = dict.fromkeys(array.name for array in velocities) if vectors is None else [vectors]
+    is_mesh = hasattr(part, "point_data")
+    arrays = catalogue(part) if is_mesh else []
+    velocities = candidates(part) if is_mesh else []
+    names = dict.fromkeys(a.name for a in velocities) if file.velocity is None else [file.velocity]
     times = times_of(file.source)
     if isinstance(file.source, list):
         times = [float(step.time) for step in file.source]
-    drawn_mesh = mesh if block is None else part
+    series, whole = len(times) > 1, mesh if block is None else part
+    blocks = (
+        BlockSummary(name, meshes.index(name), type(p).__name__, part_size(p))
+        if name in meshes
+        else BlockSummary(name, None, type(p).__name__)
+        for name, p in parts
+    )
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
-        size=part_size(part) if data else "",
+        size=part_size(part) if is_mesh else "",
         cells=_cells(part),
-        bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
-        volume=data and part.max_cell_dimensionality == 3,
-        blocks=tuple(_blocks(parts, parts_of(mesh))) if len(parts) > 1 else (),
+        bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if is_mesh else (),
+        volume=is_mesh and part.max_cell_dimensionality == 3,
+        blocks=tuple(blocks) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))),
         candidates=tuple(names),
         times=tuple(times),
-        blanked=int(hidden_nodes(part).sum()) if data else 0,
-        problem=file.problem or _problem(drawn_mesh, vectors, series=len(times) > 1),
+        blanked=int(hidden_nodes(part).sum()) if is_mesh else 0,
+        problem=file.problem or _problem(whole, file.velocity, series=series),
     )
 
 
@@ -120,54 +113,30 @@ def _cells(mesh: Any) -> dict[str, int]:
     """Count the cells of each kind of an unstructured mesh, by names such as ``"tetra"``."""
     import pyvista as pv
 
-    if isinstance(mesh, pv.UnstructuredGrid):
-        types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
-        names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
-        return {name: int(count) for name, count in zip(names, counts, strict=True)}
-    if not isinstance(mesh, pv.PolyData):
+    if isinstance(mesh, pv.PolyData):
+        mesh = mesh.cast_to_unstructured_grid()
+    if not isinstance(mesh, pv.UnstructuredGrid):
         return {}
-    kinds = (
-        ("triangle" if mesh.is_all_triangles else "polygon", mesh.GetNumberOfPolys()),
-        ("triangle strip", mesh.GetNumberOfStrips()),
-        ("line", mesh.GetNumberOfLines()),
-        ("vertex", mesh.GetNumberOfVerts()),
-    )
-    return {name: int(count) for name, count in kinds if count}
-
-
-def _blocks(parts: list[tuple[str, Any]], meshes: Parts) -> Iterator[BlockSummary]:
-    numbers = {name: number for number, name in enumerate(meshes)}
-    for name, part in parts:
-        size = part_size(part) if name in meshes else ""
-        yield BlockSummary(name, numbers.get(name), type(part).__name__, size)
+    types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
+    names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
+    return dict(zip(names, map(int, counts), strict=True))
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
     """Return the choice that a field requires, or the reason why none can be made."""
-    if parts := several_parts(mesh, series=series):
-        return several_fault(parts, "the file")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Notice)  # issued when the field is made
-        try:
-            grid = next(time_steps(mesh)).grid
-        except FieldError as error:
-            return str(error)
-    if not is_structured(grid):
-        faults = cut_faults(grid, None)
-        return "; ".join(faults or vector_faults(grid, vectors))
-    faults = plane_faults(tuple(grid.dimensions), None)
-    if min(grid.dimensions) > 0:
-        faults += vector_faults(grid, vectors)
-    return "; ".join(faults)
+    if drawn_parts(mesh, series=series)[1] == "choose":
+        return several_fault(mesh, "the file")
+    try:
+        choose(next(time_steps(mesh)).grid, vectors, None, None, Record())
+    except FieldError as error:
+        return str(error)
+    return ""
 
 
 def _array(mesh: Any, array: MeshArray) -> ArraySummary:
-    low = high = float("nan")
-    if array.numeric:
-        values = values_of(mesh, array).astype(np.float64)
-        if array.components > 1:
-            values = np.linalg.norm(values.reshape(len(values), -1), axis=1)
-        values = values[np.isfinite(values)]
-        if len(values):
-            low, high = float(values.min()), float(values.max())
-    return ArraySummary(array.name, array.where, array.components, low, high, array.parts)
+    values = values_of(mesh, array).astype(np.float64) if array.numeric else np.empty(0)
+    if array.components > 1:
+        values = np.linalg.norm(values.reshape(-1, array.components), axis=1)
+    values = values[np.isfinite(values)]
+    ends = (float(values.min()), float(values.max())) if len(values) else (np.nan, np.nan)
+    return ArraySummary(array.name, array.where, array.components, *ends, array.parts)

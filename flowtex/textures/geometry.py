@@ -13,24 +13,28 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
-from flowtex._util.blocks import bounds
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.grids.surface import CubicMap, GridSurface, faces_of
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
-from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.triangles.topology import normals_at_corners
 
 #: Nodes looked up together, so few that they stay in a processor's cache.
 BLOCK = 16384
 #: Tangents that differ by less than this share of the longest make a map linear.
 LINEAR = 1e-6
+#: Share of a cell by which a displacement may pass a node, by rounding.
+ROUNDING = 1e-3
+#: Places on the way of a displacement where the surface is looked for.
+STEPS = 64
+#: How many times as far as on a straight surface a displacement leads at most.
+FARTHER = 3.0
 
 
 class NodeDisplacements:
@@ -52,14 +56,22 @@ class NodeDisplacements:
         self._shape = len(rows), len(columns)
         self._j, self._i = (a.ravel() for a in np.meshgrid(rows, columns, indexing="ij"))
         self._points = self._map.nodes[:, self._j * surface.shape[1] + self._i]
-        self._first = self._map.tangents[..., :1]
-        spread = np.abs(self._map.tangents - self._first).max()
+        known = surface.has_position
+        tangents = self._map.tangents[..., known.ravel()]
+        self._first = tangents[..., :1]
+        spread = np.abs(tangents - self._first).max(initial=0.0)
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
+
+        self._cells = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
+        #: Twice the nodes without a position before each, in its row and in its column; one more
+        #: at such a node.
+        self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
 
-        Terms of the cubics may be left out up to ``error``.
+        Terms of the cubics may be left out up to ``error``. Beyond nodes without a position, as
+        between the parts of a map, the surface continues straight.
         """
         rows, columns = self._shape
         along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
@@ -72,7 +84,53 @@ class NodeDisplacements:
             start = self._i[block], self._j[block]
             result[:, block] = self._map.at(along_i[block], along_j[block], start, error)
         result -= self._points
+        if self._unknown:
+            apart = self._parted(along_i, along_j)
+            straight, inside = self._straight(apart, along_i[apart], along_j[apart])
+            # A bent path may lead around such nodes, but not as far away as the next part.
+            inside &= np.linalg.norm(result[:, apart], axis=0) <= FARTHER * np.linalg.norm(
+                straight, axis=0
+            )
+            result[:, apart] = np.where(inside, result[:, apart], straight)
         return result.reshape(-1, rows, columns)
+
+    def _parted(self, along_i: Floats32, along_j: Floats32) -> Indices:
+        """Return numbers of the nodes between which and their displaced places some are unknown."""
+        (j, i), (by_row, by_column) = (self._j, self._i), self._unknown
+        to_j, to_i = (
+            np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)
+            for at, along, count in zip((j, i), (along_j, along_i), by_row.shape, strict=True)
+        )
+        to_j, to_i = to_j.astype(np.intp), to_i.astype(np.intp)
+        apart = (by_row[j, i] != by_row[j, to_i]) | (by_column[j, i] != by_column[to_j, i])
+        apart |= by_row[to_j, i] != by_row[to_j, to_i]
+        apart |= by_column[j, to_i] != by_column[to_j, to_i]
+        return np.flatnonzero(apart)
+
+    def _straight(
+        self, nodes: Indices, along_i: Floats32, along_j: Floats32
+    ) -> tuple[Floats32, Bools]:
+        """Return displacements (C, N) on a surface that is straight where positions are unknown.
+
+        It continues from the last place on the way there whose cell is known. The second value is
+        whether the cell at the end of the way is.
+        """
+        start, along = np.stack([self._j, self._i])[:, nodes], np.stack([along_j, along_i])
+        most = np.array(self._cells.shape)[:, None] - 1
+        share = np.zeros(len(nodes), np.float32)
+        is_known = np.ones(len(nodes), dtype=bool)
+        for part in np.linspace(0, 1, STEPS + 1, dtype=np.float32)[1:]:
+            place, inside = start + part * along, np.zeros(len(nodes), dtype=bool)
+            for beside in product((-ROUNDING, ROUNDING), repeat=2):  # on a line between cells
+                cell = np.clip(np.floor(place + np.array(beside)[:, None]), 0, most).astype(np.intp)
+                inside |= self._cells[tuple(cell)]
+            is_known &= inside
+            share[is_known] = part
+        j, i = np.clip(np.rint(start + share * along), 0, most + 1).astype(np.intp)
+        p, q = np.moveaxis(self._map.tangents[..., j * (most[1, 0] + 2) + i], 1, 0)
+        first = self._map.at(share * along_i, share * along_j, (start[1], start[0]))
+        first -= self._points[:, nodes]
+        return first + (1 - share) * (p * along_i + q * along_j), inside
 
 
 #: Most mip levels of a texture besides its finest one, and those of a tile.
@@ -420,146 +478,3 @@ class SurfaceGeometry(DrawnSurface):
 def _is_small(lengths: Floats) -> Bools:
     """Return which normals are those of collapsed cells, by their lengths."""
     return np.asarray(lengths <= 1e-9 * max(float(np.median(lengths)), 1e-300))
-
-
-@dataclass(frozen=True, eq=False)
-class TriangleGeometry(DrawnSurface):
-    """Triangles ready to be drawn.
-
-    Nodes fill the texels of a texture row by row, in any order: a fragment looks up the three of
-    its triangle by their numbers. So each triangle has three vertices to itself, each with the
-    numbers of the three nodes and the shares of the second and the third.
-    """
-
-    field: FlowField  #: The flow, with nodes (1, N).
-    nodes: slice | Indices  #: Numbers of the nodes that are drawn, (n,), or all of them.
-    triangles: Indices  #: Nodes at the corners of what is drawn, (m, 3), as numbers among these.
-    whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
-    #: Blocks that each triangle lies in, (m,): bit b is the block at row b // C of C columns, and
-    #: column b % C.
-    blocks: NDArray[np.uint16]
-    #: Centre, radius and longest side of a triangle of each block, (rows, C, 5).
-    block_places: Floats
-
-    #: Mip levels besides the finest: none, for other levels of detail are other meshes.
-    levels = 0
-    periodic = (False, False)
-
-    @classmethod
-    def of(cls, field: FlowField) -> TriangleGeometry:
-        """Lay out a field's surface."""
-        surface = field.surface
-        assert isinstance(surface, TriangleSurface)
-        triangles = surface.triangles[surface.cells]
-        return cls(
-            field, slice(None), triangles, surface, *_one_block(surface.points[0], triangles)
-        )
-
-    @classmethod
-    def of_tile(
-        cls,
-        field: FlowField,
-        nodes: Indices,
-        triangles: Indices,
-        whole: Surface,
-        blocks: tuple[NDArray[np.uint16], Floats] | None = None,
-    ) -> TriangleGeometry:
-        """Lay out some nodes (n,) and triangles (m, 3) of a field, as a part of a larger surface.
-
-        The triangles have numbers of the field's nodes, and are drawn as one block unless there are
-        ``blocks`` with their places.
-        """
-        number = np.zeros(field.shape[1], dtype=np.intp)
-        number[nodes] = np.arange(len(nodes))
-        blocks = blocks or _one_block(field.surface.points[0], triangles)
-        return cls(field, nodes, number[triangles], whole, *blocks)
-
-    @property
-    def drawn(self) -> tuple[slice, slice | Indices]:
-        """Index of the nodes that are drawn in arrays over those of the field, (1, N)."""
-        return slice(0, 1), self.nodes
-
-    @property
-    def texels(self) -> tuple[slice, slice | Indices]:
-        """The nodes of the field that lie in the textures: those that are drawn."""
-        return self.drawn
-
-    @property
-    def points(self) -> Floats:
-        """The nodes that are drawn, (1, n, 3), in the mesh's own coordinates."""
-        return self.field.surface.points[self.drawn]
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of nodes (1, n) that are drawn."""
-        return 1, self.points.shape[1]
-
-    @cached_property
-    def size(self) -> tuple[int, int]:
-        """Rows and columns (H, W) of texels: about a square, with a power of two as W."""
-        count = self.shape[1]
-        width = 1 << int(np.ceil(np.log2(max(count, 1)) / 2))
-        return -(-count // width), width
-
-    @property
-    def normal(self) -> Floats32:
-        """Unit normals at the nodes, (1, n, 3), in the mesh's own axes."""
-        surface = self.field.surface
-        assert isinstance(surface, TriangleSurface)
-        return surface.normals[self.drawn].astype(np.float32)
-
-    @property
-    def coordinate(self) -> Floats32:
-        """Shares of the second and the third corner at the corners, (m, 3, 2)."""
-        corners = np.array([[0, 0], [1, 0], [0, 1]], dtype=np.float32)
-        return np.broadcast_to(corners, (len(self.triangles), 3, 2))
-
-    @property
-    def faces(self) -> Indices:
-        """Vertices of each triangle, (m, 3)."""
-        return np.arange(self.triangles.size).reshape(-1, 3)
-
-    def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return a function from displacements in space, (1, n, 3), to a frame, (C, 1, n)."""
-        return lambda displacement, error: np.moveaxis(displacement @ frame.T, -1, 0)
-
-    @cached_property
-    def corners(self) -> Floats32:
-        """Numbers of the three nodes at each vertex, (3 m, 3)."""
-        return np.repeat(self.triangles.astype(np.float32), 3, axis=0)
-
-    def at_vertices(self, nodal: AnyArray) -> AnyArray:
-        """Return values at the vertices, (3 m, ...), from nodal ones, (1, n, ...)."""
-        return np.asarray(nodal[0][self.triangles.ravel()])
-
-    @property
-    def vertex_normals(self) -> Floats32:
-        """Unit normals at the vertices, (3 m, 3), in the mesh's own axes."""
-        points, normals = self.points[0][self.triangles], self.normal[0][self.triangles]
-        return normals_at_corners(points, normals).astype(np.float32).reshape(-1, 3)
-
-    @property
-    def drawn_vertices(self) -> Bools:
-        """Mask of the vertices that belong to a triangle, (3 m,): all."""
-        return np.ones(self.triangles.size, dtype=bool)
-
-    def as_image(self, values: AnyArray) -> AnyArray:
-        """Return values at the vertices (3 m,) as an image of the nodes (H, W), as in textures."""
-        image = np.zeros(self.size, values.dtype)
-        image.reshape(-1)[self.triangles.ravel()] = values
-        return image
-
-    def write_texels(self, data: Floats32, texels: AnyArray) -> None:
-        """Write data (1, n, C) of the nodes into texels (H, W, C)."""
-        flat = texels.reshape(-1, texels.shape[-1])
-        flat[: data.shape[1]] = data[0]
-        flat[data.shape[1] :] = 0
-
-
-def _one_block(points: Floats, triangles: Indices) -> tuple[NDArray[np.uint16], Floats]:
-    """Return one block for triangles (m, 3) of points (N, 3): its masks (m,) and its place."""
-    corners = points[triangles]
-    center = bounds(corners.reshape(-1, 3)).mean(axis=0)
-    radius = np.linalg.norm(corners - center, axis=-1).max()
-    side = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max()
-    return np.ones(len(triangles), np.uint16), np.array([[[*center, radius, side]]])

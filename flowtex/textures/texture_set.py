@@ -40,8 +40,9 @@ from flowtex.field import FlowField
 from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
 from flowtex.settings import Settings, SettingsError
-from flowtex.textures.geometry import SurfaceGeometry, TriangleGeometry
+from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
+from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace import SliceStore, TraceSlices
 from flowtex.trace.lags import typical_speed
 

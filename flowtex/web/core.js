@@ -509,17 +509,17 @@ floor((high+slack)/step)];if(!(last-first+1>most))return Array.from({length:last
 return{value,text:textOf(value,step,Math.max(Math.abs(low),Math.abs(high)))}})}}function degreeTicks(low,high,letters,most=5){
 let step=DEGREES2.find(each=>Math.floor(high/each)-Math.ceil(low/each)<most);return(high-low<3*DEGREES2[0]||step===void 0?
 ticksOf(low,high,!1,most):Array.from({length:Math.floor(high/step)-Math.ceil(low/step)+1},(_,n)=>{let value=(Math.ceil(low/
-step)+n)*step;return{value,text:String(value)}})).map(({value,text})=>{let turned=value-360*Math.round(value/360),digits=text.
-split(".")[1]?.length??0,side=turned===0||Math.abs(turned)===180?"":letters[+(turned<0)];return{value,text:`${Math.abs(turned).
-toFixed(digits)}°${side}`}})}function decades(low,high,most){let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.
-log10(high))],powers=Array.from({length:last-first+1},(_,n)=>first+n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+
-SAME),valuesOf=(factors,every)=>powers.filter(power=>power%every===0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).
-filter(isInside),finer=[...DECADES].reverse().map(factors=>valuesOf(factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf(
-[1],n+2)),chosen=[...finer,...coarser].find(values=>values.length<=most);if(!(!chosen||chosen.length<3))return chosen.map(
-value=>({value,text:textOf(value,value,value)}))}function textOf(value,step,size=Math.abs(value)){if(value===0)return"0";
-let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?1:0;if(size>=LARGE||size<SMALL){
-let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,power]=value.toExponential(Math.
-min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.toFixed(Math.max(digits+isHalf,
+step)+n)*step;return{value,text:String(value)}})).map(({value,text})=>{let turned2=value-360*Math.round(value/360),digits=text.
+split(".")[1]?.length??0,side=turned2===0||Math.abs(turned2)===180?"":letters[+(turned2<0)];return{value,text:`${Math.abs(
+turned2).toFixed(digits)}°${side}`}})}function decades(low,high,most){let[first,last]=[Math.floor(Math.log10(low)),Math.
+ceil(Math.log10(high))],powers=Array.from({length:last-first+1},(_,n)=>first+n),isInside=value=>value>=low*(1-SAME)&&value<=
+high*(1+SAME),valuesOf=(factors,every)=>powers.filter(power=>power%every===0).flatMap(power=>factors.map(factor=>+`${factor}\
+e${power}`)).filter(isInside),finer=[...DECADES].reverse().map(factors=>valuesOf(factors,1)),coarser=powers.slice(1).map(
+(_,n)=>valuesOf([1],n+2)),chosen=[...finer,...coarser].find(values=>values.length<=most);if(!(!chosen||chosen.length<3))
+return chosen.map(value=>({value,text:textOf(value,value,value)}))}function textOf(value,step,size=Math.abs(value)){if(value===
+0)return"0";let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?1:0;if(size>=LARGE||
+size<SMALL){let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,power]=value.toExponential(
+Math.min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.toFixed(Math.max(digits+isHalf,
 0)))}var minus=text=>text.replace("-","−");var SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,SAME_LATITUDE=.1,[POLE_SHARE,HALF_TURN]=[1/64,180.1],MOST_BACK=.02,
 [LETTER_PX,GAP_PX,ROW_PX]=[6.5,14,34],[TICK_PX,LINE_PX]=[4,13],ASIDE_PX=42,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,
 COORDINATES=["x","y","z"],fitting=(name,room)=>name.length*LETTER_PX>room?name.replace(/ .*/,""):name;function placedTicks({
@@ -662,46 +662,7 @@ let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.backg
 c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),
 !(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({
 scalars}){let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.
-reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
-1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
-[ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
-for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
-half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
-path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf2(line)}]),
-isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).
-filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,
-"whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
-on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
-map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
-"point")]}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
-let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
-cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;place;constructor(header,places){
-this.header=header;let start=0,starts=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
-typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts[level]+row2*header.blocks[level][1]+column);
-return places.subarray(at,at+PLACE)}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
-ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends2=[Math.min(size*(row2+1),rows),Math.min(size*(column+
-1),columns)];return[size*row2,size*column,...ends2]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
-counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
-map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
-level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
-[0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
-finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
-pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
-bottom;j+=1)for(let i=left;i<right;i+=1){let place=this.place(key[0],j,i);if(!isSeen(view,place))continue;let pixels=cellSize(
-view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.
-pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row2,column,
-size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row2,block%width-column];
-return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};
-function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({
-eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*
-.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).
-sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.
-delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.
-filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),
-!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
-level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
-let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
-(Math.min((low+1)*step,nodes-1)-low*step)}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -713,24 +674,7 @@ return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersO
 j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
 this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
-end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
-scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
-before,after,between3]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between3,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
-return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
-triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
-scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
-layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
-share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
-i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
-tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
-j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
-geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}
-function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.
-choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(
-from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)
-continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -783,8 +727,9 @@ late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[b
 function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)return moved=>add(position,fromFrame(geometry.
 frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,place[0]),between(alongJ,place[1])],start=pointAt(scene,place);
 return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,
-subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.cornersAt(
-place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,local)}function sidesAt(scene,place){
+subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(pointAt(scene,place),scene.header.geometry.
+center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(
+c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,local)}function sidesAt(scene,place){
 let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(
 place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0))]}let[i,j]=place.map(
 (n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(at(.5,0),at(-.5,0)),subtract2(
@@ -802,16 +747,92 @@ pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(setting
 settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
 let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
 0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
-function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
-directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL2*
-(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
-position):slope,velocity=scale2(unit(along2),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
-sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
-layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
-points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,
-count2=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{
-let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(
-PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
+function velocityAt(at){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[
+x,y,z],small=scale2(slope,SMALL2*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?
+subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(2)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
+let{scene,position}=at,{slices,paper}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
+slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
+sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
+lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}
+let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=sides===2?Math.floor(samples/
+2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(
+side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,
+FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
+i,j]){return[[i,j],[i+1,j],[i,j+1],[i+1,j+1]]}function cellOf({header},place){return place.map((at,axis)=>clamp(Math.floor(
+at),0,header.geometry.shape[1-axis]-2))}var sharesOf=([s,t])=>[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t];function sharesIn(scene,cell,[
+lon,lat],places){let{earth}=scene.header,known=cornersOf2(cell).map(node=>earth&&lonLatOf(earth,nodeAt(scene,node),places));
+if(known.some(each=>!each||Math.abs(each[1])>POLE_LATITUDE))return null;let[a,b,c,d]=known.map(each=>[turned(each[0]-lon),
+each[1]-lat]),[first,second]=[b,c].map(each=>[each[0]-a[0],each[1]-a[1]]),size=Math.max(...[...first,...second].map(Math.
+abs)),area=first[0]*second[1]-first[1]*second[0];return!area||[0,1].some(k=>Math.abs(a[k]-b[k]-c[k]+d[k])>SKEW*size)?null:
+[(a[1]*second[0]-a[0]*second[1])/area,(a[0]*first[1]-a[1]*first[0])/area]}function placeOnEarth(scene,near,position,places){
+let{earth,geometry}=scene.header,lonLat=earth&&!geometry.triangles&&lonLatOf(earth,position,places);if(!lonLat)return near;
+let cell=cellOf(scene,near);for(let n=0;n<MOST_CELLS;n+=1){let shares2=sharesIn(scene,cell,lonLat,places);if(!shares2)return near;
+let beyond=shares2.map(share=>Math.abs(share-.5)>.5+ROUNDING?share:0),beside=cellOf(scene,cell.map((first,k)=>first+beyond[k]));
+if(String(beside)===String(cell))return cell.map((at,k)=>at+clamp(shares2[k],0,1));cell=beside}return near}function cornersOn(scene,place){
+let{earth,geometry}=scene.header;if(!earth||geometry.triangles)return scene.cornersAt(place);let cell=cellOf(scene,place),
+shares2=sharesOf(place.map((at,k)=>at-cell[k]));return cornersOf2(cell).map(([i,j],n)=>[j*geometry.shape[1]+i,shares2[n]])}
+function velocityOnEarth(at,places){let{scene,place,position}=at,{earth,geometry}=scene.header,lonLat=earth&&lonLatOf(earth,
+position,places);if(!lonLat)return null;let componentsAt=each=>eastNorth(earth,each.position,velocityAt(each),places),cell=cellOf(
+scene,place);if(geometry.triangles||!sharesIn(scene,cell,lonLat,places))return componentsAt(at);let shares2=sharesOf(place.
+map((each,k)=>each-cell[k])),corners=cornersOf2(cell).map(node=>componentsAt({...at,place:node,position:nodeAt(scene,node)}));
+return[0,1].map(k=>corners.reduce((sum,each,n)=>sum+shares2[n]*each[k],0))}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
+[ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
+for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
+half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
+path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf2(line)}]),
+isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).
+filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,
+"whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
+on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
+map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
+"point")]}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
+cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;place;constructor(header,places){
+this.header=header;let start=0,starts=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
+typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts[level]+row2*header.blocks[level][1]+column);
+return places.subarray(at,at+PLACE)}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends2=[Math.min(size*(row2+1),rows),Math.min(size*(column+
+1),columns)];return[size*row2,size*column,...ends2]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
+counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
+map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
+level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
+[0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
+finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
+pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
+bottom;j+=1)for(let i=left;i<right;i+=1){let place=this.place(key[0],j,i);if(!isSeen(view,place))continue;let pixels=cellSize(
+view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.
+pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row2,column,
+size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row2,block%width-column];
+return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};
+function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({
+eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*
+.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).
+sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.
+delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.
+filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),
+!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
+level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
+let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
+(Math.min((low+1)*step,nodes-1)-low*step)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
+scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
+before,after,between3]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between3,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,near=geometry.
+triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),position=positionAt(layer.scene,camera,layer.scene.cornersAt(
+near),x,y),place=placeOnEarth(layer.scene,near,position,layers[0].scene.parts.get("lonlat")),corners=cornersOn(layer.scene,
+place),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.
+scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
+share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
+i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
+j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
+geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}
+function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.
+choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(
+from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)
+continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
 let element=document.createElementNS(SVG2,tag);for(let[name,value]of Object.entries(attributes))element.setAttribute(name,
 `${value}`);return element}function fitting2(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,
 -y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(
@@ -856,27 +877,27 @@ ask(this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=th
 !shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.
 scene,position=point.position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)
 return;let now={...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now,header,camera),this.share(now,
-position,[])}let at={scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact};
-this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,
-rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){
-let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(
-point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(
-earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,
-VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(
-velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","\
-velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.
-entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
-withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.
-set(word,text);this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),
-this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)
-return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.project(point2);return place&&
-[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf))place?
-lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.
-path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({
-position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:
-[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});
-this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.createElementNS(SVG3,tag);for(let[name,
-value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+position,[])}let at={scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},
+eastNorth2=velocityOnEarth(at,this.host.parts.get("lonlat"))??void 0;this.tell({...point,values:valuesAt(scene,shown,cornersOn(
+scene,place)),eastNorth:eastNorth2},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.
+explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{unit:unit2}=header.
+speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),
+lines=new Map,where=placeText(point.position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;
+lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(
+numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));
+lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(
+size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
+each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.
+set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(...[...lines].
+flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){
+let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{
+let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[
+[]];for(let place of points.map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(
+line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.
+map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,
+radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},
+shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.
+createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1339,8 +1360,8 @@ SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.01,[STEPS2,MOST_STEPS,BEGIN,END]=[800
 a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
 let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
 (2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
-2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sour\
-ce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
+2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned2=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sou\
+rce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned2:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
 [value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
 "saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;return{at,kind,steepness,ways}}function fixedPoints(rate,[
 xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),
@@ -1390,8 +1411,8 @@ isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({path,isSta
 {place,out}}}}return found}function trajectory(rate,ends2,at){let points=fixedPoints(rate,ends2),step=Math.hypot(...ends2.
 map(([low,high])=>high-low))/STEPS2,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(ahead,step,CLOSED);return closed?
 ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.slice(1)]}function windsAround(path,[
-x,y]){let turned=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(at=>difference(at,[x,y]));turned+=
-Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(at=>difference(at,[x,y]));turned2+=
+Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
 let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
 MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
 2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
@@ -1399,8 +1420,8 @@ Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{le
 NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),
 share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[
 ...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
-let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
-length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
+let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf2=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
+length;n+=1){let[i,j]=cellOf2(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
 1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(
 path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/
 Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??
@@ -1513,13 +1534,13 @@ timeOf(shown),clock:player.clock,still:!player.playing,density,pixel:2*camera.he
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
-a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
+a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING2=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
 0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],
 m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
-abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
-every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
-4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(
+abs((a*x+c*y+e)/w-1)<1+ROUNDING2&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING2,covers=[[0,0],[width,0],[0,height],[width,height]].
+every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING2;if(shifts)
+for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(
 0,0,picture.width,picture.height),pen?.drawImage(picture,0,0)}var penOf=(canvas,alpha)=>canvas.getContext("2d",{alpha}),
 ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
 createElement("canvas");lastPen;lastCamera=null;coarse=document.createElement("canvas");coarsePen;front=document.createElement(
@@ -1688,11 +1709,11 @@ parts.get("cells")?.data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cel
 24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends2=new Type(size*pieces.
 length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends2[size*n+k]=values[size*pieces[n]+k];return ends2}function lightUniforms({
 geometry,bodies},camera){let[right,up,ahead]=camera.axes,lights=(bodies?.lights??[]).slice(0,LIGHTS),ways=lights.map(({way,
-turns})=>{let turned=add(add(scale2(right,way[0]),up,way[1]),ahead,-way[2]);return toFrame(geometry.frame,turns?turned:way)}),
-padded=vectors=>Float32Array.from({length:3*LIGHTS},(_,n)=>vectors.flat()[n]??0);return{u_lightWays:padded(ways),u_lightColours:padded(
-lights.map(({color})=>color))}}var Bodies=class{graphics;header;parts;drawn=null;constructor(graphics,header,parts){this.
-graphics=graphics,this.header=header,this.parts=parts}get labels(){return this.header.bodies?.labels??[]}get runs(){let{
-bodies}=this.header;return bodies&&BODY_PARTS.every(name=>this.parts.has(name))?bodies.runs:[]}get areBehind(){return this.
+turns})=>{let turned2=add(add(scale2(right,way[0]),up,way[1]),ahead,-way[2]);return toFrame(geometry.frame,turns?turned2:
+way)}),padded=vectors=>Float32Array.from({length:3*LIGHTS},(_,n)=>vectors.flat()[n]??0);return{u_lightWays:padded(ways),
+u_lightColours:padded(lights.map(({color})=>color))}}var Bodies=class{graphics;header;parts;drawn=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}get labels(){return this.header.bodies?.labels??[]}get runs(){
+let{bodies}=this.header;return bodies&&BODY_PARTS.every(name=>this.parts.has(name))?bodies.runs:[]}get areBehind(){return this.
 runs.length>0&&this.header.opacity<1}get programs(){let{programs}=this.graphics,{bodyVertex,bodyFragment,lineVertex,lineFragment}=this.
 header.shaders;return[programs.get(bodyVertex,bodyFragment),programs.get(lineVertex,lineFragment,"FLOWTEX_BODY"),programs.
 get(bodyVertex,bodyFragment,"FLOWTEX_HIDING")]}get isReady(){return!this.runs.length||this.programs.every(({ready})=>ready)}dispose(){

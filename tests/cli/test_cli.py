@@ -184,7 +184,7 @@ def test_flow_that_leaves_the_surface_is_told(
             "render {gyre} -o {tmp}/a.png --isel number=x",
             "--isel is number=x; expected an axis and a whole number",
         ),
-        ("render {gyre} -o {tmp}/a.png --isel number=2", "--isel applies to data of the Earth"),
+        ("render {gyre} -o {tmp}/a.png --isel number=2", "--isel applies to datasets, but this"),
         ("render {gyre} -o {tmp}/a.png --log-scale --clim 0,1", "--log-scale is True"),
         (
             "render {gyre} -o {tmp}/a.png --beside lod",

@@ -150,6 +150,7 @@ def test_an_array_beside_a_surface_is_as_long_as_it_says(tmp_path: Path) -> None
     assert "is not a NumPy array" in refused(tmp_path / "ball.stl")
 
 
+@pytest.mark.filterwarnings("ignore:.*of the flow is normal to the surface")
 @pytest.mark.parametrize("compressor", ["zlib", None])
 def test_what_does_not_fit_into_memory_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compressor: Any

@@ -22,8 +22,11 @@ from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid import Built, PyramidError, build, is_store, open_store, tasks
 from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.layout import about_source, empty_field
 from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.source import FieldSource
 from flowtex.pyramid.stored import StoredPyramid
+from flowtex.scene.scene import Scene
 from flowtex.textures.tiles import Pyramid, TileKey, shared_pyramid
 from flowtex.trace.store import shared_store
 
@@ -196,6 +199,23 @@ def test_what_a_field_is_called_comes_with_it(tmp_path: Path, stores: Stores) ->
         assert getattr(root, name) == getattr(field, name)
     assert is_store(store)
     assert not is_store(tmp_path)
+
+
+def test_values_of_a_store_have_the_unit_of_the_data(tmp_path: Path) -> None:
+    pytest.importorskip("pint")
+    x, y = np.meshgrid(np.linspace(-2, 2, 41), np.linspace(-1, 1, 21))
+    velocity = np.stack([-y, x], axis=-1)
+    points = np.stack([x, y], axis=-1)
+    field = FlowField.from_arrays(points, velocity, length_unit="mm", velocity_unit="m/s")
+    build(field, tmp_path / "mm.zarr", progress=False)
+    root = open_store(tmp_path / "mm.zarr")
+    assert root.unit_of("speed") == "m/s"
+    fastest = [float(np.max(root.speed)), Scene.of(root).scalar_limits[1]]
+    assert fastest == pytest.approx([np.sqrt(5)] * 2, rel=1e-3)
+    # Stores of earlier versions do not name it.
+    about = {**about_source(FieldSource(field), "arclength", "streamlines")}
+    del about["velocity_unit"]
+    assert empty_field(about).unit_of("speed") == "mm/s"
 
 
 def test_a_level_is_a_dataset_of_xarrays(stores: Stores) -> None:

@@ -313,7 +313,7 @@ def test_a_mesh_makes_the_pyramid_of_its_field(tmp_path: Path) -> None:
     np.testing.assert_array_equal(one.velocity, other.velocity)
     assert np.ptp(one.speed) > 0
     assert Scene(one).scalar_limits == pytest.approx((9.5, 10.5), abs=0.01)
-    with pytest.raises(FieldError, match="level applies to data of the Earth"):
+    with pytest.raises(FieldError, match="level applies to datasets, but"):
         build(mesh, tmp_path / "c.zarr", progress=False, level=500)
 
 

@@ -25,10 +25,15 @@ pv = pytest.importorskip("pyvista")
 
 Floats = NDArray[np.float64]
 
+#: The flows of these tests go through their meshes.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+)
+
 KNOWN = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or data of the Earth (.nc, .zarr, .grib, "
-    ".json)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
+    ".grib, .json, .geojson, .csv, .vec)"
 )
 
 

@@ -13,6 +13,7 @@ from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, WHOLE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
+from flowtex.field.earth import Projection
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene.options import Options
@@ -219,3 +220,32 @@ def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
     client.page.keyboard.press("Escape")
     assert client.page.locator("svg.path .point").count() == 0
     client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
+
+
+@pytest.mark.parametrize("projection", ["globe", "mercator", "robinson"])
+def test_the_card_has_the_values_of_the_data_on_every_map(
+    client: ClientPage, projection: str
+) -> None:
+    lon, lat = np.meshgrid(np.arange(0, 61, 2.5), np.arange(20, 71, 2.5))
+    drawn = Projection(projection, (30.0, 45.0))
+    # As of datasets, the scalar is the speed on the Earth.
+    u, v = 8 + np.sin(np.radians(3 * lon)), 4 * np.cos(np.radians(2 * lat))
+    field = FlowField.from_arrays(
+        drawn.positions(lon, lat),
+        drawn.vectors(lon, lat, u, v),
+        projection=drawn,
+        length_unit="m",
+        time_unit="s",
+        scalars={} if projection == "globe" else {"speed": np.hypot(u, v)},
+        units={"speed": "m/s"},
+    )
+    mount(client, field)
+    client.page.wait_for_function("() => viewers[0].canPick")
+    point = client.page.evaluate("() => viewers[0].card.choose(0.11, 0.07)")
+    expected = field.at(*map(float, drawn.lonlat(np.array(point["position"]))))
+    assert expected is not None
+    got = card(client.page)
+    assert list(got) == ["place", "eastward", "northward", "speed"]
+    parts = [float(got[name].removesuffix(" m/s")) for name in list(got)[1:]]
+    same = [expected.eastward, expected.northward, expected.speed]
+    assert parts == pytest.approx(same, abs=1e-2)  # with three digits

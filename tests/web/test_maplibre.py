@@ -336,6 +336,20 @@ def test_a_click_is_answered_by_the_data(currents_shown: Shown) -> None:
     assert shown.page.evaluate(ask, [-10, 40]) is None  # the island
 
 
+@pytest.mark.parametrize("scene", ["flow.json", "around.json"])
+def test_a_point_has_the_values_of_the_data_at_every_zoom(shown: Shown, scene: str) -> None:
+    shown.replace(scene)
+    data = around() if scene == "around.json" else currents().isel(time=0)
+    places = [(-33.37, 38.81), (-30.2, 42.3)]
+    for zoom in (1.5, 3.0, 6.0):
+        shown.go(center=[-32.0, 40.5], zoom=zoom)
+        for lng, lat in places:
+            found = shown.page.evaluate("([lng, lat]) => flow.pointAt({ lng, lat })", [lng, lat])
+            expected = data.interp(lon=lng, lat=lat)
+            parts = [float(expected.u), float(expected.v)]
+            assert [found["eastward"], found["northward"]] == pytest.approx(parts, abs=2e-3)
+
+
 def test_the_map_asks_for_the_tiles_that_it_shows(
     currents_shown: Shown, server: RangeServer
 ) -> None:

@@ -143,7 +143,9 @@ def values_of(point: PointValues, index: tuple[float, float]) -> Header:
     """Return a point for the client."""
     j, i = index
     values = {SPEED: point.speed, **point.scalars}
+    on_earth = {"eastNorth": [point.eastward, point.northward]} if point.lonlat else {}
     return {
+        **on_earth,
         "position": point.position.tolist(),
         "index": [i, j],
         "values": {name: float(value) for name, value in values.items()},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Self
 
 from flowtex.errors import FieldError
 from flowtex.field.derived import (
@@ -19,7 +19,7 @@ from flowtex.field.steps import Steps
 class FieldQuantities:
     """Quantities that are computed from the arrays of a field, which inherits this class."""
 
-    def derive(self: Any, name: str, *, horizon: float | None = None) -> Steps:
+    def derive(self, name: str, *, horizon: float | None = None) -> Steps:
         """Compute a scalar from the velocity and its gradient along the surface.
 
         Parameters
@@ -58,14 +58,15 @@ class FieldQuantities:
         >>> field.derive("vorticity").shape
         (1, 41, 81)
         """
-        if self.sign_free:
+        field: Any = self
+        if field.sign_free:
             msg = f"{name} needs a direction, but this field is sign-free"
             raise FieldError(msg)
         if horizon is not None or name in FOLLOWED:
-            return followed_steps(name, self, horizon)
-        return derived_steps(name, self.surface, self.projection, self.velocity)
+            return followed_steps(name, field, horizon)
+        return derived_steps(name, field.surface, field.projection, field.velocity)
 
-    def with_derived(self: Any, name: str, *, horizon: float | None = None) -> Any:
+    def with_derived(self, name: str, *, horizon: float | None = None) -> Self:
         """Return the field with the result of ``derive`` among its scalars.
 
         Examples
@@ -75,13 +76,15 @@ class FieldQuantities:
         >>> sorted(field.with_derived("shear").scalars)
         ['shear', 'vorticity']
         """
-        return self.same_flow(
-            scalars={**self.scalars, name: self.derive(name, horizon=horizon)},
-            units={**self.units, name: derived_unit(name, self)},
-            long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
+        field: Any = self
+        result: Self = field.same_flow(
+            scalars={**field.scalars, name: self.derive(name, horizon=horizon)},
+            units={**field.units, name: derived_unit(name, field)},
+            long_names={**field.long_names, name: LONG_NAMES.get(name, name)},
         )
+        return result
 
-    def at(self: Any, x: float, y: float, z: Any = None, time: Any = None) -> PointValues | None:
+    def at(self, x: float, y: float, z: Any = None, time: Any = None) -> PointValues | None:
         """Return the values at a point and a time; ``None`` outside the data.
 
         Parameters
@@ -110,9 +113,10 @@ class FieldQuantities:
         >>> round(flowtex.examples.double_gyre_field().at(0.5, 0.25).speed, 3)
         0.222
         """
-        if self.projection is not None and z is not None:
+        field: Any = self
+        if field.projection is not None and z is not None:
             if time is not None:
                 msg = f"z is {z}, but the field lies on the Earth; omit z"
                 raise FieldError(msg)
             z, time = None, z
-        return point_at(self, (x, y) if z is None else (x, y, z), time)
+        return point_at(field, (x, y) if z is None else (x, y, z), time)

@@ -7,21 +7,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex.field.earth.projection import EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
 
 COASTS = Path(__file__).with_name("coastlines.npz")
 #: Stored steps of a degree, as in tools/coastlines.py.
 STEPS_PER_DEGREE = 100
 #: Longest piece of a line in degrees.
 LONGEST_PIECE = 1.0
-#: A piece is torn where its middle is farther than this share of it from the middle of its ends.
-MOST_BENT = 0.2
+#: A piece may be torn if its middle is farther than the first share of it from the middle of its
+#: ends, and is so from the second one on, as where it leads along the outline of a map.
+BENT, MOST_BENT = 0.05, 0.2
+#: Share of a torn piece that its tear is wide, at least.
+LEAST_TEAR = 0.02
 #: Scale beyond which a map has no lines: they go to infinity, as at a pole.
 MOST_STRETCHED = 20.0
 #: Least length of a thinned line in spacings: islands of that length are some pixels wide.
@@ -174,8 +177,9 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     ``joined`` is whether each point but the last is joined to the next one.
     """
     first, last, place = _pieces(lonlat, joined)
-    torn = _is_torn(projection, first, last)
-    before, after = tear(projection, first[torn], last[torn])
+    torn, *sides = tears(projection, first, last)
+    ends = first[torn], last[torn]
+    before, after = (between(*ends, share, straight=False) for share in sides)
     # Both parts of a torn piece follow each other, and are joined to pieces that are not torn.
     gap = np.full(int(torn.sum()), np.nan)
     (left, right), (torn_left, torn_right) = place[~torn].T, place[torn].T
@@ -213,26 +217,52 @@ def _lengths(first: Floats, last: Floats) -> Floats:
     return np.asarray(EARTH_RADIUS * np.linalg.norm(steps, axis=1))
 
 
-def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
-    """Return which pieces have ends on opposite sides of a map, or one end outside it."""
-    start, middle, stop = (projection.positions(*p.T) for p in (first, (first + last) / 2, last))
+def tears(
+    projection: Projection, first: Floats, last: Floats, *, straight: bool = False
+) -> tuple[Bools, Floats, Floats]:
+    """Find the pieces between longitudes and latitudes, (N, 2), that a map tears apart.
+
+    A piece leads the shorter way around the Earth, or is ``straight`` as a great circle. Returns
+    which pieces are torn, (N,), with ends on opposite sides of a map or one end outside it, and of
+    these the shares just before and just after the tear, (T,).
+    """
+    place = partial(between, straight=straight)
+    start, middle, stop = (
+        projection.positions(*place(first, last, np.full(len(first), share)).T)
+        for share in (0.0, 0.5, 1.0)
+    )
+    length = np.linalg.norm(stop - start, axis=1)
     bend = np.linalg.norm(middle - (start + stop) / 2, axis=1)
-    beside = np.isnan(start[:, 0]) != np.isnan(stop[:, 0])
-    bent = bend > MOST_BENT * np.linalg.norm(stop - start, axis=1)
-    return np.asarray(beside | bent)
-
-
-def tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, Floats]:
-    """Return longitude and latitude just before and just after the tear in each piece, (N, 2)."""
-    low, high = first.copy(), last.copy()
+    missing = np.isnan([start[:, 0], stop[:, 0]])
+    torn = ~missing.all(axis=0) & ~(bend <= BENT * length)
+    first, last, length, bend, a, b = (x[torn] for x in (first, last, length, bend, start, stop))
+    low, high = np.zeros(len(first)), np.ones(len(first))
     for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        a, m, b = (projection.positions(*p.T) for p in (low, middle, high))
+        half = (low + high) / 2
+        m = projection.positions(*place(first, last, half).T)
         missing = np.isnan([a[:, 0], m[:, 0], b[:, 0]])
         to_low, to_high = (np.linalg.norm(m - end, axis=1) for end in (a, b))
         is_low = np.where(missing.any(axis=0), missing[1] == missing[0], to_low < to_high)
-        low[is_low], high[~is_low] = middle[is_low], middle[~is_low]
-    return low, high
+        low, high = np.where(is_low, half, low), np.where(is_low, high, half)
+        a, b = np.where(is_low[:, None], m, a), np.where(is_low[:, None], b, m)
+    wide = ~(np.linalg.norm(b - a, axis=1) <= LEAST_TEAR * length) | (bend > MOST_BENT * length)
+    torn[torn] = wide
+    return torn, low[wide], high[wide]
+
+
+def between(first: Floats, last: Floats, share: Floats, *, straight: bool) -> Floats:
+    """Return places (N, 2) at shares, (N,), of pieces as in :func:`tears`."""
+    share = share[:, None]
+    if straight:
+        globe = Projection(GLOBE)
+        one, other = (globe.positions(*end.T) for end in (first, last))
+        place = np.stack(globe.lonlat((1 - share) * one + share * other), axis=-1)
+    else:
+        steps = last - first
+        steps[:, 0] = (steps[:, 0] + 180) % 360 - 180
+        place = first + share * steps
+    # The ends themselves may lie on a meridian where a map is torn.
+    return np.where(share == 0, first, np.where(share == 1, last, place))
 
 
 def _assembled(starts: Floats, stops: Floats, left: AnyArray, right: AnyArray) -> MapLines:

@@ -51,7 +51,7 @@ METHODS = {
 #: Robinson differ by a metre where they meet: shorter steps turned directions by up to 3 degrees.
 STEP, NEAREST_POLE = 0.02, 0.5
 #: A step that is longer than the opposite one by this factor crosses a tear.
-TORN = 100.0
+TORN = 2.0
 #: Factor by which a position outside the map is moved towards its middle.
 INSIDE = 1 - 1e-7
 
@@ -190,28 +190,22 @@ class Projection:
             raise ProjectionError(msg) from error
 
     @cached_property
-    def _transforms(self) -> tuple[Transformer, Transformer]:
-        """Transforms that wrap longitudes, and that continue beyond the edge of a map."""
+    def _transform(self) -> Transformer:
         make = import_extra("pyproj", "xarray").Transformer.from_crs
-        pair = (
-            make(self._crs.geodetic_crs, self._crs, always_xy=True, force_over=over)
-            for over in (False, True)
-        )
-        return tuple(pair)
+        transform: Transformer = make(self._crs.geodetic_crs, self._crs, always_xy=True)
+        return transform
 
-    def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
+    def positions(self, lon: Floats, lat: Floats) -> Floats:
         """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
 
-        They are NaN where the projection is undefined. With ``beyond``, longitudes beyond the edge
-        of a named map continue beyond it; otherwise they return on the other side.
+        They are NaN where the projection is undefined.
         """
         if self.is_globe:
             a, b = np.radians(lon), np.radians(lat)
             parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
             return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
         lon, lat = np.broadcast_arrays(lon, lat)
-        transform = self._transforms[beyond]
-        x, y = transform.transform(lon - self._origin, lat, errcheck=False)
+        x, y = self._transform.transform(lon - self._origin, lat, errcheck=False)
         points = np.stack([x, y, np.zeros(np.shape(x))], axis=-1)
         points[~np.isfinite(points).all(axis=-1)] = np.nan
         return points
@@ -262,7 +256,7 @@ class Projection:
         x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
         if self.is_globe:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
-        inverse = partial(self._transforms[0].transform, direction="INVERSE", errcheck=False)
+        inverse = partial(self._transform.transform, direction="INVERSE", errcheck=False)
         lon, lat = inverse(x, y)
         finite = np.isfinite(lon) & np.isfinite(lat)
         if not finite.all():  # some lie on the outline, and by rounding outside it

@@ -196,7 +196,10 @@ class GridSurface(Surface):
 
     @cached_property
     def tangents(self) -> Floats:
-        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
+        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell.
+
+        Nodes without a position have those of the nearest one.
+        """
         good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]
@@ -208,7 +211,7 @@ class GridSurface(Surface):
         for b in row_blocks(*self.shape):
             for out, (before, after, known, further) in zip(result, sides, strict=True):
                 _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
-        return result
+        return fill_blanked(result, self.has_position, axis=1)
 
     @cached_property
     def cell_size(self) -> Floats:
@@ -278,8 +281,11 @@ class CubicMap:
         self.tangents: AnyArray = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
         self._offset: AnyArray = (surface.offset @ frame.T).astype(dtype)
         nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
-        by_i = np.diff(nodes, 2, axis=2)
-        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], np.diff(nodes, 2, axis=1)[:, :, 1:-1])
+        # Beside a node without a position the surface is straight.
+        known = np.pad(surface.has_position, 1, mode="edge")
+        by_i = np.diff(nodes, 2, axis=2) * (known[:, 2:] & known[:, 1:-1] & known[:, :-2])
+        by_j = np.diff(nodes, 2, axis=1) * (known[2:] & known[1:-1] & known[:-2])
+        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], by_j[:, :, 1:-1])
         #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
         self._parts: list[AnyArray] = [
             np.ascontiguousarray(part, dtype).reshape(len(frame), -1)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+#: Libraries and classes of labelled arrays and tables.
+KINDS = (
+    *(("xarray", name) for name in ("Dataset", "DataTree", "DataArray")),
+    *((library, "DataFrame") for library in ("pandas", "polars")),
+    ("geopandas", "GeoDataFrame"),
+)
+
 
 def is_dataset(data: object) -> bool:
-    """Return whether data are one or several datasets or trees of xarray's, without loading it."""
-    kinds = [type(item) for item in (data if isinstance(data, (list, tuple)) else [data])]
-    names = ("Dataset", "DataTree")
-    return bool(kinds) and all(
-        kind.__name__ in names and kind.__module__.startswith("xarray.") for kind in kinds
-    )
+    """Return whether data are one or several of :data:`KINDS`, without loading a library."""
+    items = data if isinstance(data, (list, tuple)) else [data]
+    kinds = ((kind.__module__.partition(".")[0], kind.__name__) for kind in map(type, items))
+    return bool(items) and all(kind in KINDS for kind in kinds)

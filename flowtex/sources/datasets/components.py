@@ -92,6 +92,8 @@ def _orientation(pair: Pair, places: Places, *, staggered: bool, wanted: str | N
         return Orientation(wanted, f"components={wanted!r}")
     if pair.kind != CARTESIAN:
         return Orientation("plane" if pair.kind == POLAR else "earth", pair.why)
+    if len(places.a) == 1 and places.is_earth:
+        return Orientation("earth", "nodes without rows and columns")
     # Components on the sides of cells are across these, whatever a long name says.
     by_words = "standard_name" not in pair.u.attrs
     if staggered and (by_words or pair.along != "earth"):

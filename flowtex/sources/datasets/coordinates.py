@@ -336,7 +336,7 @@ def _numbers(c: xr.DataArray) -> Floats:
 def _is_degrees(c: xr.DataArray) -> bool:
     """Return whether a coordinate is an angle on the Earth, by its unit, standard name or name."""
     unit, name = str(c.attrs.get("units", "")), str(c.attrs.get("standard_name", c.name))
-    if name.startswith("grid_"):  # of a rotated pole
+    if name in ("grid_longitude", "grid_latitude"):  # of a rotated pole
         return False
     if units.is_angle(unit) and not ANGLES.match(str(c.name)):
         return True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +35,8 @@ from flowtex.sources.datasets.staggered import Grid, find_grid, unrepeated
 from flowtex.sources.datasets.values import Component, Values, read_step
 from flowtex.sources.fill import undeclared_fill
 from flowtex.sources.models.conventions import find_mesh
-from flowtex.sources.models.mesh import Mesh
+from flowtex.sources.models.mesh import POINTS, Mesh
+from flowtex.sources.models.scattered import join_faces
 from flowtex.sources.opening.series import Datasets, as_datasets
 from flowtex.sources.record import Record
 
@@ -129,7 +130,7 @@ class Flow:
 
 
 def read_flow(
-    data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+    data: Any,
     u: str | None,
     v: str | None,
     record: Record,
@@ -142,6 +143,11 @@ def read_flow(
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets = as_datasets(data, record)
     pair = choose_pair(datasets, u, v)
+    choice = Choice(dict(sel or {}), dict(isel or {}))
+    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, components)
+    if joined is not None:
+        datasets = Datasets(joined, opened=datasets.opened)
+        pair = choose_pair(datasets, str(pair.u.name), str(pair.v.name))
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)
     one, two = pair.u, pair.v
@@ -156,7 +162,6 @@ def read_flow(
             f"{', '.join(map(str, two.dims))}; expected both at nodes, or both in faces"
         )
         raise FieldError(msg)
-    choice = Choice(dict(sel or {}), dict(isel or {}))
     one, two = align(one, two, choice, record)
     drawn = choose(one, choice, record)
     one, two = drawn.of(one), drawn.of(two)
@@ -220,6 +225,7 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
         unit="" if mesh.is_earth else mesh.unit,
     )
     record("coordinates", mesh.coordinates)
+    record("surface", mesh.words, notable=mesh.kind == POINTS)
     bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
     return Flow(
         pair=pair,
@@ -293,11 +299,12 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
     if is_wind and not (land and is_constant(np.concatenate(land))):
         flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
         return False
-    if share == 1.0 and wanted is None:
-        flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used", notable=True)
+    if share == 1.0 and wanted is None and part.ndim == axes:  # not only in the first step
+        flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used")
         return False
     if share:
-        flow.record("mask", f"{share:.0%} masked: {mask.text}; mask=False draws it")
+        text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
+        flow.record("mask", text, notable=mask.is_flag)
     return True
 
 

@@ -51,6 +51,7 @@ class Mask:
     reverse: bool = False  #: Whether values above a half mark no data.
     #: Whether values there may be data nevertheless, as winds are on land.
     is_land: bool = False
+    is_flag: bool = False  #: Whether it is a flag of the quality of values.
 
     def is_data(self, values: AnyArray) -> Bools:
         """Return where values of the variable mark data."""
@@ -95,7 +96,8 @@ def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> 
     values = np.atleast_1d(array.attrs.get("flag_values", range(len(meanings)))).tolist()
     flags = dict(zip(meanings, values, strict=False))
     if is_flag or standard.endswith(("status_flag", "quality_flag")):
-        return _marked(array, name, [word for word in flags if BAD_WORDS.search(word)], flags)
+        bad = [word for word in flags if BAD_WORDS.search(word)]
+        return _marked(array, name, bad, flags, is_flag=True)
     if name in WET:
         return Mask(array, f"{name} == {1 - WET[name]}", bad=(1.0 - WET[name],))
     if not (standard in STANDARD or SEA.match(name) or LAND.match(name) or is_wanted):
@@ -116,11 +118,10 @@ def _marked(
     name: str,
     words: Sequence[str],
     flags: Mapping[str, float],
-    *,
-    is_land: bool = False,
+    **marks: bool,
 ) -> Mask | None:
     bad = tuple(float(flags[word]) for word in words)
-    return Mask(array, f"{name} is {' or '.join(words)}", bad, is_land=is_land) if bad else None
+    return Mask(array, f"{name} is {' or '.join(words)}", bad, **marks) if bad else None
 
 
 def moves_over_land(array: xr.DataArray) -> bool:

@@ -8,7 +8,7 @@ step of a series are read here; other steps are read when they are drawn.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -73,7 +73,7 @@ MOST_SEARCHED = 200
 
 
 def read_datasets(
-    data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
+    data: Any,
     u: str | None = None,
     v: str | None = None,
     *,

@@ -7,8 +7,9 @@ only names of files, and arrays that are read late, so a process on another mach
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -41,21 +42,20 @@ class RegionLines:
 
     a: Floats  #: Longitude of each column, (I,), or x.
     b: Floats  #: Latitude of each row, (J,), or y.
-    #: Longitudes on the map, where the last column may be the first one, a turn further.
-    shown: Floats
     rows: Indices  #: Numbers in the data.
-    columns: Indices
+    columns: Indices  #: Numbers in the data between which each column lies, (2, I).
+    share: Floats  #: Share of the way from the first to the second, (I,).
     projection: Projection | None  #: The map; ``None`` in a plane.
     closed: bool  #: Whether the last column repeats the first.
 
     @property
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
-        return len(self.rows), len(self.columns)
+        return len(self.rows), len(self.share)
 
     def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns."""
-        a, b = np.broadcast_arrays(self.shown[columns], self.b[rows][:, None])
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
         if self.projection is None:
             return np.stack([a, b, np.zeros(a.shape)], axis=-1)
         if self.projection.is_globe:
@@ -113,8 +113,8 @@ class Regions:
                 if valid.all():  # the others are read only where a step has gaps
                     break
                 if other != step:
-                    parts = self.components(other, rows, columns)
-                    valid |= np.isfinite(self.lines.vectors(*parts, rows, columns)).all(axis=-1)
+                    a, b = self.components(other, rows, columns)
+                    valid |= np.isfinite(self.lines.vectors(a, b, rows, columns)).all(axis=-1)
                 else:
                     valid |= finite
         velocity[~(valid & finite)] = 0.0
@@ -126,14 +126,30 @@ class Regions:
 
     def components(self, step: int, rows: Lines, columns: Lines) -> tuple[Floats, Floats]:
         """Return the components of some rows and columns, NaN where there are no data."""
-        return self.values.read(step, self._numbers(rows, columns))
+        u, v = self._between(partial(self.values.read, step), rows, columns)
+        return u, v
 
     def scalar(self, name: str, step: int, rows: Lines, columns: Lines) -> Floats:
         """Return some rows and columns of a scalar."""
-        return read_step(self.scalars[name], step, self._numbers(rows, columns))
+        return self._between(
+            lambda lines: (read_step(self.scalars[name], step, lines),), rows, columns
+        )[0]
 
-    def _numbers(self, rows: Lines, columns: Lines) -> tuple[Indices, Indices]:
-        return self.lines.rows[rows], self.lines.columns[columns]
+    def _between(
+        self,
+        read: Callable[[tuple[Indices, Indices]], Sequence[Floats]],
+        rows: Lines,
+        columns: Lines,
+    ) -> list[Floats]:
+        """Return what is read of some rows and columns; those on the edge of a map lie between."""
+        lines = self.lines
+        chosen, numbers, share = lines.rows[rows], lines.columns[:, columns], lines.share[columns]
+        parts = list(read((chosen, numbers[0])))
+        if (moved := np.flatnonzero(share)).size:
+            others = read((chosen, numbers[1][moved]))
+            for part, other in zip(parts, others, strict=True):
+                part[:, moved] = (1 - share[moved]) * part[:, moved] + share[moved] * other
+        return parts
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
@@ -146,18 +162,19 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
         grids = [np.stack([*pair, np.zeros(pair[0].shape)], axis=-1) for pair in ends]
         if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
             return None
-        return RegionLines(a, b, a, np.arange(len(b)), np.arange(len(a)), None, closed=False)
-    projection, around = projection_of(places, name)
+        columns = np.tile(np.arange(len(a)), (2, 1))
+        return RegionLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, closed=False)
+    projection, _ = projection_of(places, name)
     if not (projection.is_globe or projection.family in CYLINDERS):
         return None
-    lines = lines_on_map(places, projection, around=around)
-    rows = np.arange(len(b))
+    lines = lines_on_map(places, projection)
+    if not (np.isfinite(lines.lon).all() and np.isfinite(lines.lat).all()):
+        return None
+    kept = slice(None)
     if not projection.is_globe:
-        rows = rows[shown_rows(shown_positions(projection, lines.shown[:1], b[:, None]))]
-    closed = lines.periodic == "i"
-    return RegionLines(
-        lines.lon, lines.lat[rows], lines.shown, rows, lines.columns, projection, closed
-    )
+        kept = shown_rows(shown_positions(projection, lines.lon[:1], lines.lat[:, None]))
+    closed, chosen = lines.periodic == "i", (lines.columns, lines.share)
+    return RegionLines(lines.lon, lines.lat[kept], lines.rows[kept], *chosen, projection, closed)
 
 
 def _is_ordered(line: Floats) -> bool:

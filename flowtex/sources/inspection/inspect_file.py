@@ -9,6 +9,7 @@ from typing import BinaryIO
 
 from flowtex.errors import FieldError
 from flowtex.sources.inspection import grib, netcdf, vtk_legacy, vtk_xml
+from flowtex.sources.inspection.others import check_other
 from flowtex.sources.inspection.surfaces import check_ply, check_stl
 from flowtex.sources.inspection.zarr_folder import DOCUMENTS, check_zarr
 
@@ -59,6 +60,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         head = stream.read(HEAD_BYTES)
         is_hdf5 = _is_hdf5(stream, size)
     suffix = path.suffix.lower()
+    check_other(path, head)
     if is_hdf5:
         netcdf.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):

@@ -2,40 +2,54 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.field.earth import GLOBE, Projection
-from flowtex.field.earth.lines import tear
+from flowtex.field.earth import GLOBE, NAMES, Projection
+from flowtex.field.earth.lines import between, tears
+from flowtex.field.grids.periodic import find_closure
 from flowtex.sources.datasets.coordinates import Places
 
 #: The default flat map, and the maps on which an axis around the Earth continues periodically.
 FLAT = "platecarree"
 CYLINDERS = (FLAT, "mercator")
+#: Maps around a pole, which have no edge at a meridian.
+POLAR_MAPS = ("north", "south")
 #: Latitudes that a map shows, if not all.
 LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0.0)}
 #: Latitude of the middle of a region from which on it is drawn around a pole.
 POLAR = 66.0
 #: Span of longitudes from which on a region is around the Earth.
 AROUND = 359.0
-#: Distance in cells from the first column, one turn further, up to which a column repeats it.
-SAME_LINE = 0.01
-#: Least columns that close around a globe, and widest gap between the last and first in cells.
+#: Distance in cells from another column, one turn further, up to which a column repeats it, and
+#: from the edge of a map, up to which it is moved there.
+SAME_LINE, NEAR_EDGE = 0.01, 0.1
+#: Least columns that close around the Earth, and widest gap between the last and first in cells.
 LEAST_RING, MOST_GAP = 8, 1.5
+#: Distance of lines, over those beside and over almost all, from which on data are missing between.
+GAP, ALMOST_ALL = 1.75, 0.9
 #: Share of different longitudes from which on nodes are scattered, and the square root of the
 #: sphere's area in square degrees.
 SCATTERED, SPHERE_DEGREES = 0.125, 203.0
 #: Scale of a map, over its median, beyond which the map ends.
 LARGEST = 4.0
-#: Edges between nodes are torn where they are longer by this factor than on the Earth.
-TORN = 8.0
-#: A step across a meridian is longer by this factor than one before it where the map is torn there.
-WIDER = 1.5
-#: Share of a cell beside a meridian along which a map is torn, up to which the flow is drawn.
+#: Scale of a map along an edge between nodes, over its median, up to which it is not torn; and from
+#: which on it is not drawn, if it is longer than this share of the map.
+PLAIN, WIDE, FAR = 1.5, 4.0, 0.5
+#: Degrees by which nodes on the edge of a map lie inside it, so that rounding does not move them.
+INSIDE = 1e-9
+#: Share of a cell on both sides of a tear's end, between which nodes beside it lie.
 BESIDE = 0.02
+#: Up to how many nodes one of the blank lines between parts remains where a coarser view leaves
+#: lines out, if there is one.
+COARSE_NODES = 20_000
+#: Degrees beside the edge of a map where it is looked for, and latitudes there.
+STEP, EDGE_LATITUDES = 0.02, np.linspace(-75.0, 75.0, 31)
 
 
 class Nodes(Protocol):
@@ -70,96 +84,277 @@ class PlaneNodes:
         return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Nodes that lie between two others of a grid."""
+
+    at: Indices  #: Their rows and columns, (2, M).
+    first: Indices  #: Rows and columns of those between which they lie, (2, M).
+    second: Indices
+    share: Floats  #: Share of the way from the first to the second, (M,).
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """Some rows and columns of a grid, of whose nodes some move to places between two."""
+
+    rows: Indices | slice
+    columns: Indices | slice
+    moved: Moved | None = None
+
+    def __call__(self, values: Floats) -> Floats:
+        """Return values at the nodes, from those of the grid, (J, I)."""
+        chosen = np.array(values[self.rows][:, self.columns])
+        if (moved := self.moved) is not None:
+            one, other = values[tuple(moved.first)], values[tuple(moved.second)]
+            chosen[tuple(moved.at)] = (1 - moved.share) * one + moved.share * other
+        return chosen
+
+
 @dataclass(eq=False)
 class MapNodes:
     """Nodes on a map."""
 
     projection: Projection
     points: Floats  #: (J, I, 3).
-    #: Index that takes an array of the grid (J, I) to the order of the map.
-    lines: tuple[slice, Indices]
+    #: Take an array of the grid to the nodes, one after the other.
+    choices: Sequence[Chosen]
     periodic: str | None  #: As for :meth:`FlowField.from_arrays`.
-    lon: Floats  #: Longitudes and latitudes, for the directions of vectors.
+    lon: Floats  #: Longitudes and latitudes, NaN between parts.
     lat: Floats
 
     def at(self, values: Floats) -> Floats:
-        """Return values in the order of the map."""
-        return np.asarray(values[self.lines])
+        """Return values at the nodes, from those of the grid."""
+        for chosen in self.choices:
+            values = chosen(values)
+        return values
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
-        """Return vectors (J, I, 3) of components in m/s, in the order of the map."""
+        """Return vectors (J, I, 3) of components at the nodes in m/s."""
         return self.projection.vectors(self.lon, self.lat, east, north)
 
 
 @dataclass(frozen=True, eq=False)
 class MapLines:
-    """Lines of longitude (I,) and latitude (J,) in the order of a map."""
+    """Lines of longitude (I,) and latitude (J,) in the order of a map, NaN between parts."""
 
     lon: Floats
-    shown: Floats  #: Longitudes where the map has them, such as a turn further at its end.
     lat: Floats
-    columns: Indices  #: Numbers of the longitudes in the data.
+    rows: Indices  #: Numbers of the latitudes in the data, (J,).
+    columns: Indices  #: Numbers of the longitudes between which the columns lie, (2, I).
+    share: Floats  #: Share of the way from the first to the second, (I,).
     periodic: str | None  #: As in :class:`MapNodes`.
+
+    @property
+    def chosen(self) -> Chosen:
+        """The nodes in the data."""
+        columns = np.flatnonzero(self.share)
+        row, number = np.indices((len(self.rows), len(columns))).reshape(2, -1)
+        column = columns[number]
+        one, other = (np.stack([self.rows[row], ends[column]]) for ends in self.columns)
+        moved = Moved(np.stack([row, column]), one, other, self.share[column])
+        return Chosen(self.rows, self.columns[0], moved)
 
 
 def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
-    projection, around = projection_of(places, name)
-    name, lon, lat = projection.family, places.a, places.b
-    columns, periodic = np.arange(lon.shape[1]), None if projection.is_globe else ""
-    if places.is_line:
-        lines = lines_on_map(places, projection, around=around)
-        lon, shown, lat = np.broadcast_arrays(lines.lon, lines.shown, lines.lat[:, None])
-        columns, periodic = lines.columns, lines.periodic
+    projection, _ = projection_of(places, name)
+    is_flat, is_line, periodic = not projection.is_globe, places.is_line, None
+    if is_line:
+        lines = lines_on_map(places, projection)
+        lon, lat = np.broadcast_arrays(lines.lon, lines.lat[:, None])
+        choices, periodic = [lines.chosen], lines.periodic
     else:
-        shown = lon = lon if projection.is_globe else _around_middle(lon, projection)
-    if projection.is_globe:
-        points = projection.positions(shown, lat)
-        return MapNodes(projection, points, (slice(None), columns), periodic, lon, lat)
-    points = shown_positions(projection, shown, lat)
-    if not places.is_line or name not in (*CYLINDERS, "north", "south"):
-        torn = _torn(points, shown, lat)
-        if places.is_line and torn.any():
-            (lon, shown), between, columns = _beside_tears(lines, projection, torn)
-            lat = np.broadcast_to(lines.lat[:, None], lon.shape)
-            points = shown_positions(projection, shown, lat)
-            points[between] = np.nan
-            torn = _torn(points, shown, lat)
-        points[torn] = np.nan
+        columns = np.arange(places.a.shape[1])
+        if is_flat and find_closure(np.swapaxes(places.on_sphere, 0, 1)).line is not None:
+            columns = np.append(columns, 0)
+        choices = [Chosen(slice(None), columns)]
+        # A node on the edge of a map lies on its western side.
+        west = projection.center[0] - 180.0
+        lon, lat = west + (places.a[:, columns] - west) % 360.0, places.b[:, columns]
+    if not is_line or (is_flat and projection.family not in (*CYLINDERS, *POLAR_MAPS)):
+        for axis in (1, 0):
+            if (parts := _parts(projection, lon, lat, axis, is_line=is_line)) is not None:
+                lon, lat, chosen = parts
+                choices.append(chosen)
+    if not is_flat:
+        points = projection.positions(lon, lat)
+        return MapNodes(projection, points, choices, periodic, lon, lat)
+    points = shown_positions(projection, lon, lat)
+    if periodic is None:
+        steps = (np.abs(points[:, k] - points[:, 0]) for k in (1, -1))
+        step, ends = (float(np.nanmax(lengths, initial=0.0)) for lengths in steps)
+        periodic = "i" if ends <= SAME_LINE * step else ""
     kept = shown_rows(points)
-    return MapNodes(projection, points[kept], (kept, columns), periodic, lon[kept], lat[kept])
+    choices.append(Chosen(kept, slice(None)))
+    return MapNodes(projection, points[kept], choices, periodic, lon[kept], lat[kept])
 
 
-def lines_on_map(places: Places, projection: Projection, *, around: bool) -> MapLines:
-    """Return the lines of places in the order of a map; one around the Earth is closed."""
+def lines_on_map(places: Places, projection: Projection) -> MapLines:
+    """Return the lines of places in the order of a map.
+
+    If the data are around the Earth, the first column comes again at the end. At the edge of a map
+    are columns between those of the data beside it.
+    """
     lon, lat = places.lines
-    turn = np.abs(lon - lon[0])
-    step = float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
-    columns = np.flatnonzero(~(turn > 360.0 - SAME_LINE * step))
-    lon = lon[columns]
-    if projection.is_globe:
-        ends = turn[columns]
-        widest = max(ends[1] - ends[0], ends[-1] - ends[-2]) if len(ends) >= LEAST_RING else 0.0
-        if not 0 < 360.0 - ends[-1] <= MOST_GAP * widest:
-            return MapLines(lon, lon, lat, columns, "")
-        lon = np.append(lon, lon[0])
-        return MapLines(lon, lon, lat, np.append(columns, columns[0]), "i")
-    lon = _around_middle(lon, projection)
-    order = np.argsort(lon, kind="stable")
-    lon, columns = lon[order], columns[order]
-    if not around:
-        return MapLines(lon, lon, lat, columns, "")
-    shown = np.append(lon, lon[0] + 360.0)
-    lon, columns = np.append(lon, lon[0]), np.append(columns, columns[0])
-    name = projection.family
-    periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
-    return MapLines(lon, shown, lat, columns, periodic)
+    turn = (lon - lon[0]) % 360.0
+    columns = np.argsort(turn, kind="stable")
+    turn = turn[columns]
+    least = SAME_LINE * float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
+    apart = (np.diff(turn, prepend=-360.0) > least) & (turn <= 360.0 - least)
+    columns, turn = columns[apart], turn[apart]
+    count, steps = len(turn), np.diff(turn, append=360.0)
+    widest = int(np.argmax(steps))
+    gap = steps[widest] / max(steps[widest - 1], steps[(widest + 1) % count])
+    closed, has_edge = count >= LEAST_RING and gap <= MOST_GAP, _has_edge(projection)
+    west = projection.center[0] - 180.0
+    first = 0 if closed else (widest + 1) % count
+    if closed and has_edge:
+        first = int(np.argmin((lon[0] + turn - west) % 360.0))
+    columns = np.roll(columns, -first)
+    lon = lon[0] + np.roll(turn + 360.0 * (np.arange(count) < first), -first)
+    gaps, blank = _gaps(np.diff(lon)), _blank_lines(places.a.size)
+    # Columns to insert: before which, where, between which, and the share of the way there.
+    new: list[tuple[Any, ...]]
+    new = [(k + 1, np.nan, k, k, 0.0) for k in np.flatnonzero(gaps) for _ in range(blank)]
+    near = np.zeros(count, dtype=bool)
+    if has_edge:
+        lon -= 360.0 * np.floor((lon[0] - west) / 360.0)
+        cut = count if closed else int(np.searchsorted(lon, west + 360.0 + least))
+        if closed or (cut < count and not gaps[cut - 1]):
+            a, b = cut - 1, cut % count
+            step = (lon[b] - lon[a]) % 360.0
+            share = (west + 360.0 - lon[a]) / step
+            near = np.abs((lon - west + 180.0) % 360.0 - 180.0) < NEAR_EDGE * step
+            a, b = (a if share < 1 - SAME_LINE else b), (b if share > SAME_LINE else a)
+            between = (a, b, share if a != b else 0.0)
+            new += [(cut, west + 360.0, *between)]
+            new += [(cut, np.nan, a, a, 0.0)] * (0 if closed else blank)
+            new += [(0 if closed else cut, west, *between)]
+        lon[cut:] -= 360.0
+    elif closed:
+        new += [(count, lon[0], 0, 0, 0.0)]
+    ends, share = np.stack([columns, columns]), np.zeros(count)
+    if new:
+        at, more, one, other, shares = (np.array(values) for values in zip(*new, strict=True))
+        lon, share, near = (
+            np.insert(x, at, y) for x, y in ((lon, more), (share, shares), (near, False))
+        )
+        ends = np.insert(ends, at, columns[np.stack([one, other])], axis=1)
+    if has_edge:
+        lon = np.clip(lon, west + INSIDE, west + 360.0 - INSIDE)
+    periodic = "i" if closed and (not has_edge or projection.family in CYLINDERS) else ""
+    missing = np.repeat(np.flatnonzero(_gaps(np.diff(lat))) + 1, blank)
+    rows, lat = np.insert(np.arange(len(lat)), missing, missing), np.insert(lat, missing, np.nan)
+    return MapLines(lon[~near], lat, rows, ends[:, ~near], share[~near], periodic)
 
 
-def _around_middle(lon: Floats, projection: Projection) -> Floats:
-    """Return longitudes within half a turn of the middle of a map."""
-    middle = projection.center[0]
-    return np.asarray(middle + (lon - middle + 180.0) % 360.0 - 180.0)
+def _has_edge(projection: Projection) -> bool:
+    """Return whether a map ends at a meridian, a half turn from its middle."""
+    if projection.is_globe or projection.family in NAMES:
+        return projection.family not in (GLOBE, *POLAR_MAPS)
+    lon = projection.center[0] + 180.0 + STEP * np.array([-2.0, -1.0, 1.0])
+    before, across = np.diff(projection.positions(lon[:, None], EDGE_LATITUDES), axis=0)
+    before, across = (np.linalg.norm(step, axis=1) for step in (before, across))
+    known = np.isfinite(across)
+    return bool(known.any() and (across > 10 * before)[known].all())
+
+
+def _blank_lines(nodes: int) -> int:
+    """Return the number of blank lines between parts, of which a coarser view has at least one."""
+    return math.ceil(math.sqrt(nodes / COARSE_NODES))
+
+
+def _gaps(steps: Floats) -> Bools:
+    """Return which distances between lines, (..., I), are gaps in the data."""
+    if not steps.shape[-1]:
+        return np.zeros(steps.shape, dtype=bool)
+    steps = np.abs(steps)
+    beside = np.pad(steps, [(0, 0)] * (steps.ndim - 1) + [(1, 1)], constant_values=np.nan)
+    beside = np.fmax(beside[..., :-2], beside[..., 2:])
+    number = (ALMOST_ALL * (np.isfinite(steps).sum(axis=-1, keepdims=True) - 1)).astype(int)
+    usual = np.take_along_axis(np.sort(steps, axis=-1), np.maximum(number, 0), axis=-1)
+    return (steps > GAP * beside) & (steps > GAP * usual)
+
+
+def _parts(
+    projection: Projection, lon: Floats, lat: Floats, axis: int, *, is_line: bool
+) -> tuple[Floats, Floats, Chosen] | None:
+    """Part a grid, (J, I), where a map tears it apart along an axis, or data are missing there.
+
+    Nodes beside a tear move to it, and lines between the parts are blank. Returns longitudes and
+    latitudes, NaN where nodes are blank, and the nodes; ``None`` where there is nothing to part.
+    """
+    if axis == 0:
+        lon, lat = lon.T, lat.T
+    if is_line:
+        parted = np.zeros((len(lon), lon.shape[1] - 1), dtype=bool)
+    else:
+        parted = _gaps(
+            np.linalg.norm(np.diff(Projection(GLOBE).positions(lon, lat), axis=1), axis=-1)
+        )
+    places, sides = np.stack([lon, lat], axis=-1), np.zeros((2, 0))
+    row = column = np.zeros(0, dtype=np.intp)
+    if not projection.is_globe:
+        points = shown_positions(projection, lon, lat).reshape(-1, 3)
+        nodes = np.arange(lon.size).reshape(lon.shape)
+        edges = np.stack([nodes[:, :-1], nodes[:, 1:]], axis=-1)
+        stretched, wide = stretches(lon.ravel(), lat.ravel(), points, edges)
+        row, column = np.nonzero(stretched & ~parted)
+        ends = places[row, column], places[row, column + 1]
+        torn, *shares = tears(projection, *ends, straight=not is_line)
+        row, column, sides = row[torn], column[torn], np.array(shares)
+        parted |= wide
+        parted[row, column] = True
+    columns = np.flatnonzero(parted.any(axis=0))
+    if not len(columns):
+        return None
+    start, stop = np.zeros((len(lon), len(columns))), np.ones((len(lon), len(columns)))
+    number = np.searchsorted(columns, column)
+    start[row, number], stop[row, number] = sides
+    for beside in (-1, 1):  # in the row where a tear ends
+        near, last = np.clip(row + beside, 0, len(lon) - 1), parted.shape[1] - 1
+        whole = ~(parted[near, column - (column > 0)] | parted[near, np.minimum(column + 1, last)])
+        whole &= ~parted[near, column]
+        at = near[whole], number[whole]
+        start[at] = np.maximum(sides[0][whole] - BESIDE, 0.0)
+        stop[at] = np.minimum(sides[1][whole] + BESIDE, 1.0)
+    blank = min(_blank_lines(lon.size), max(lon.shape[1] // (4 * len(columns)), 1))
+    copies = np.ones(lon.shape[1], dtype=int)
+    copies[columns] += blank
+    chosen, first = np.repeat(np.arange(len(copies)), copies), np.cumsum(copies) - copies
+    all_shares = np.linspace(start, stop, blank + 2, axis=-1)
+    row, number, extra = np.nonzero((all_shares > 0) & (all_shares < 1))
+    share, column = all_shares[row, number, extra], columns[number]
+    one, other = np.stack([row, column]), np.stack([row, column + 1])
+    new = np.stack([row, first[column] + extra])
+    ends = places[tuple(one)], places[tuple(other)]
+    places = places[:, chosen]
+    places[tuple(new)] = between(*ends, share, straight=not is_line)
+    is_blank = parted[row, column] & (extra > 0) & (extra <= blank)
+    places[tuple(new[:, is_blank])] = np.nan
+    lon, lat = np.moveaxis(places, -1, 0)
+    if axis == 1:
+        return lon, lat, Chosen(slice(None), chosen, Moved(new, one, other, share))
+    moved = Moved(new[::-1], one[::-1], other[::-1], share)
+    return lon.T, lat.T, Chosen(chosen, slice(None), moved)
+
+
+def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[Bools, Bools]:
+    """Return which edges may be torn by a map, and which are too long there to be drawn.
+
+    Edges are between two nodes, (..., 2), of those with ``lon`` and ``lat``, (N,), which lie at
+    ``points`` of the map, (N, 3).
+    """
+    places = points, Projection(GLOBE).positions(lon, lat)
+    length, true = (np.linalg.norm(p[ends[..., 0]] - p[ends[..., 1]], axis=-1) for p in places)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        scale = length / true
+        known = scale[np.isfinite(scale)]
+        scale /= np.median(known) if known.size else 1.0
+        return scale > PLAIN, (scale > WIDE) & (
+            length > FAR * np.nanmax(np.abs(points), initial=0.0)
+        )
 
 
 def shown_rows(points: Floats) -> slice:
@@ -197,8 +392,7 @@ def _has_pole(places: Places) -> bool:
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
     """Return positions (..., 3) on a flat map, NaN beyond its end."""
-    # The last column of the whole Earth is the first one, a turn further.
-    points = projection.positions(lon, lat, beyond=True)
+    points = projection.positions(lon, lat)
     least, most = LATITUDES.get(projection.family, (-90.0, 90.0))
     with np.errstate(invalid="ignore"):
         points[(lat < least) | (lat > most)] = np.nan
@@ -226,63 +420,3 @@ def _middle(lon: Floats) -> tuple[float, float]:
         return 0.0, 360.0
     middle = values[(widest + 1) % len(values)] + span / 2
     return float((middle + 180.0) % 360.0 - 180.0), float(span)
-
-
-def _beside_tears(
-    lines: MapLines, projection: Projection, torn: Bools
-) -> tuple[Floats, Bools, Indices]:
-    """Return longitudes with nodes moved to the meridians where the map is interrupted.
-
-    At such a meridian the nodes on both sides move to it, and a node between them is blank;
-    otherwise the cells beside it would not be drawn. ``torn`` marks nodes, (J, I), after
-    which the map is torn. Returns the longitudes, and those on the map, (2, J, I), the nodes that
-    are blank, and the numbers of the columns in the data.
-    """
-    lon, shown, columns = lines.lon, lines.shown, lines.columns
-    at = np.flatnonzero(torn[:, :-1].sum(axis=0) > 2)  # two rows are not enough
-    rows = np.argmax(torn, axis=0)[at], len(torn) - 1 - np.argmax(torn[::-1], axis=0)[at]
-    near = BESIDE * float(np.median(np.diff(shown)))
-    around = shown[at] - near, shown[at + 1] + near  # one may be on the meridian
-    first, last = (
-        tear(projection, *(np.stack([ends, lines.lat[row]], axis=-1) for ends in around))
-        for row in rows
-    )
-    meridians = np.sort(first[0][np.abs(first[0] - last[0])[:, 0] < near, 0])
-    meridians = meridians[np.diff(meridians, prepend=-np.inf) > near]
-    middles = []
-    for meridian in meridians:
-        middle = int(np.argmin(np.abs(shown - meridian)))
-        if abs(shown[middle] - meridian) > near:
-            number, middle = columns[middle], int(np.searchsorted(shown, meridian))
-            halfway = shown[middle - 1 : middle + 1].mean()
-            lon, shown = np.insert(lon, middle, halfway), np.insert(shown, middle, halfway)
-            columns = np.insert(columns, middle, number)
-        middles.append(middle)
-    both = np.repeat(np.stack([lon, shown])[:, None], len(lines.lat), axis=1)
-    blank = np.zeros(both.shape[1:], dtype=bool)
-    for meridian, middle in zip(meridians, middles, strict=True):
-        if not 0 < middle < len(shown) - 1:
-            continue
-        sides = meridian + near * np.array([-3.0, -1.0, 1.0])
-        places = projection.positions(sides, lines.lat[:, None])
-        before, across = np.linalg.norm(np.diff(places, axis=1), axis=-1).T
-        apart = across > WIDER * before
-        moved = apart.copy()  # with the rows beside, or the cells to these would be blank
-        moved[1:] |= apart[:-1]
-        moved[:-1] |= apart[1:]
-        both[:, moved, middle - 1 : middle + 2 : 2] = sides[1:]
-        blank[apart, middle] = True
-    return both, blank, columns
-
-
-def _torn(points: Floats, lon: Floats, lat: Floats) -> Bools:
-    """Return nodes, (J, I), after which the map is torn along a row or a column."""
-    sphere = Projection(GLOBE).positions(lon, lat)
-    torn = np.zeros(lon.shape, dtype=bool)
-    for axis in (0, 1):
-        flat, true = (np.linalg.norm(np.diff(p, axis=axis), axis=-1) for p in (points, sphere))
-        with np.errstate(invalid="ignore"):
-            far = (flat > TORN * true) & (flat > 0.1 * np.nanmax(np.abs(points)))
-        at = (slice(None, -1), slice(None)) if axis == 0 else (slice(None), slice(None, -1))
-        torn[at] |= far
-    return torn

@@ -1,4 +1,4 @@
-"""Meshes on a globe or a flat map, where some of the triangles lie across the edge of the map."""
+"""Meshes on a globe or a flat map, whose triangles are cut where the map is torn."""
 
 from __future__ import annotations
 
@@ -6,20 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.field.earth import GLOBE, NAMES, Projection
+from flowtex._util.array_types import Floats, Indices
+from flowtex.field.earth import Projection
+from flowtex.field.earth.lines import between, tears
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.maps.grid_map import TORN, projection_of, shown_positions
+from flowtex.sources.maps.grid_map import projection_of, shown_positions, stretches
 from flowtex.sources.models.mesh import Mesh
 
-#: Maps around a pole, which have no edge at a meridian.
-AROUND_A_POLE = ("north", "south")
-#: Span in degrees of longitude from which on a triangle is around a pole, or touches it.
-WIDEST = 90.0
-#: Degrees by which nodes on the edge lie inside, so that rounding keeps them on their side.
-INSIDE = 1e-9
-#: Least share of the way from a node to one on the edge.
-NEAREST_NODE = 1e-5
+#: Degrees from a pole at which a node is on it.
+AT_POLE = 1e-3
 
 
 @dataclass(eq=False)
@@ -50,77 +45,61 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     projection, _ = projection_of(places, name)
     numbers = np.arange(len(mesh.a))
     nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
+    west = projection.center[0] - 180.0
     lon, lat, triangles = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
         return MeshMap(projection, points, triangles, nodes, share, lon, lat, 0)
-    middle = projection.center[0]
-    lon = middle + (lon - middle + 180.0) % 360.0 - 180.0
-    lost = 0
-    if projection.family in NAMES and projection.family not in AROUND_A_POLE:
-        wide = _span(lon[triangles], middle) > WIDEST
-        triangles, lost = triangles[~wide], int(wide.sum())
-        triangles, pairs, shares, edge_lon = _cut(lon, triangles, middle)
-        lat = np.append(lat, (1 - shares) * lat[pairs[:, 0]] + shares * lat[pairs[:, 1]])
-        lon = np.append(lon, edge_lon)
-        nodes, share = np.concatenate([nodes, pairs]), np.append(share, shares)
+    lon = west + (lon - west) % 360.0  # a node on the edge of a map lies on its western side
     points = shown_positions(projection, lon, lat)
-    finite = np.asarray(np.isfinite(points).all(axis=1))
-    triangles = triangles[finite[triangles].all(axis=1)]
-    if projection.family not in NAMES:
-        torn = _torn(points, Projection(GLOBE).positions(lon, lat), triangles)
-        triangles, lost = triangles[~torn], lost + int(torn.sum())
-    return MeshMap(projection, points, triangles, nodes, share, lon, lat, lost)
+    triangles = triangles[np.isfinite(points[triangles, 0]).all(axis=1)]
+    ends = np.sort(_sides(triangles), axis=-1)
+    far = np.nonzero(stretches(lon, lat, points, ends)[0])
+    pairs, number = np.unique(ends[far], axis=0, return_inverse=True)
+    one, other = np.moveaxis(np.stack([lon, lat], axis=-1)[pairs], 1, 0)
+    torn, *shares = tears(projection, one, other, straight=True)
+    more = [between(one[torn], other[torn], part, straight=True).T for part in shares]
+    # East and north have no meaning at a pole.
+    poles = np.abs(lat[pairs[torn]]) > 90 - AT_POLE
+    near = np.where(poles, pairs[torn, ::-1], pairs[torn])
+    nodes, share = np.concatenate([nodes, near, near]), np.concatenate([share, *shares])
+    # The number of the tear of each side.
+    tear = np.full(triangles.shape, -1)
+    tear[far] = np.where(torn, np.cumsum(torn) - 1, -1)[number.reshape(-1)]
+    lost = (tear >= 0).sum(axis=1) % 2 == 1  # a pole lies inside
+    triangles = _cut(triangles[~lost], tear[~lost], pairs[torn], len(lon))
+    lon, lat = np.concatenate([np.stack([lon, lat]), *more], axis=1)
+    points = shown_positions(projection, lon, lat)
+    corners = points[triangles]
+    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
+    triangles = triangles[np.abs(area) > 0]
+    wide = stretches(lon, lat, points, _sides(triangles))[1].any(axis=1)
+    count = int(lost.sum() + wide.sum())
+    return MeshMap(projection, points, triangles[~wide], nodes, share, lon, lat, count)
 
 
-def _span(lon: Floats, middle: float) -> Floats:
-    """Return the spans of triangles in degrees, (M,), also across the edge of the map."""
-    across = np.ptp(np.where(lon < middle, lon + 360.0, lon), axis=1)
-    return np.asarray(np.minimum(np.ptp(lon, axis=1), across))
+def _sides(triangles: Indices) -> Indices:
+    """Return the nodes at the ends of the sides of triangles, (M, 3, 2)."""
+    return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1)
 
 
-def _cut(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Floats, Floats]:
-    """Cut triangles across the edge of the map, each into one on its one side and two beyond.
+def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> Indices:
+    """Cut triangles, two of whose sides are torn, each into one before and two beyond the tears.
 
-    Returns triangles (M, 3) of the nodes and the new ones after them; between which nodes the new
-    ones are, (Q, 2), at which share of the way, and their longitudes, (Q,).
+    ``tear`` has the numbers of the tears of the three sides, (M, 3), or -1. Of tear t, between the
+    nodes of ``pairs``, the place just before it is the node ``first + t``, and that just after it
+    comes as many later as there are tears.
     """
-    across = np.ptp(lon[triangles], axis=1) > 180.0
-    corners = triangles[across]
-    west = lon[corners] < middle
-    lone = np.where(west.sum(axis=1) == 1, west.argmax(axis=1), west.argmin(axis=1))
+    across = (tear >= 0).any(axis=1)
+    lone = (np.argmin(tear[across], axis=1) + 2) % 3
     order = (lone[:, None] + np.arange(3)) % 3
-    a, b, c = np.take_along_axis(corners, order, axis=1).T
-    is_west = lon[a] < middle
-    pairs, shares = [], []
-    for end in (b, c):
-        # From the lower number to the higher: neighbours find the same place.
-        pair = np.sort(np.stack([a, end], axis=-1), axis=1)
-        ends = lon[pair] + 360.0 * (lon[pair] < middle)
-        pairs.append(pair)
-        # A node on the edge itself makes triangles without area otherwise.
-        along = (middle + 180.0 - ends[:, 0]) / (ends[:, 1] - ends[:, 0])
-        shares.append(np.clip(along, NEAREST_NODE, 1 - NEAREST_NODE))
-    east = middle + 180.0 - INSIDE
-    near_lon, far_lon = (np.where(w, east - 360.0 + 2 * INSIDE, east) for w in (is_west, ~is_west))
-    first, count = len(lon), len(a)
-    ab, ac, ab_far, ac_far = first + np.arange(4 * count).reshape(4, count)
-    parts = [(a, ab, ac), (ab_far, b, c), (ab_far, c, ac_far)]
+    a, b, c = np.take_along_axis(triangles[across], order, axis=1).T
+    to_b, _, to_c = np.take_along_axis(tear[across], order, axis=1).T
+
+    def beside(node: Indices, tear: Indices) -> Indices:
+        return first + tear + len(pairs) * (pairs[tear, 1] == node)
+
+    far_b, far_c = beside(b, to_b), beside(c, to_c)
+    parts = (a, beside(a, to_b), beside(a, to_c)), (far_b, b, c), (far_b, c, far_c)
     cut = [np.stack(part, axis=-1) for part in parts]
-    return (
-        np.concatenate([triangles[~across], *cut]),
-        np.concatenate([*pairs, *pairs]),
-        np.concatenate([*shares, *shares]),
-        np.concatenate([near_lon, near_lon, far_lon, far_lon]),
-    )
-
-
-def _torn(points: Floats, sphere: Floats, triangles: Indices) -> Bools:
-    """Return which triangles are much larger on the map than on the sphere, (M,)."""
-    far = 0.1 * np.nanmax(np.abs(points), initial=0.0)
-    torn = np.zeros(len(triangles), dtype=bool)
-    for k in range(3):
-        one, other = triangles[:, k], triangles[:, (k + 1) % 3]
-        flat, true = (np.linalg.norm(p[one] - p[other], axis=1) for p in (points, sphere))
-        torn |= (flat > TORN * true) & (flat > far)
-    return torn
+    return np.concatenate([triangles[~across], *cut])

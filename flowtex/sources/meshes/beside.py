@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
-from flowtex.errors import FieldError
 from flowtex.sources.meshes.parts import TimeStep
 from flowtex.sources.meshes.vectors import candidates
 
@@ -30,21 +29,24 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     mesh = reader.read()
     if candidates(mesh):
         return mesh, None, ""
-    try:
-        vectors = _vectors(file)
-    except FieldError as error:
-        return mesh, None, f"{error}; {_expected(file, mesh)}"
-    count = vectors.shape[-2]
-    if count == 3 * mesh.n_cells != mesh.n_points and file.suffix.lower() == ".stl":
+    path, is_stl = file.with_suffix(".npy"), file.suffix.lower() == ".stl"
+    points, cells = mesh.n_points, mesh.n_cells
+    vectors, problem = _vectors(path)
+    if vectors.shape[-2] == 3 * cells != points and is_stl:
         reader.reader.SetMerging(0)
         mesh = reader.read()
-    if count not in (mesh.n_points, mesh.n_cells):
-        shape = f"{file.with_suffix('.npy').name} has shape {vectors.shape}"
-        return mesh, None, f"{shape}; {_expected(file, mesh)}"
+    if not problem and vectors.shape[-2] not in (mesh.n_points, cells):
+        problem = f"{path.name} has shape {vectors.shape}"
+    if problem:
+        corners = f", ({3 * cells}, 3) for the corners of the faces" if is_stl else ""
+        places = f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}"
+        text = f"{problem}; expected them in {path.name} in the same folder, written by numpy.save"
+        text += f": numbers of shape {places}, or (T, {points}, 3) for times, in the order of the"
+        return mesh, None, f"{text} file"
 
     def with_vectors(step: AnyArray) -> Any:
         copy = mesh.copy(deep=False)
-        data = copy.point_data if count == mesh.n_points else copy.cell_data
+        data = copy.point_data if len(step) == mesh.n_points else copy.cell_data
         data[NAME] = step
         return copy
 
@@ -54,36 +56,19 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     return steps, NAME, ""
 
 
-def _vectors(file: Path) -> AnyArray:
-    """Return the array beside a file, (N, 2 or 3) or (T, N, 2 or 3)."""
-    path = file.with_suffix(".npy")
+def _vectors(path: Path) -> tuple[AnyArray, str]:
+    """Return the array beside a file, (N, 2 or 3) or (T, N, 2 or 3), and the problem with it."""
+    nothing = np.empty((0, 3))
     if not path.is_file():
-        msg = "the file has no vectors, because its format cannot store them"
-        raise FieldError(msg)
+        return nothing, "the file has no vectors, because its format cannot store them"
     try:
         # Mapped first: NumPy allocates the declared size even if the file is shorter.
         vectors = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, OSError) as error:
-        msg = f"{path.name} is not a NumPy array ({error})"
-        raise FieldError(msg) from error
+        return nothing, f"{path.name} is not a NumPy array ({error})"
     if not isinstance(vectors, np.ndarray):  # an archive
-        msg = f"{path.name} contains several arrays"
-        raise FieldError(msg)
+        return nothing, f"{path.name} contains several arrays"
     real = vectors.dtype.kind in "fiu" and vectors.size
     if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
-        msg = f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"
-        raise FieldError(msg)
-    return np.array(vectors)
-
-
-def _expected(file: Path, mesh: Any) -> str:
-    name = file.with_suffix(".npy").name
-    points, cells = mesh.n_points, mesh.n_cells
-    corners = (
-        f", ({3 * cells}, 3) for the corners of the faces" if file.suffix.lower() == ".stl" else ""
-    )
-    return (
-        f"expected them in {name} in the same folder, written by numpy.save: numbers of shape "
-        f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}, or (T, {points}, 3) "
-        "for times, in the order of the file"
-    )
+        return nothing, f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"
+    return np.array(vectors), ""

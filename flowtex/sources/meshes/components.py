@@ -19,7 +19,8 @@ _MOMENTUM = re.compile(r".*momentum.*|rho.?[uv]?", re.IGNORECASE)
 _VELOCITY = re.compile(r"(.*[ _.:-])?(vel|velocit(y|ies)|wind|[uv])([ _.:-].*)?", re.IGNORECASE)
 
 #: Letters and numbers of the components.
-_ALPHABETS = ("xyz", "XYZ", "uvw", "UVW", "012", "123")
+_AXES = ("xyz", "XYZ")
+_ALPHABETS = (*_AXES, "uvw", "UVW", "012", "123")
 _GAP = r"[ _.:-]+"
 _FORMS = tuple(
     re.compile(form)
@@ -39,29 +40,49 @@ _UNIT = re.compile(r"\s*(\[[^\]]{2,}\]|\([^)]{2,}\))$")
 _EDGES = " _.:-()[]"
 
 
-def find_vectors(names: Sequence[str], *, pairs: bool = False) -> dict[str, tuple[str, ...]]:
-    """Return the names of the three components of each vector, by a name for the vector.
+def find_vectors(
+    names: Sequence[str], pair: tuple[int, int] | None = None
+) -> dict[str, tuple[str, ...]]:
+    """Return the names of the components of each vector, by a name for the vector.
 
-    With ``pairs``, as on a flat mesh, two components are sufficient without a third. A vector has
-    the name of its components without their letter, ``Velocity``, or if that is too short or the
-    name of an array, all their names, ``u,v,w``.
+    Two components are sufficient on a flat mesh: those along the ``pair`` of axes in its plane, or
+    the first two if their letters name no axes. A vector has the name of its components without
+    their letter, ``Velocity``, or if that is too short or the name of an array, all their names,
+    ``u,v,w``.
     """
     all_names = set(names)
     vectors: dict[str, tuple[str, ...]] = {}
     for name in names:
         for before, alphabet, after in _parses(name):
-            parts = [before + token + after for token in alphabet]
+            whole = tuple(before + token + after for token in alphabet)
             # Four numbered arrays are not a vector.
             numbered = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
-            if name != parts[0] or (numbered and all_names.issuperset(numbered)):
+            if numbered and all_names.issuperset(numbered):
                 continue
-            if pairs and parts[1] in all_names and parts[2] not in all_names:
-                parts = parts[:2]
-            if all_names.issuperset(parts) and tuple(parts) not in vectors.values():
+            choices = [whole]
+            if pair is not None:
+                pairs = dict.fromkeys((pair, pair if alphabet in _AXES else (0, 1)))
+                choices += [(whole[first], whole[second]) for first, second in pairs]
+            parts = next((parts for parts in choices if all_names.issuperset(parts)), ())
+            if parts and name == parts[0] and parts not in vectors.values():
                 stem = _stem(before, after)
                 free = len(stem) > 1 and stem not in all_names and stem not in vectors
-                vectors[stem if free else ",".join(parts)] = tuple(parts)
+                vectors[stem if free else ",".join(parts)] = parts
     return vectors
+
+
+def named_axes(parts: Sequence[str]) -> tuple[tuple[int, ...], bool]:
+    """Return the axes, 0 to 2, of components by their names, and if these say x, y or z.
+
+    The axes are empty where unknown: ``u`` and ``v`` are in any plane.
+    """
+    parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES)) if parts else ()
+    for before, alphabet, after in parses:
+        whole = [before + token + after for token in alphabet]
+        if set(parts) <= set(whole) and len(set(parts)) == len(parts):
+            axes = tuple(whole.index(part) for part in parts)
+            return (axes, True) if alphabet in _AXES else (() if axes == (0, 1) else axes, False)
+    return (), False
 
 
 def _parses(name: str) -> Iterator[tuple[str, str, str]]:

@@ -5,28 +5,26 @@ A cut is given as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or a
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import brief
-from flowtex._util.array_types import Indices
-from flowtex._util.notices import notify
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.triangles.arrays import solid_triangles
-from flowtex.field.triangles.topology import needle_edges
-from flowtex.sources.meshes.parts import hidden_nodes
-from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue
+from flowtex.field.triangles.arrays import nodal_means, solid_triangles
+from flowtex.field.triangles.topology import needle_edges, triangle_normals
+from flowtex.sources.meshes.nodes import Sheet, hidden_nodes
+from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, near_name, values_of
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import pyvista as pv
 
-_NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
 #: Flags of VTK's ghost arrays for cells that are not drawn, also of other pieces, which would
 #: coincide with these.
@@ -45,21 +43,15 @@ class Slice:
     point: Vector | None
     text: str
 
-    def faults(self, mesh: pv.DataSet) -> list[str]:
-        """Return no faults: a plane is tested by the cut."""
-        return []
-
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the section of a volume."""
         # Polygons would be torn where some of their points nearly coincide.
         middle = self.point or mesh.center
         cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
         if not cut.n_cells:
-            ends = np.reshape(mesh.bounds, (3, 2))
-            spans = (
-                f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends, strict=True)
-            )
-            msg = f"slice is {self.text}, which does not cut the mesh; it has {', '.join(spans)}"
+            ends = zip("xyz", np.reshape(mesh.bounds, (3, 2)), strict=True)
+            spans = ", ".join(f"{axis} from {low:g} to {high:g}" for axis, (low, high) in ends)
+            msg = f"slice is {self.text}, which does not cut the mesh; it has {spans}"
             raise FieldError(msg)
         return cut
 
@@ -72,29 +64,13 @@ class Contour:
     value: float
     text: str
 
-    def faults(self, mesh: pv.DataSet) -> list[str]:
-        """Return the fault of an unknown array."""
-        names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
-        if self.name in names:
-            return []
-        near = difflib.get_close_matches(self.name, names, n=1)
-        hint = f'. Did you mean "{near[0]}"?' if near else ""
-        listed = ", ".join(dict.fromkeys(names))
-        expected = f"expected one of: {listed}" if listed else "it has only vectors, or no arrays"
-        return [
-            f"contour is {self.text}, but the mesh has no array {self.name!r} of one "
-            f"component{hint}; {expected}"
-        ]
-
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
         """Return the contour in a volume whose array is on points."""
         cut = mesh.contour([self.value], scalars=self.name)
         if not cut.n_cells:
-            values = np.asarray(mesh.point_data[self.name], dtype=np.float64)
-            low, high = np.nanmin(values), np.nanmax(values)
-            msg = (
-                f"contour is {self.text}; expected a value of {self.name} from {low:g} to {high:g}"
-            )
+            low, high = mesh.get_data_range(self.name)
+            span = f"expected a value of {self.name} from {low:g} to {high:g}"
+            msg = f"contour is {self.text}; {span}"
             raise FieldError(msg)
         return cut
 
@@ -113,29 +89,27 @@ def find_cut(slice: Any, contour: Any) -> Cut | None:
 
 
 def _slice(raw: Any) -> Slice:
-    normal: Any = None
+    normal: Any = raw
     point: Any = None
     if isinstance(raw, str):
+        first, through, second = raw.partition("through")
+        normal, point = first.split(","), second.split(",") if through else None
         if match := _AXIS.fullmatch(raw):
-            axis = match["axis"].lower()
-            normal, at = _NORMALS[axis], match["at"]
-            point = None if at is None else [float(a == axis) * _number(at) for a in "xyz"]
-        else:
-            first, through, second = raw.partition("through")
-            normal = first.split(",")
-            point = second.split(",") if through else None
-    elif isinstance(raw, (list, tuple, np.ndarray)):
-        normal, point = raw if len(raw) == 2 else (raw, None)
-        normal = _NORMALS.get(normal, normal) if isinstance(normal, str) else normal
-    direction, place = _vector(normal), None if point is None else _vector(point)
-    if direction is None or not any(direction) or (point is not None and place is None):
+            normal = [float(axis == match["axis"].lower()) for axis in "xyz"]
+            point = match["at"] and [_number(match["at"]) * on for on in normal]
+    elif isinstance(raw, (list, tuple, np.ndarray)) and len(raw) == 2:
+        normal, point = raw
+        if isinstance(normal, str) and normal in "xyz":
+            normal = np.arange(3) == "xyz".index(normal)
+    direction, middle = _vector(normal), None if point is None else _vector(point)
+    if direction is None or not any(direction) or (point is not None and middle is None):
         msg = (
             f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
             '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
             "point) of three numbers each"
         )
         raise FieldError(msg)
-    return Slice(direction, place, repr(raw))
+    return Slice(direction, middle, repr(raw))
 
 
 def _example(raw: Any) -> str:
@@ -152,15 +126,14 @@ def _contour(raw: Any) -> Contour:
         name, value = pair[0].strip(), _number(pair[1])
         if name and math.isfinite(value):
             return Contour(name, value, repr(raw))
-    msg = (
-        f'contour is {brief(raw)}; expected an array and its value, as in contour="pressure=101325"'
-    )
+    expected = 'expected an array and its value, as in contour="pressure=101325"'
+    msg = f"contour is {brief(raw)}; {expected}"
     raise FieldError(msg)
 
 
 def _vector(raw: Any) -> Vector | None:
     try:
-        x, y, z = (_number(number) for number in raw)
+        x, y, z = map(_number, raw)
     except (TypeError, ValueError):
         return None
     return (x, y, z) if math.isfinite(x + y + z) else None
@@ -181,25 +154,57 @@ def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
     if dimension < 2:
         kind = "lines" if dimension else "points"
         return [f"the mesh has only {kind}; expected a surface, or a volume to cut"]
-    if cut is None:
-        return []
-    if dimension == 2:
+    if cut is not None and dimension == 2:
         name = type(cut).__name__.lower()
         return [
             f"{name} is {cut.text}, but the mesh is already a surface, of which a cut is only a "
             f"line; omit {name}"
         ]
-    return cut.faults(mesh)
+    names = dict.fromkeys(a.name for a in catalogue(mesh) if a.numeric and a.components == 1)
+    if not isinstance(cut, Contour) or cut.name in names:
+        return []
+    some = f"expected one of: {', '.join(names)}" if names else "it has only vectors, or no arrays"
+    return [
+        f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
+        f"{near_name(cut.name, names)}; {some}"
+    ]
 
 
-def surface_of(
-    mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
+def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record) -> Sheet:
+    """Return the nodes of the surface of a mesh, (N,), in which :func:`cut_faults` found none."""
+    surface, triangles = _surface_of(mesh, cut, velocity, record)
+    points = np.asarray(surface.points, dtype=np.float64)
+    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
+        msg = (
+            f"its cells refer to points {triangles.min()} to {triangles.max()}, but there are "
+            f"{len(points):,}; write or copy it again"
+        )
+        raise FieldError(msg)
+    areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
+
+    def nodes(array: MeshArray) -> Floats:
+        if array.where == "points" or cut is not None:
+            return values_of(surface, replace(array, where="points")).astype(np.float64)
+        values = values_of(surface, array).astype(np.float64)
+        finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+        return nodal_means(values[None], triangles, areas, len(points), finite)[0]
+
+    return Sheet(
+        points=points,
+        shown=np.asarray(surface.point_data[HIDDEN]) <= 0,
+        arrays=[array for array in catalogue(surface) if array.name != HIDDEN],
+        nodes=nodes,
+        triangles=triangles,
+    )
+
+
+def _surface_of(
+    mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record
 ) -> tuple[pv.PolyData, Indices]:
     """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
 
     Arrays on the cells of a volume are interpolated to its points before a cut. :data:`HIDDEN` is
-    above zero at points that depend on hidden ones. ``tell`` issues a notice about automatic
-    choices; :func:`cut_faults` returned none before.
+    above zero at points that depend on hidden ones.
     """
     import pyvista as pv
 
@@ -207,14 +212,17 @@ def surface_of(
     if isinstance(mesh, pv.UnstructuredGrid):
         kinds = mesh.distinct_cell_types
         flat = cut is None and any(kind.dimension == 2 for kind in kinds)
-        if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
+        if cut is None and any(kind.dimension == 3 for kind in kinds):
             text = "cells of two dimensions are" if flat else "outer surface of the volume is"
-            notify(f"the {text} drawn; to cut the volume, use {_examples(mesh)}")
+            text = f"the {text} drawn; to cut the volume, use {_examples(mesh)}"
+            record("surface", text, notable=True)
         drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
         drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
-        mesh = cut.of(_exact(_on_points(mesh, vectors)))
+        name = "isosurface" if isinstance(cut, Contour) else "slice"
+        record("surface", f"{name} {cut.text.strip(chr(39))}")
+        mesh = cut.of(_exact(_on_points(mesh, velocity)))
     elif not isinstance(mesh, pv.PolyData):
         mesh = mesh.extract_surface(
             pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"
@@ -236,27 +244,26 @@ def _examples(mesh: pv.DataSet) -> str:
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
-    scalars = (a for a in catalogue(mesh) if a.real and a.components == 1)
-    names = [a.name for a in scalars if a.name != HIDDEN]
+    arrays = catalogue(mesh)
+    names = [a.name for a in arrays if a.real and a.components == 1 and a.name != HIDDEN]
     return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
     """Return a mesh without its hidden cells, and with the hidden points marked."""
     hidden = hidden_nodes(mesh)
-    ghosts = mesh.cell_data.get("vtkGhostType")
-    shown = None if ghosts is None else (np.asarray(ghosts) & _NOT_DRAWN) == 0
+    ghosts = mesh.cell_data.get("vtkGhostType", np.zeros(mesh.n_cells, np.uint8))
     mesh = mesh.copy(deep=False)
     for data in (mesh.point_data, mesh.cell_data):
-        for name in BLANKING:
-            if name in data:
-                del data[name]
+        for name in set(BLANKING) & set(data):
+            del data[name]
     mesh.point_data[HIDDEN] = hidden.astype(np.float64)
-    if shown is None or shown.all():
-        return mesh
+    shown = (np.asarray(ghosts) & _NOT_DRAWN) == 0
     if not shown.any():
         msg = "all cells of the mesh are hidden; show some of them"
         raise FieldError(msg)
+    if shown.all():
+        return mesh
     return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
 
 
@@ -267,27 +274,25 @@ def _exact(mesh: Any) -> pv.DataSet:
     if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
         mesh = mesh.cast_to_structured_grid()
     if np.asarray(mesh.points).dtype != np.float64:
-        mesh.points = np.asarray(mesh.points, dtype=np.float64)
+        # Not by assignment, which would change the positions of the user's mesh.
+        mesh.SetPoints(pv.vtk_points(np.asarray(mesh.points, dtype=np.float64)))
     return mesh
 
 
 def _on_points(mesh: pv.DataSet, vectors: MeshArray) -> pv.DataSet:
     """Return a volume with its arrays on its points, perhaps the changed mesh."""
     chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
-    names = [
-        a.name
-        for a in catalogue(mesh)
-        if a.where == "cells"
-        and a.numeric
-        and (a.name in chosen or (a.components == 1 and a.name not in mesh.point_data))
-    ]
-    if names:
+    for array in catalogue(mesh):
+        name, is_scalar = array.name, array.components == 1
+        wanted = name in chosen or (is_scalar and name not in mesh.point_data)
+        if array.where == "cells":
+            values = np.asarray(mesh.cell_data.pop(name))
+            if array.numeric and wanted:
+                mesh.cell_data[name] = values.astype(np.float64)
+    if len(mesh.cell_data):
         cells = mesh.copy(deep=False)
-        cells.clear_data()
-        for name in names:
-            cells.cell_data[name] = np.asarray(mesh.cell_data[name], dtype=np.float64)
-        points = cells.cell_data_to_point_data().point_data
-        for name in names:
-            mesh.point_data[name] = points[name]
+        cells.point_data.clear()
+        for name, values in cells.cell_data_to_point_data().point_data.items():
+            mesh.point_data[name] = values
     mesh.cell_data.clear()
     return mesh

@@ -1,11 +1,8 @@
-"""The content of a PyVista object: meshes, their times, and hidden parts.
+"""The content of a PyVista object: meshes, blocks and their times.
 
 A mesh, a block of a MultiBlock, a list of meshes and a reader of a time series all become a
 sequence of :class:`TimeStep`. Meshes are yielded one at a time, so that a long series is never in
 memory as a whole.
-
-Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on cells, PLOT3D's
-``IBlank``, and the mask of points that a sampling filter missed.
 """
 
 from __future__ import annotations
@@ -16,10 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
-from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, missing_arrays
+from flowtex.sources.meshes.vectors import candidates
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -27,9 +23,6 @@ if TYPE_CHECKING:
 #: Blocks by their paths.
 Parts: TypeAlias = "dict[str, pv.DataSet]"
 
-#: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
-#: cells that are duplicates of a neighbouring piece carry data and count as visible.
-_HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
 #: Nodes of two steps closer than this share of the extent of the mesh are the same.
 SAME_NODE_SHARE = 1e-6
 #: Most blocks that a message lists.
@@ -46,11 +39,12 @@ class TimeStep:
 
 
 def time_steps(
-    source: Any, block: int | str | None = None, *, cut: bool = False
+    source: Any, block: int | str | None = None, *, cut: bool = False, record: Record | None = None
 ) -> Iterator[TimeStep]:
     """Yield the time steps of a mesh, blocks, a list or a reader, or of one block of these."""
+    options: dict[str, Any] = {"cut": cut, "record": Record() if record is None else record}
     if is_reader(source):
-        yield from _read(source, block, cut=cut)
+        yield from _read(source, block, **options)
     elif isinstance(source, (list, tuple)):
         if not source:
             msg = "the list of meshes is empty; expected one mesh for each time step"
@@ -59,9 +53,9 @@ def time_steps(
             if isinstance(item, TimeStep):
                 yield item if block is None else replace(item, grid=pick(item.grid, block))
             else:
-                yield _single(item, f"step {n}", block, cut=cut)
+                yield from _steps(item, f"step {n}", block, series=True, **options)
     else:
-        yield from _blocks(_wrapped(source, "the mesh"), block, cut=cut)
+        yield from _steps(source, "the mesh", block, series=False, **options)
 
 
 def is_reader(source: Any) -> bool:
@@ -108,7 +102,7 @@ def parts_of(mesh: Any) -> Parts:
 
 def drawn_parts(
     mesh: Any, *, series: bool = False, cut: bool = False
-) -> tuple[Parts, Literal["steps", "together", "choose"]]:
+) -> tuple[Parts, Literal["one", "steps", "together", "choose"]]:
     """Return the blocks of a mesh to draw by default, and how to combine them.
 
     Volumes are cut ``together``, and surfaces are drawn together. Structured grids take precedence
@@ -117,36 +111,23 @@ def drawn_parts(
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
-    flat = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 2}
-    solid = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 3}
-    usable = {name: grid for name, grid in grids.items() if grid.max_cell_dimensionality > 1}
-    drawn = usable or grids or solid or flat or parts
-    if cut and solid:
-        drawn = solid
+    dimensions = {name: part.max_cell_dimensionality for name, part in parts.items()}
+    flat, solid = ({n: p for n, p in parts.items() if dimensions[n] == rank} for rank in (2, 3))
+    usable = {name: grid for name, grid in grids.items() if dimensions[name] > 1}
+    drawn = (solid if cut else {}) or usable or grids or solid or flat or parts
+    if len(drawn) < 2:
+        return drawn, "one"
     if not series and _same_nodes(list(drawn.values())):
         return drawn, "steps"
-    if len(drawn) > 1 and (drawn is flat or (drawn is solid and cut)):
-        return drawn, "together"
-    return drawn, "choose"
-
-
-def several_parts(mesh: Any, *, series: bool = False, cut: bool = False) -> Parts:
-    """Return the blocks of a mesh by their paths, if one must be chosen; otherwise none."""
-    drawn, combination = drawn_parts(mesh, series=series, cut=cut)
-    return parts_of(mesh) if combination == "choose" and len(drawn) > 1 else {}
+    return drawn, "together" if drawn is flat or (drawn is solid and cut) else "choose"
 
 
 def _same_nodes(meshes: list[pv.DataSet]) -> bool:
     """Return whether meshes have the same nodes, judged by their sizes and bounds."""
-    if not meshes:
-        return False
     first = np.asarray(meshes[0].bounds)
     near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
-    return all(
-        part_size(mesh) == part_size(meshes[0])
-        and bool(np.all(np.abs(np.asarray(mesh.bounds) - first) <= near))
-        for mesh in meshes
-    )
+    same = (np.abs(np.asarray(mesh.bounds) - first).max() <= near for mesh in meshes)
+    return len({part_size(mesh) for mesh in meshes}) == 1 and all(same)
 
 
 def part_size(mesh: Any) -> str:
@@ -156,11 +137,10 @@ def part_size(mesh: Any) -> str:
     return f"{mesh.n_points:,} points, {mesh.n_cells:,} cells"
 
 
-def several_fault(parts: Parts, label: str) -> str:
+def several_fault(mesh: Any, label: str) -> str:
     """Return the message for a choice of several blocks."""
-    listed = [
-        f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
-    ]
+    parts = parts_of(mesh)
+    listed = [f"{n} ({name}, {part_size(parts[name])})" for n, name in enumerate(parts)]
     more = ", ..." if len(listed) > MOST_LISTED else ""
     solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
@@ -170,20 +150,19 @@ def several_fault(parts: Parts, label: str) -> str:
     )
 
 
-def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
+def _read(reader: Any, block: int | str | None, **options: Any) -> Iterator[TimeStep]:
     """Read one time after the other, and restore the time of the reader."""
     times = times_of(reader)
     if len(times) < 2 or not hasattr(reader, "set_active_time_value"):
-        for step in _blocks(_wrapped(reader.read(), "the mesh"), block, cut=cut):
-            time = step.time if len(times) != 1 else times[0]
-            yield TimeStep(step.grid, time, step.label)
+        for step in _steps(reader.read(), "the mesh", block, series=False, **options):
+            yield step if len(times) != 1 else replace(step, time=times[0])
         return
     before = reader.active_time_value
     try:
         for n, time in enumerate(times):
             reader.set_active_time_value(time)
-            step = _single(reader.read(), f"step {n}", block, cut=cut)
-            yield TimeStep(step.grid, time, step.label)
+            for step in _steps(reader.read(), f"step {n}", block, series=True, **options):
+                yield replace(step, time=time)
     finally:
         reader.set_active_time_value(before)
 
@@ -202,122 +181,64 @@ def pick(mesh: Any, block: int | str) -> pv.DataSet:
     raise FieldError(msg)
 
 
-def _blocks(mesh: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
-    """Yield a mesh as one step, and a MultiBlock of meshes with the same nodes as a series."""
-    if block is not None:
-        mesh = pick(mesh, block)
-    drawn, combination = drawn_parts(mesh, cut=cut)
-    if combination != "steps" or len(drawn) < 2:
-        yield _single(mesh, "the mesh", cut=cut)
-        return
-    for name, part in drawn.items():
-        yield TimeStep(part, _time(part), f"block {name!r}")
-
-
-def _single(
-    item: Any, label: str, block: int | str | None = None, *, cut: bool = False
-) -> TimeStep:
-    """Return the mesh to draw of a mesh or a MultiBlock, or the named block."""
-    mesh = _wrapped(item, label)
-    if block is not None:
-        part, time = pick(mesh, block), _time(mesh)
-        return TimeStep(part, _time(part) if time is None else time, label)
-    if parts := several_parts(mesh, series=True, cut=cut):
-        raise FieldError(several_fault(parts, label))
-    drawn, _ = drawn_parts(mesh, series=True, cut=cut)
+def _steps(
+    item: Any, label: str, block: int | str | None, *, series: bool, cut: bool, record: Record
+) -> Iterator[TimeStep]:
+    """Yield the mesh to draw of a mesh or a MultiBlock, or blocks with the same nodes as steps."""
+    whole = _wrapped(item, label)
+    drawn, combination = drawn_parts(
+        whole if block is None else pick(whole, block), series=series, cut=cut
+    )
     if not drawn:
-        raise FieldError(_no_mesh(mesh, label))
-    part, time = next(iter(drawn.values())), _time(mesh)
+        raise FieldError(_no_mesh(whole, label))
+    if combination == "choose":
+        raise FieldError(several_fault(whole, label))
+    if combination == "steps":
+        record("align", f"{len(drawn)} blocks with the same nodes are the time steps")
+        for name, part in drawn.items():
+            yield TimeStep(part, _time(part), f"block {name!r}")
+        return
+    part, time = next(iter(drawn.values())), _time(whole)
     time = _time(part) if time is None else time
-    return TimeStep(part if len(drawn) == 1 else _together(drawn), time, label)
+    yield TimeStep(part if combination == "one" else _together(drawn, record), time, label)
 
 
-def _together(parts: Parts) -> pv.UnstructuredGrid:
+def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
     """Return several blocks as one mesh, of those that have vectors."""
     import pyvista as pv
 
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
-    notify(f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}")
+    text = f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}"
+    record("align", text, notable=True)
     return pv.MultiBlock(list(with_flow.values())).combine()
-
-
-def check_arrays(step: TimeStep, vectors: MeshArray) -> None:
-    """Raise a FieldError for a step without the vectors of the first one."""
-    missing = missing_arrays(step.grid, vectors)
-    if missing:
-        arrays = [str(array) for array in catalogue(step.grid)]
-        msg = (
-            f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
-            "every step. Its arrays, with their numbers of components: "
-            f"{', '.join(arrays) or 'none'}"
-        )
-        raise FieldError(msg)
-
-
-def check_nodes(before: Floats, after: Floats, shown: Bools, label: str) -> None:
-    """Raise a FieldError for a mesh that moves."""
-    compared = shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
-    moved = float(np.max(np.abs(after[compared] - before[compared]), initial=0.0))
-    if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[compared], axis=0).max()):
-        msg = (
-            f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
-            "meshes are not supported: sample all steps onto one mesh with mesh.sample(step). If "
-            "these are parts of one mesh and not time steps, give one of them, as in block=0"
-        )
-        raise FieldError(msg)
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:
     """Return a PyVista mesh, also of a bare VTK one."""
     import pyvista as pv
 
-    if isinstance(source, pv.DataObject):
-        return source
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
-        return pv.wrap(source)
-    if (kind := type(source)).__module__.startswith("xarray."):
-        msg = (
-            f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components of "
-            "the velocity, as xr.Dataset({'u': u, 'v': v})"
-        )
-        raise FieldError(msg)
+        return source if isinstance(source, pv.DataObject) else pv.wrap(source)
+    kind = type(source)
     msg = (
-        f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
-        "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
+        f"{label} has type {kind.__name__}; expected a PyVista mesh or MultiBlock, a list of them, "
+        "or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
         "FlowField.from_triangles(points, triangles, velocity)"
     )
+    if kind.__module__.startswith("xarray."):
+        text = f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components"
+        msg = f"{text} of the velocity, as xr.Dataset({{'u': u, 'v': v}})"
     raise FieldError(msg)
 
 
 def _time(mesh: pv.DataObject) -> float | None:
     """Return the time of a mesh, in the field data of VTK's writers."""
-    if "TimeValue" not in mesh.field_data:
-        return None
-    values = np.asarray(mesh.field_data["TimeValue"], dtype=float).ravel()
+    values = np.asarray(mesh.field_data.get("TimeValue", []), dtype=float).ravel()
     return float(values[0]) if len(values) else None
 
 
 def _no_mesh(mesh: pv.DataObject, label: str) -> str:
-    kinds = sorted({type(block).__name__ for _, block in leaves(mesh)})
-    if not kinds:
-        return f"{label} has no blocks; check the file or filter that made it"
-    return f"{label} is a {', '.join(kinds)}; expected a mesh, with points and cells"
-
-
-def hidden_nodes(mesh: pv.DataSet) -> Bools:
-    """Return which nodes a mesh hides, (N,)."""
-    data = mesh.point_data
-    hidden = np.zeros(mesh.n_points, dtype=bool)
-    if "vtkGhostType" in data:
-        hidden |= (np.asarray(data["vtkGhostType"]) & _HIDDEN_POINT) != 0
-    # Negative values and those above one are walls and overlaps of grids, with data.
-    for name in {"IBlank", "vtkValidPointMask"} & set(data):
-        hidden |= np.asarray(data[name]) == 0
-    return hidden
-
-
-def visible_cells(mesh: pv.DataSet) -> Bools:
-    """Return which cells a mesh shows, (N,)."""
-    if "vtkGhostType" not in mesh.cell_data:
-        return np.ones(mesh.n_cells, dtype=bool)
-    return np.asarray((np.asarray(mesh.cell_data["vtkGhostType"]) & _HIDDEN_CELL) == 0)
+    kinds = ", ".join(sorted({type(block).__name__ for _, block in leaves(mesh)}))
+    is_mesh = "expected a mesh, with points and cells"
+    nothing = f"{label} has no blocks; check the file or filter that made it"
+    return f"{label} is a {kinds}; {is_mesh}" if kinds else nothing

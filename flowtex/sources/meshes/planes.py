@@ -27,7 +27,10 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex._util.notices import notify
+from flowtex.field.grids.periodic import find_closure
+from flowtex.field.grids.signs import axes, products
+from flowtex.sources.meshes.nodes import Sheet, hidden_nodes, visible_cells
+from flowtex.sources.meshes.vectors import MeshArray, catalogue, values_of
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
@@ -59,61 +62,100 @@ def count_nodes(dimensions: tuple[int, int, int]) -> str:
     return " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
 
 
-def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
-    """Return faults in a choice of plane; ``None`` means the mesh, or the middle of a volume."""
-    size = count_nodes(dimensions)
+def find_plane(mesh: Any, plane: Any) -> tuple[Plane | None, str]:
+    """Return a plane and a sentence about it, or ``None`` and the fault in the choice.
+
+    ``None`` stands for the mesh itself, or the middle of a volume.
+    """
+    dimensions = tuple(mesh.dimensions)
+    size, middle = count_nodes(dimensions), f"k={dimensions[2] // 2}"
     if min(dimensions) < 1:
-        return ["the mesh has no nodes; check the file or filter that made it"]
+        return None, "the mesh has no nodes; check the file or filter that made it"
     if sum(n > 1 for n in dimensions) < 2:
-        return [
-            f"the mesh has {size}, a single row; a surface needs at least 2 nodes along two of "
-            "the axes"
-        ]
+        text = "a single row; a surface needs at least 2 nodes along two of the axes"
+        return None, f"the mesh has {size}, {text}"
+    if plane is None and min(dimensions) == 1:
+        return Plane(dimensions, dimensions.index(1), 0), ""
     if plane is None:
-        return []
+        ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
+        return Plane(dimensions, 2, dimensions[2] // 2), (
+            f'the plane is "{middle}", the middle of {size}; choose another as in '
+            f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
+        )
     match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
     if match is None:
-        return [
-            f'plane is {plane!r}; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
-            f'plane="{_example(dimensions)}"'
-        ]
+        text = 'expected "i=N", "j=N" or "k=N" with a whole number N'
+        return None, f'plane is {plane!r}; {text}, as in plane="{middle}"'
     letter = match[1].lower()
     axis, index = "ijk".index(letter), int(match[2])
     count = dimensions[axis]
     if not -count <= index < count:
-        return [
-            f"plane is {plane!r}; expected {letter} from {-count} to {count - 1}, because the "
-            f"mesh has {size}"
-        ]
+        text = f"expected {letter} from {-count} to {count - 1}, because the mesh has {size}"
+        return None, f"plane is {plane!r}; {text}"
     if min(dimensions) == 1 and count > 1:
-        return [
-            f"plane is {plane!r}, which selects a single row, because the mesh has {size}; the "
-            "mesh is already a surface: omit plane"
-        ]
-    return []
+        text = f"which selects a single row, because the mesh has {size}; the mesh is already a"
+        return None, f"plane is {plane!r}, {text} surface: omit plane"
+    return Plane(dimensions, axis, index % count), f"plane {letter} = {index % count} of {size}"
 
 
-def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
-    """Return the selected plane; :func:`plane_faults` returned none before."""
-    if plane is None and min(dimensions) == 1:
-        return Plane(dimensions, dimensions.index(1), 0)
-    if plane is None:
-        plane = _example(dimensions)
-        ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
-        notify(
-            f'the plane is "{plane}", the middle of {count_nodes(dimensions)}; choose another as '
-            f'in plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
-        )
-    letter, _, index = plane.partition("=")
-    axis = "ijk".index(letter.strip().lower())
-    return Plane(dimensions, axis, int(index) % dimensions[axis])
+def plane_sheet(
+    grid: Any, plane: Plane, velocity: MeshArray, periodic: str | None, *, sign_free: bool
+) -> Sheet:
+    """Return the nodes of a plane of a structured mesh, (J, I)."""
+    points = _positions(grid, plane)
+    shown = ~plane.nodes(hidden_nodes(grid))
+    wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
+    visible = plane.cells(visible_cells(grid))
+
+    def nodes(array: MeshArray) -> Floats:
+        values = values_of(grid, array)
+        if array.where == "points":
+            return plane.nodes(values).astype(np.float64)
+        layers = plane.cells(values).astype(np.float64)
+        seen = visible & np.isfinite(layers.reshape(*visible.shape, -1)).all(axis=-1)
+        if sign_free and array == velocity:
+            return axes(_spread(products(layers), seen, wrap))
+        return _spread(layers, seen, wrap)
+
+    cells = visible
+    if velocity.where == "cells":
+        cells = visible & np.isfinite(plane.cells(values_of(grid, velocity))).all(axis=-1)
+    return Sheet(
+        points=points,
+        shown=shown,
+        arrays=catalogue(grid),
+        nodes=nodes,
+        cells=np.asarray(cells.any(axis=0)),
+        wrap=wrap,
+    )
 
 
-def _example(dimensions: tuple[int, int, int]) -> str:
-    return f"k={dimensions[2] // 2}"
+def _positions(grid: Any, plane: Plane) -> Floats:
+    """Return positions of the nodes of a plane, (J, I, 3)."""
+    import pyvista as pv
+
+    if isinstance(grid, pv.RectilinearGrid):
+        lines = [grid.x, grid.y, grid.z]
+        lines[plane.axis] = lines[plane.axis][plane.index : plane.index + 1]
+        part: Any = pv.RectilinearGrid(*lines)
+    else:
+        bare, ends = grid.copy(deep=False), np.reshape(grid.GetExtent(), (3, 2))
+        bare.clear_data()
+        ends[plane.axis] = ends[plane.axis, 0] + plane.index
+        part = bare.extract_subset(ends.ravel().tolist())
+    points = np.asarray(part.points, dtype=np.float64)
+    return points.reshape(*np.delete(plane.dimensions, plane.axis)[::-1], 3)
 
 
-def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
+def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
+    """Return whether the last line along (j, i) repeats the first one, so that cells go round."""
+    ends = find_closure(points), find_closure(np.swapaxes(points, 0, 1))
+    allowed = [periodic is None or letter in periodic for letter in "ji"]
+    j, i = (end.periodic and end.line is None for end in ends)
+    return j and allowed[0], i and allowed[1]
+
+
+def _spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
     """Return the mean of the visible cells around each node, (J, I, ...); NaN without such cells.
 
     Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` marks those that

@@ -9,11 +9,11 @@ VTK opens the file, because VTK takes any number in a broken header for a size.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 #: VTK's number for the function that makes ``Velocity`` from density and momentum.
 VELOCITY = 200
-
 #: Usual suffixes of PLOT3D grids.
 GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
 #: Most grids in one file; a header with more is invalid.
@@ -33,13 +32,16 @@ MOST_GRIDS = 100_000
 #: Bytes in memory of one byte of text: a number has at least two, and its word takes some 50.
 TEXT_GROWTH = 25
 _TEXT = frozenset(b"0123456789+-.eEdD \t\r\n,")
+_BOTH = (False, True)
+
+Dimensions = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
 class Layout:
     """The layout of a grid file; ``dimensions`` has 2 or 3 numbers for each grid."""
 
-    dimensions: tuple[tuple[int, ...], ...]
+    dimensions: Dimensions
     multiple: bool
     blanked: bool
     binary: bool = True
@@ -47,77 +49,60 @@ class Layout:
     record_marks: bool = False
     double: bool = False
 
-    @property
-    def length(self) -> int:
-        """Length of such a file: bytes when binary, otherwise numbers."""
-        axes = len(self.dimensions[0])
-        word = 4 if self.binary else 1
-        real = word * (2 if self.double and self.binary else 1)
-        marks = 8 if self.record_marks else 0
+    def length(self, *, solution: bool = False) -> int:
+        """Return the length of such a file, or of its solution: bytes if binary, else numbers."""
+        axes, word = len(self.dimensions[0]), 4 if self.binary else 1
+        real, marks = word * (1 + (self.double and self.binary)), 8 * self.record_marks
         header = word * axes * len(self.dimensions) + marks + (word + marks) * self.multiple
-        each = axes * real + word * self.blanked
-        return header + sum(math.prod(grid) * each + marks for grid in self.dimensions)
+        # A solution has four numbers of the flow, then density, momentum and energy at each node.
+        each = (axes + 2) * real if solution else axes * real + word * self.blanked
+        rest = 4 * real + 2 * marks if solution else marks
+        return header + sum(math.prod(grid) * each + rest for grid in self.dimensions)
 
 
 def find_layout(path: Path) -> Layout | None:
     """Return the layout of a grid file, or ``None`` if it is no PLOT3D grid."""
-    with path.open("rb") as file:
-        head = file.read(4 * (3 * MOST_GRIDS + 4))
-    if not head:
-        return None
-    if set(head[:256]) <= _TEXT:
-        return _text_layout(path)
-    size = path.stat().st_size
-    for order, marks, multiple, axes in product(("<", ">"), (False, True), (False, True), (3, 2)):
-        dimensions = _binary_header(head, order, axes, marks=marks, multiple=multiple)
-        for double, blanked in product((False, True), (False, True)):
-            layout = Layout(
-                dimensions,
-                multiple=multiple,
-                blanked=blanked,
-                big_endian=order == ">",
-                record_marks=marks,
-                double=double,
-            )
-            if dimensions and layout.length == size:
+    head, size = _head(path), path.stat().st_size
+    is_text = set(head[:256]) <= _TEXT
+    if is_text:
+        check_memory(TEXT_GROWTH * size, "the file")
+        words = path.read_bytes().replace(b",", b" ").split()
+        size = len(words)
+    choices = product(_BOTH, _BOTH, _BOTH, (3, 2), _BOTH, _BOTH)
+    for is_big, marks, multiple, axes, double, blanked in choices:
+        if is_text and (is_big or marks or double):
+            continue
+        numbers = words if is_text else _integers(head, big_endian=is_big)
+        if dimensions := _dimensions(numbers, axes, marks=marks, multiple=multiple):
+            layout = Layout(dimensions, multiple, blanked, not is_text, is_big, marks, double)
+            if layout.length() == size:
                 return layout
     return None
 
 
-def _binary_header(
-    head: bytes, order: str, axes: int, *, marks: bool, multiple: bool
-) -> tuple[tuple[int, ...], ...]:
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(4 * (3 * MOST_GRIDS + 4))
+
+
+def _integers(head: bytes, *, big_endian: bool) -> Any:
+    return np.frombuffer(head[: len(head) // 4 * 4], dtype=">i4" if big_endian else "<i4")
+
+
+def _dimensions(words: Sequence[Any], axes: int, *, marks: bool, multiple: bool) -> Dimensions:
     """Return the dimensions in a header of this form; empty if they are not plausible."""
-    words = np.frombuffer(head[: len(head) // 4 * 4], dtype=f"{order}i4")
     # A record mark stands before and after each record.
     count, first = 1, int(marks)
-    if multiple:
-        count, first = int(words[first : first + 1].sum()), 3 * first + 1
-    return _grids(words[first : first + axes * count].tolist(), count, axes)
-
-
-def _text_layout(path: Path) -> Layout | None:
-    check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
-    words = path.read_bytes().replace(b",", b" ").split()
-    for multiple, axes in product((False, True), (3, 2)):
-        try:
-            count = int(words[0]) if multiple else 1
-            numbers = [int(word) for word in words[multiple : multiple + axes * count]]
-        except ValueError:
-            continue
-        dimensions = _grids(numbers, count, axes)
-        for blanked in (False, True):
-            layout = Layout(dimensions, multiple=multiple, blanked=blanked, binary=False)
-            if dimensions and layout.length == len(words):
-                return layout
-    return None
-
-
-def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], ...]:
+    try:
+        if multiple:
+            count, first = int(words[first]), 3 * first + 1
+        numbers = [int(word) for word in words[first : first + axes * max(count, 0)]]
+    except (IndexError, ValueError):
+        return ()
     plausible = 0 < count <= MOST_GRIDS and len(numbers) == axes * count
     if not plausible or not all(0 < n < 2**31 for n in numbers):
         return ()
-    return tuple(tuple(numbers[n * axes : n * axes + axes]) for n in range(count))
+    return tuple(tuple(numbers[n : n + axes]) for n in range(0, len(numbers), axes))
 
 
 def find_solution(grid: Path) -> Path:
@@ -145,8 +130,7 @@ def find_grid(solution: Path) -> Path | None:
 def _solution_names(grid: Path) -> Iterator[str]:
     for old, new in (("xyz", "q"), ("XYZ", "Q")):
         if old in grid.name:
-            before, after = grid.name.rsplit(old, 1)
-            yield before + new + after
+            yield new.join(grid.name.rsplit(old, 1))
     yield grid.stem + (".Q" if grid.suffix.isupper() else ".q")
 
 
@@ -154,36 +138,24 @@ def _check_solution(layout: Layout, solution: Path) -> None:
     """Raise a FieldError for a solution that is cut, or of other grids."""
     if not layout.binary:
         return
-    axes, grids = len(layout.dimensions[0]), layout.dimensions
-    size = solution.stat().st_size
-    with solution.open("rb") as file:
-        head = file.read(4 * (3 * len(grids) + 4))
+    axes, size = len(layout.dimensions[0]), solution.stat().st_size
+    words = _integers(_head(solution), big_endian=layout.big_endian)
+    whole = layout.length(solution=True)
     # A grid of three dimensions that is cut may be as long as one of two.
     for rank in (axes, 5 - axes):
-        sizes = _binary_header(
-            head,
-            ">" if layout.big_endian else "<",
-            rank,
-            marks=layout.record_marks,
-            multiple=layout.multiple,
-        )
-        fits = rank == axes or size == _solution_length(layout, sizes, rank)
-        if sizes and fits and sizes != grids:
+        form = {"marks": layout.record_marks, "multiple": layout.multiple}
+        sizes = _dimensions(words, rank, **form)
+        other = sizes and replace(layout, dimensions=sizes).length(solution=True)
+        if sizes and sizes != layout.dimensions and (rank == axes or size == other):
             msg = (
                 f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has "
-                f"{grids[:3]}; the grid file is truncated, or the solution belongs to another grid"
+                f"{layout.dimensions[:3]}; the grid file is truncated, or the solution belongs to "
+                "another grid"
             )
             raise FieldError(msg)
-        check_count(size, _solution_length(layout, grids, axes), solution.name)
-        if size == _solution_length(layout, grids, axes):
-            break
-
-
-def _solution_length(layout: Layout, grids: tuple[tuple[int, ...], ...], axes: int) -> int:
-    real, mark = 8 if layout.double else 4, 8 * layout.record_marks
-    header = 4 * axes * len(grids) + mark + (4 + mark) * layout.multiple
-    # Four numbers of the flow, then density, momentum and energy at each node.
-    return header + sum((4 + (axes + 2) * math.prod(grid)) * real + 2 * mark for grid in grids)
+        check_count(size, whole, solution.name)
+        if size == whole:
+            return
 
 
 def read_plot3d(grid: Path, layout: Layout, solution: Path) -> pv.MultiBlock:

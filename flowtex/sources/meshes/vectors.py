@@ -9,13 +9,13 @@ from __future__ import annotations
 import difflib
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
-from flowtex._util.notices import notify
 from flowtex.sources.meshes.components import NO_VELOCITY, find_vectors
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ VELOCITY = re.compile(
     r"((mean|avg|average)[ _.-]?)?(vel|velocity|velocities|u|flow|wind|current)([ _.-]?mean)?",
     re.IGNORECASE,
 )
+#: Share of the extent of a mesh below which it is flat along an axis.
+FLAT_SHARE = 1e-6
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 
@@ -47,42 +49,49 @@ class MeshArray:
         return f"{self.name} ({self.where}, {self.components}{made})"
 
 
+class Selection(NamedTuple):
+    """The velocity and the reason for it, or ``None`` and the fault."""
+
+    array: MeshArray | None
+    text: str
+    notable: bool = False
+
+
 def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
     """Return the arrays on the points and cells of a mesh, without those of :data:`BLANKING`."""
     return [
         MeshArray(name, where, math.prod(shape), numeric=kind in "fiub", real=kind == "f")
         for where in _PLACES
-        for data in [_data(mesh, where)]
+        for data in [data_of(mesh, where)]
         for name in data
         for shape, kind in [(np.shape(data[name])[1:], np.asarray(data[name]).dtype.kind)]
         if name not in BLANKING
     ]
 
 
-def _data(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
+def data_of(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
+    """Return the arrays on points or cells."""
     return mesh.point_data if where == "points" else mesh.cell_data
 
 
 def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:
     """Return the values of an array, (N,) or (N, C)."""
-    data = _data(mesh, array.where)
+    data = data_of(mesh, array.where)
     if array.parts:
         return np.column_stack([np.asarray(data[name]) for name in array.parts])
-    return np.asarray(data[array.name])
+    values = np.asarray(data[array.name])
+    return values.reshape(-1) if array.components == 1 else values
 
 
 def candidates(mesh: pv.DataSet) -> list[MeshArray]:
     """Return possible velocities: arrays, or vectors of single components by their names."""
-    named = set()
-    for data in (mesh.GetPointData(), mesh.GetCellData()):
-        named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
+    parts = mesh.GetPointData(), mesh.GetCellData()
+    others = {a.GetName() for data in parts for a in (data.GetNormals(), data.GetTCoords()) if a}
     arrays = [
         array
         for array in catalogue(mesh)
-        if array.real
-        and array.components in (2, 3)
-        and array.name not in named
-        and not NO_VELOCITY.fullmatch(array.name)
+        if array.real and array.components in (2, 3)
+        if array.name not in others and not NO_VELOCITY.fullmatch(array.name)
     ]
     # Of arrays on points and cells one was computed from the other: those of points come first.
     by_name = {array.name: array for array in reversed(arrays)}
@@ -92,13 +101,20 @@ def candidates(mesh: pv.DataSet) -> list[MeshArray]:
 def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
     """Return vectors of single components by their names; pairs on flat meshes."""
     arrays = catalogue(mesh)
-    low, high = mesh.bounds[4:]
-    vectors = []
-    for where in _PLACES:
-        names = [a.name for a in arrays if a.where == where and a.real and a.components == 1]
-        for name, parts in find_vectors(names, pairs=low == high).items():
-            vectors.append(MeshArray(name, where, len(parts), parts=parts))
-    return vectors
+    thick = thick_axes(np.reshape(mesh.bounds, (3, 2)).T)
+    pair = (thick[0], thick[1]) if len(thick) == 2 else None
+    return [
+        MeshArray(name, where, len(parts), parts=parts)
+        for where in _PLACES
+        for names in [[a.name for a in arrays if a.where == where and a.real and a.components == 1]]
+        for name, parts in find_vectors(names, pair).items()
+    ]
+
+
+def thick_axes(points: AnyArray) -> list[int]:
+    """Return the axes, 0 to 2, along which points (N, 3) extend."""
+    spans = np.ptp(points, axis=0) if len(points) else np.zeros(3)
+    return [axis for axis, span in enumerate(spans) if span > FLAT_SHARE * spans.max()]
 
 
 def missing_arrays(mesh: pv.DataSet, vectors: MeshArray) -> list[str]:
@@ -108,94 +124,52 @@ def missing_arrays(mesh: pv.DataSet, vectors: MeshArray) -> list[str]:
     return [array for array in needed if array not in present]
 
 
-def choose_vectors(mesh: pv.DataSet, vectors: str | None) -> MeshArray:
-    """Return the selected vectors; :func:`vector_faults` returned none before."""
-    if vectors is None:
-        chosen = _preferred(mesh)[0]
-        others = [array for array in candidates(mesh) if array != chosen]
-        if others and mesh.active_vectors_name != chosen.name:
-            listed = ", ".join(map(str, others))
-            notify(
-                f'the velocity is "{chosen.name}", chosen by its name; other vectors: {listed}. '
-                f'Choose one of them as in vectors="{others[0].name}"'
-            )
-        return chosen
-    return next(a for a in _named_arrays(mesh, vectors) if _is_vector(a))
-
-
-def vector_faults(mesh: pv.DataSet, vectors: Any) -> list[str]:
-    """Return faults in a choice of vectors; ``None`` means the only ones."""
+def select_velocity(mesh: pv.DataSet, vectors: Any) -> Selection:
+    """Return the selected vectors; of ``None`` those that can be the velocity."""
     arrays = catalogue(mesh)
-    listed = ", ".join(map(str, arrays)) or "none"
+    known = f"with their numbers of components: {', '.join(map(str, arrays)) or 'none'}"
     if vectors is None:
-        return _search_faults(mesh, listed)
-    named = _named_arrays(mesh, vectors)
-    if any(_is_vector(a) for a in named):
-        return []
-    if named:
-        return [
-            f"vectors is {vectors!r}, an array of {named[0].components} component(s); expected 2 "
-            "or 3 components at each point or cell, or the names of 2 or 3 arrays of one "
-            "component, separated by commas. The arrays of the mesh, with their numbers of "
-            f"components: {listed}"
+        return _found(mesh, known)
+    words = tuple(word.strip() for word in str(vectors).split(","))
+    named = [a for a in (*arrays, *_component_vectors(mesh)) if a.name == vectors]
+    if not named and len(words) in (2, 3):
+        scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
+        named = [
+            MeshArray(",".join(words), where, len(words), parts=words)
+            for where in _PLACES
+            if scalars.issuperset((where, word) for word in words)
         ]
-    words = _component_names(vectors)
-    if len(words) > 1:
-        return [_component_fault(vectors, words, arrays, listed)]
-    return [
-        f"vectors is {vectors!r}, but the mesh has no such array{_hint(vectors, arrays)} Its "
-        f"arrays, with their numbers of components: {listed}"
-    ]
+    for array in named:
+        if array.numeric and array.components in (2, 3):
+            return Selection(array, f'the velocity is "{array.name}", as selected')
+    names = [array.name for array in arrays]
+    if named:
+        reason = (
+            f", an array of {named[0].components} component(s); expected 2 or 3 components at each "
+            "point or cell, or the names of 2 or 3 arrays of one component, separated by commas. "
+            "The arrays of the mesh,"
+        )
+    elif len(words) == 1:
+        reason = f", but the mesh has no such array{near_name(vectors, names) or '.'} Its arrays,"
+    elif absent := [word for word in words if word not in names]:
+        hint = near_name(absent[0], names) or "."
+        reason = f", but the mesh has no array {absent[0]!r}{hint} The arrays of the mesh,"
+    else:
+        reason = (
+            "; expected two or three arrays of one component each, all on points or all on cells. "
+            "The arrays of the mesh,"
+        )
+    return Selection(None, f"vectors is {vectors!r}{reason} {known}")
 
 
-def _named_arrays(mesh: pv.DataSet, vectors: Any) -> list[MeshArray]:
-    """Return the arrays of a name, or the vectors of the components that it lists."""
-    arrays = catalogue(mesh)
-    if named := [a for a in arrays if a.name == vectors]:
-        return named
-    if found := [a for a in _component_vectors(mesh) if a.name == vectors]:
-        return found
-    words = _component_names(vectors)
-    if len(words) not in (2, 3):
-        return []
-    scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
-    return [
-        MeshArray(",".join(words), where, len(words), parts=words)
-        for where in _PLACES
-        if scalars.issuperset((where, word) for word in words)
-    ]
+def near_name(name: Any, names: Iterable[str]) -> str:
+    """Return a question for the name that was meant; empty if no name is similar."""
+    close = difflib.get_close_matches(str(name), list(names), n=1)
+    return f'. Did you mean "{close[0]}"?' if close else ""
 
 
-def _component_names(vectors: Any) -> tuple[str, ...]:
-    """Return the names between commas."""
-    return tuple(word.strip() for word in str(vectors).split(","))
-
-
-def _is_vector(array: MeshArray) -> bool:
-    return array.numeric and array.components in (2, 3)
-
-
-def _component_fault(
-    vectors: Any, words: tuple[str, ...], arrays: list[MeshArray], listed: str
-) -> str:
-    end = f"The arrays of the mesh, with their numbers of components: {listed}"
-    missing = next((w for w in words if not any(a.name == w for a in arrays)), None)
-    if missing is not None:
-        hint = _hint(missing, arrays)
-        return f"vectors is {vectors!r}, but the mesh has no array {missing!r}{hint} {end}"
-    return (
-        f"vectors is {vectors!r}; expected two or three arrays of one component each, all on "
-        f"points or all on cells. {end}"
-    )
-
-
-def _hint(name: Any, arrays: list[MeshArray]) -> str:
-    close = difflib.get_close_matches(str(name), [a.name for a in arrays], n=1)
-    return f'. Did you mean "{close[0]}"?' if close else "."
-
-
-def _preferred(mesh: pv.DataSet) -> list[MeshArray]:
-    """Return possible velocities, or the one that the mesh marks or a name identifies."""
+def _found(mesh: pv.DataSet, known: str) -> Selection:
+    """Return the only velocity, or the one that the mesh marks or a name identifies."""
     arrays = candidates(mesh)
     active = mesh.active_vectors_name
     # VTK's PLOT3D reader marks the momentum automatically: that is no choice.
@@ -203,21 +177,26 @@ def _preferred(mesh: pv.DataSet) -> list[MeshArray]:
         active = None
     marked = [a for a in arrays if a.name == active][:1]
     named = [a for a in arrays if VELOCITY.fullmatch(a.name)]
-    return marked or (named if len(named) == 1 else arrays)
-
-
-def _search_faults(mesh: pv.DataSet, listed: str) -> list[str]:
-    arrays = _preferred(mesh)
-    if not arrays:
-        return [
+    preferred = marked or (named if len(named) == 1 else arrays)
+    if not preferred:
+        text = (
             "the mesh has no vectors that could be the velocity; expected a point or cell array "
-            "of real numbers with 2 or 3 components. Its arrays, with their numbers of "
-            f"components: {listed}. To use single components, separate their names by commas, as "
-            'in vectors="u,v,w"'
-        ]
-    if len(arrays) > 1:
-        return [
-            f"the mesh has {len(arrays)} arrays that could be the velocity: "
-            f'{", ".join(map(str, arrays))}; choose one, as in vectors="{arrays[-1].name}"'
-        ]
-    return []
+            f"of real numbers with 2 or 3 components. Its arrays, {known}. To use single "
+            'components, separate their names by commas, as in vectors="u,v,w"'
+        )
+        return Selection(None, text)
+    array, *others = preferred
+    listed = ", ".join(map(str, preferred))
+    if others:
+        text = f"the mesh has {len(preferred)} arrays that could be the velocity: {listed}"
+        return Selection(None, f'{text}; choose one, as in vectors="{preferred[-1].name}"')
+    others = [other for other in arrays if other != array]
+    text = f'the velocity is "{array.name}"'
+    if not others:
+        kind = f"{array.where.removesuffix('s')} array with {array.components} components"
+        return Selection(array, f"{text}, the only {kind}")
+    if mesh.active_vectors_name == array.name:
+        return Selection(array, f"{text}, the active vectors of the mesh")
+    listed = ", ".join(map(str, others))
+    text += f', chosen by its name; other vectors: {listed}. Choose one of them as in vectors="'
+    return Selection(array, f'{text}{others[0].name}"', notable=True)

@@ -13,12 +13,16 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVELS, NODES
+from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.models.mesh import Mesh
+from flowtex.sources.models.scattered import NAMED, points_in, with_points
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: The attribute of xarray-selafin with the corners of faces.
+TELEMAC = "ikle2"
 #: Names of the corners of faces, and of coordinates of the nodes, of models without a convention.
 #: Each has the mesh's words, the corners, pairs of coordinates, and the number of the first node.
 MODELS = (
@@ -45,9 +49,11 @@ MODELS = (
     # join the three around each corner.
     ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
     ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex")), 1),
+    ("TUFLOW FV", ("cell_node",), (("node_X", "node_Y"),), 1),
+    ("TELEMAC", (TELEMAC,), (("x", "y"),), 1),
 )
-#: A dimension of the two components of a vector.
-COMPONENTS = re.compile(r"^(two|component\w*|n?vec\w*)$", re.IGNORECASE)
+#: Variables with the number of corners of each face.
+COUNTS = {"verticesOnCell": "nEdgesOnCell", "cell_node": "cell_Nvert"}
 
 
 def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
@@ -56,7 +62,7 @@ def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
     for ds in datasets:
         for name in ds.variables:
             variables.setdefault(str(name), ds[name])
-    for find in (_ugrid, _of_models, _bounded):
+    for find in (_ugrid, _of_models, _bounded, points_in):
         for mesh in find(variables):
             return mesh
     return None
@@ -102,7 +108,7 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             if longitude.ndim != (2 if x == y else 1) or not _varies(longitude):
                 continue
             attrs = {**corners.attrs}
-            counts = variables.get("nEdgesOnCell") if names == ("verticesOnCell",) else None
+            counts = variables.get(COUNTS.get(str(corners.name), ""))
             first_index = int(attrs.get("start_index", first))
             yield Mesh(kind, longitude, latitude, corners, counts, first_index)
 
@@ -133,14 +139,17 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
 def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets whose mesh, if there is one, has dimensions of known names.
 
-    Vectors in one variable become two, and levels get values where files have them elsewhere.
+    Levels and times get values where files have them elsewhere. Without faces, values along one
+    dimension are at scattered points.
     """
+    datasets = [_completed(ds) for ds in datasets]
+    _check_classes(datasets)
     mesh = find_mesh(datasets)
     if mesh is None:
-        return list(datasets)
+        return with_points(datasets)
     sizes = dict(zip((NODES, FACES), _sizes(mesh), strict=True))
     named = dict(zip((NODES, FACES), mesh.dims, strict=True))
-    return [_levels(_split_vectors(_renamed(ds, named, sizes)), mesh) for ds in datasets]
+    return [_levels(_renamed(ds, named, sizes), mesh) for ds in datasets]
 
 
 def _sizes(mesh: Mesh) -> tuple[int, int]:
@@ -161,17 +170,37 @@ def _renamed(ds: xr.Dataset, named: dict[str, str], sizes: dict[str, int]) -> xr
     return ds
 
 
-def _split_vectors(ds: xr.Dataset) -> xr.Dataset:
-    """Split variables with both components of a velocity into two."""
-    for name, array in list(ds.data_vars.items()):
-        dim = next((d for d in array.dims if COMPONENTS.match(str(d))), None)
-        if dim is None or array.sizes[dim] != 2 or not {NODES, FACES} & set(array.dims):
-            continue
-        both = {f"{name}_{letter}": array.isel({dim: n}) for n, letter in enumerate("uv")}
-        for part in both.values():
-            part.attrs = {k: v for k, v in array.attrs.items() if k == "units"}
-        ds = ds.drop_vars([name]).assign(both)
+def _completed(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset of TUFLOW FV or TELEMAC in the form of those of other models."""
+    if (faces := ds.attrs.get(TELEMAC)) is not None:
+        ds = ds.assign({TELEMAC: ((f"{TELEMAC}_faces", f"{TELEMAC}_corners"), np.asarray(faces))})
+    if "ResTime" in ds and ds["ResTime"].ndim == 1:
+        time = ds["ResTime"].assign_attrs(axis="T")
+        ds = ds.assign_coords({str(time.dims[0]): time.variable})
+    if {"cell_node", "idx3"} <= set(ds.variables) and "NumCells3D" in ds.dims:
+        # Cells of a column follow each other from the top.
+        ds = ds.isel(NumCells3D=ds["idx3"] - 1).drop_vars(["idx2", "idx3", "NL"], errors="ignore")
+    if "cell_node" in ds and "stat" in ds:
+        ds = ds.assign(wet_cells=(ds["stat"] != 0).astype("i1")).drop_vars("stat")
     return ds
+
+
+def _check_classes(datasets: Sequence[xr.Dataset]) -> None:
+    """Raise a FieldError for speeds and directions that are numbers of classes."""
+    classes = {
+        str(name): str(array.attrs["flag_bounds"])
+        for ds in datasets
+        for name, array in ds.data_vars.items()
+        if "flag_bounds" in array.attrs
+        and re.search("speed|direction", str(array.attrs.get("standard_name", "")))
+    }
+    if classes and not any(pair.rank <= NAMED for pair in find_pairs(datasets)):
+        msg = (
+            f"{' and '.join(classes)} store classes of the speed and the direction, not their "
+            f"values; their bounds are in {' and '.join(classes.values())}. Replace each number "
+            "by the middle of its class, compute the components, and pass the dataset with both"
+        )
+        raise FieldError(msg)
 
 
 def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:

@@ -17,10 +17,13 @@ from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
 from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.models.points import join_points
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: The kind of a mesh whose faces are triangles between neighbours.
+POINTS = "points"
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
 LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
@@ -42,6 +45,8 @@ class Mesh:
     @property
     def dims(self) -> tuple[str, str]:
         """Names of the dimensions of nodes and of faces in the files."""
+        if self.kind == POINTS:
+            return str(self.x.dims[0]), ""
         if self.corners is None:
             return "", str(self.x.dims[0])
         return _dim(self.x, NODES), _dim(self.corners, FACES)
@@ -104,6 +109,9 @@ class Mesh:
                 a, b = np.degrees(a), np.degrees(b)
         else:
             b = b * (units.factor(str(self.y.attrs.get("units", "")), self.unit) or 1.0)
+        if self.kind == POINTS:
+            positions = _positions(a, b, self.is_earth)
+            return a, b, join_points(positions, on_sphere=self.is_earth)
         if self.corners is None:
             return _from_bounds(a, b)
         return a, b, _numbers(self, self.corners, len(a))
@@ -126,9 +134,7 @@ class Mesh:
     @cached_property
     def positions(self) -> Floats:
         """Positions of the nodes, (N, 3): on the globe, or in the plane."""
-        if not self.is_earth:
-            return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
-        return Projection(GLOBE).positions(self.a, self.b)
+        return _positions(self.a, self.b, self.is_earth)
 
     @cached_property
     def middles(self) -> tuple[Floats, Floats]:
@@ -190,10 +196,19 @@ class Mesh:
     @property
     def words(self) -> str:
         """Words for the mesh and its size."""
+        if self.kind == POINTS:
+            return f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
         edges = (self.faces >= 0).sum(axis=1)
         kinds = {3: "triangles", 4: "quadrilaterals"}
         name = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
+
+
+def _positions(a: Floats, b: Floats, is_earth: bool) -> Floats:  # noqa: FBT001
+    """Return positions, (N, 3), on the globe or in the plane."""
+    if is_earth:
+        return Projection(GLOBE).positions(a, b)
+    return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
 
 def _dim(array: xr.DataArray, ours: str) -> str:

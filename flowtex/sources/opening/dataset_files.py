@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Sequence
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flowtex._util.arguments import brief
 from flowtex._util.extras import import_extra
@@ -17,15 +17,14 @@ from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
 from flowtex.sources.opening.series import Opened, are_steps, of_tree
+from flowtex.sources.opening.tables import read_csv, read_vec
 from flowtex.sources.opening.wind_json import read_winds
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
-ZARR, JSON = (".zarr",), (".json",)
+ZARR, JSON = (".zarr",), (".json", ".geojson")
+TABLES = {".csv": read_csv, ".vec": read_vec}
 #: Suffixes of files that are opened by xarray.
-SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 #: The newest Python for which the wheels of eccodes have its library.
 ECCODES_UNTIL = (3, 13)
 
@@ -76,10 +75,12 @@ def belong_together(paths: Sequence[Path]) -> bool:
 
 def open_datasets(paths: Sequence[Path]) -> Opened:
     """Open files that belong together: parts of one model's output, or steps of a series."""
-    return Opened(ds for path in paths for ds in open_files(path))
+    opened = [open_files(path) for path in paths]
+    parts = (ds for datasets in opened for ds in datasets)
+    return Opened(parts, [close for datasets in opened for close in datasets.closers])
 
 
-def open_files(path: Path) -> list[xr.Dataset]:
+def open_files(path: Path) -> Opened:
     """Open one file; GRIB has a dataset for each group of messages with common axes."""
     xarray = import_extra("xarray", "xarray")
     # Its library must be loaded before those of other readers, which contain another PROJ.
@@ -90,9 +91,12 @@ def open_files(path: Path) -> list[xr.Dataset]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:
-            return [read_winds(path)]
+            return Opened([read_winds(path)])
+        if suffix in TABLES:
+            return Opened([TABLES[suffix](path)])
         if suffix in GRIB:
-            return list(import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""}))
+            parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
+            return Opened.of(parts, parts)
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
@@ -106,13 +110,13 @@ def open_files(path: Path) -> list[xr.Dataset]:
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
-            return [ds]
+            return Opened.of([ds], [ds])
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             msg = f"the group {group!r} does not exist; expected {groups}"
             raise FieldError(msg)
-        return [of_tree(tree[group] if group else tree, path)]
+        return Opened.of([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
 
 
 def import_cfgrib() -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,9 +17,11 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import as_slice
+from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
+from flowtex.sources.opening.components import split_components
+from flowtex.sources.opening.tables import as_dataset
 from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ DAYS_AS_NUMBERS = "%Y%m%d"
 class Datasets(list["xr.Dataset"]):
     """Datasets whose axes cf_xarray recognises, with times as dates.
 
-    ``opened`` are those of files that flowtex opened, and closes after each read.
+    ``opened`` close the files that flowtex opened, after each read.
     """
 
     def __init__(self, items: Iterable[xr.Dataset] = (), *, opened: Any = ()) -> None:
@@ -43,12 +45,26 @@ class Datasets(list["xr.Dataset"]):
 
     def close(self) -> None:
         """Close the files; a later read opens them again."""
-        for ds in self.opened:
-            ds.close()
+        for close in self.opened:
+            close()
 
 
 class Opened(list["xr.Dataset"]):
-    """Datasets of files that flowtex has opened."""
+    """Datasets of files that flowtex has opened, and functions that close these."""
+
+    def __init__(
+        self, items: Iterable[xr.Dataset], closers: Iterable[Callable[[], None]] = ()
+    ) -> None:
+        super().__init__(items)
+        self.closers = tuple(closers)
+
+    @classmethod
+    def of(cls, items: Iterable[xr.Dataset], parts: Iterable[Any]) -> Opened:
+        """Return datasets, with the functions that close the datasets and nodes of trees.
+
+        The method ``close`` of a dataset works only once, but xarray opens a file for each read.
+        """
+        return cls(items, [part._close for part in parts if part._close is not None])
 
 
 def as_datasets(data: Any, record: Record | None = None) -> Datasets:
@@ -62,18 +78,14 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     xarray, record = import_extra("xarray", "xarray"), record or Record()
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
-        if not isinstance(ds, (xarray.Dataset, xarray.DataTree)):
-            msg = (
-                f"data has type {type(ds).__name__}; expected an xarray Dataset or DataTree, or a "
-                "list of them"
-            )
-            raise FieldError(msg)
-        result.append(_decoded(of_tree(ds) if isinstance(ds, xarray.DataTree) else ds))
+        several = isinstance(data, (list, tuple)) and len(data) > 1
+        part = of_tree(ds) if isinstance(ds, xarray.DataTree) else as_dataset(ds, several=several)
+        result.append(split_components(_decoded(part)))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
-    opened = data if isinstance(data, Opened) else ()
+    opened = data.closers if isinstance(data, Opened) else ()
     return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), opened=opened)
 
 
@@ -138,6 +150,8 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
     for name in (*LETTERS, *(n for n, c in ds.coords.items() if c.dims == (n,))):
         if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
             continue
+        if ds[name].dtype.kind == "O" and is_dates(ds[name]):
+            continue
         dim = str(ds[name].dims[0])
         rows = ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
         texts = [
@@ -175,6 +189,11 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         for axis, names in marks.items():
             for name in names:
                 guessed[name].attrs.setdefault("axis", axis)
+    for name, c in guessed.coords.items():  # such as months, which are no times of a series
+        is_guess = "axis" not in ds[name].attrs and c.attrs.get("axis") == "T"
+        is_time = units.measures(str(c.attrs.get("units", "")), units.TIMES)
+        if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
+            del c.attrs["axis"]
     return guessed
 
 

@@ -16,14 +16,13 @@ import numpy as np
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.limits import check_count, check_memory
+from flowtex.sources.opening.tables import TEXT_GROWTH, of_features
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: Names of the components by the number of the parameter.
 NUMBERS = {2: "u", 3: "v"}
-#: Most bytes in memory for one byte of JSON: each "[]," is a list.
-JSON_GROWTH = 24
 WORDS = {"u": "eastward_wind", "v": "northward_wind"}
 
 
@@ -31,13 +30,15 @@ def read_winds(path: Path) -> xr.Dataset:
     """Read the components of the first level and time."""
     xarray = import_extra("xarray", "xarray")
     try:
-        check_memory(JSON_GROWTH * path.stat().st_size, "the file")
+        check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
         records = json.loads(path.read_text(encoding="utf-8"))
     except FieldError:
         raise
     except (ValueError, RecursionError) as error:
         msg = f"it is not valid JSON ({error})"
         raise FieldError(msg) from error
+    if isinstance(records, dict) and records.get("type") == "FeatureCollection":
+        return of_features(records)
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
         msg = (
             "it is not a list of records with header and data, as used by leaflet-velocity and "

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from earth_fields import winds
 from triangle_meshes import sphere
 
 pytest.importorskip("trame_rca")
@@ -18,6 +19,7 @@ from small_pages import small_page
 from flowtex import FlowField
 from flowtex.app import FlowApp
 from flowtex.app.streaming.points import number_text, path_of, with_unit, words_of
+from flowtex.field.earth import Projection
 from flowtex.scene.options import Appearance
 from flowtex.scene.probe import locate, probe
 from flowtex.scene.scene import Scene
@@ -127,6 +129,22 @@ def test_a_place_of_the_view_is_a_point_of_the_surface() -> None:
     assert read(app, index=[20, 10])["point"]["position"] == pytest.approx(middle["position"])
     for at in ({"index": [41.0, 1.0]}, {"index": [math.nan, 1]}, {"place": "ab"}, {}):
         assert read(app, **at) is None
+    app.close()
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_point_of_a_globe_has_the_values_of_the_field() -> None:
+    field = winds(cells=36)
+    app = small_page(field, 5, 240, 160)
+    # The mesh that is drawn has only the triangles of this part.
+    app.area.viewport.draw(240, 160, (0, 0, 20, 20))
+    for place in ([0.0, 0.0], [0.2, -0.3]):
+        told = read(app, place=place, path=True)["point"]
+        lon, lat = (float(part) for part in Projection("globe").lonlat(np.array(told["position"])))
+        expected = field.at(lon, lat)
+        assert expected is not None
+        assert told["eastNorth"] == pytest.approx([expected.eastward, expected.northward])
+        assert told["values"]["speed"] == pytest.approx(expected.speed)
     app.close()
 
 

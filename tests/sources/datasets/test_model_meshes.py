@@ -96,7 +96,10 @@ def test_scalars_at_nodes_and_in_faces() -> None:
     assert field.units == {"height": "m", "twice": "m"} and set(field.scalars) == set(field.units)
 
 
-@pytest.mark.parametrize("projection", [None, "robinson", "mercator", "north", "EPSG:3413"])
+@pytest.mark.parametrize(
+    "projection",
+    [None, "robinson", "mercator", "north", "EPSG:3413", "+proj=igh", "+proj=moll +lon_0=150"],
+)
 def test_a_global_mesh_on_flat_maps(projection: str | None) -> None:
     mesh = globe(2000)
     field = FlowField.from_xarray(ugrid(mesh, at="node"), projection=projection)

@@ -17,6 +17,11 @@ from flowtex.sources.mesh_source import FlowSource
 from flowtex.sources.meshes.components import find_vectors
 from flowtex.sources.summary import describe
 
+#: The flows of these tests go through their meshes.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+)
+
 
 def says(text: str) -> pytest.RaisesExc[FieldError]:
     """Expect an error with exactly this text."""
@@ -73,9 +78,9 @@ def test_names_that_belong_together(names: str, vector: str | None) -> None:
 
 
 def test_pairs_do_where_there_is_no_third() -> None:
-    assert find_vectors(["u", "v"], pairs=True) == {"u,v": ("u", "v")}
-    assert find_vectors(["u", "v", "w"], pairs=True) == {"u,v,w": ("u", "v", "w")}
-    assert find_vectors(["v", "w"], pairs=True) == {}
+    assert find_vectors(["u", "v"], (0, 1)) == {"u,v": ("u", "v")}
+    assert find_vectors(["u", "v", "w"], (0, 1)) == {"u,v,w": ("u", "v", "w")}
+    assert find_vectors(["v", "w"], (0, 1)) == {}
 
 
 def test_a_name_that_is_taken_is_not_given_again() -> None:

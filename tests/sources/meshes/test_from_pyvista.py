@@ -17,6 +17,11 @@ from flowtex.sources.meshes.planes import nodes_to_keep
 
 pv = pytest.importorskip("pyvista")
 
+#: The flows of these tests go through their meshes.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+)
+
 Floats = NDArray[np.float64]
 
 HIDDEN_POINT, HIDDEN_CELL = 2, 32
@@ -368,7 +373,11 @@ def test_grids_are_time_steps(container: Any) -> None:
 
 
 def test_steps_without_times_are_numbered() -> None:
-    assert FlowField.from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
+    field = FlowField.from_pyvista([at_time(None), at_time(None)])
+    assert field.times.tolist() == [0, 1]
+    assert "step 0 has no time, so the 2 steps are numbered from 0" in field.reading.of("align")
+    with pytest.warns(Notice, match="step 0 has no time, so the 2 steps are numbered from 0"):
+        assert FlowField.from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
 
 
 def test_a_single_mesh_keeps_its_time() -> None:
@@ -570,8 +579,14 @@ def moved() -> Any:
             "vectors and the mask",
         ),
         (
-            [at_time(2.0), at_time(1.0)],
+            [at_time(2.0), at_time(1.0), at_time(2.0)],
             {},
+            "step 0 and step 2 both have the time 2; expected different times: leave out one of "
+            "them, or give times=[...]",
+        ),
+        (
+            [at_time(2.0), at_time(1.0)],
+            {"times": [2, 1]},
             "times[1] = 1 is not greater than times[0] = 2; expected strictly increasing times: "
             "sort the steps, and drop repeated ones",
         ),

@@ -17,6 +17,11 @@ from flowtex.errors import FieldError
 from flowtex.sources.mesh_source import FlowSource
 from flowtex.sources.summary import BlockSummary, describe
 
+#: The flows of these tests go through their meshes.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+)
+
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
 
 

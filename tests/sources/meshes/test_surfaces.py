@@ -156,6 +156,7 @@ def test_vectors_on_cells_come_to_nodes_by_area() -> None:
 
 
 @pytest.mark.parametrize("where", ["points", "cells"])
+@pytest.mark.filterwarnings(ACROSS)
 def test_hidden_parts_are_blanked(where: str) -> None:
     mesh = uniform(pv.Plane(i_resolution=4, j_resolution=1))
     if where == "points":
@@ -512,6 +513,7 @@ def test_a_slice_through_rounded_nodes_has_no_crack() -> None:
     mesh = pv.ImageData(dimensions=(13, 13, 13), spacing=(1 / 12,) * 3).to_tetrahedra()
     mesh.points = np.asarray(mesh.points, dtype=np.float32)
     field = FlowField.from_pyvista(turning(mesh), slice="1,0.1,0.2 through 0.3333333,0.5,0.5")
+    assert mesh.points.dtype == np.float32, "the mesh is not changed"
     surface = shape_of(field)
     alone, corner = np.nonzero(surface.neighbours < 0)
     ends = np.stack([surface.triangles[alone, (corner + by) % 3] for by in (1, 2)])

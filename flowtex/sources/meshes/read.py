@@ -1,0 +1,216 @@
+"""From PyVista meshes to the arrays of a field, in the steps of :data:`flowtex.field.arrays.STEPS`.
+
+The velocity and the surface are selected in the first step of a series. Every step is aligned with
+the first one, masked, and drawn as a :class:`Sheet`: a plane of a structured mesh, or a surface of
+triangles. Vectors on cells become vectors on nodes. :meth:`FlowField.from_arrays` and
+:meth:`FlowField.from_triangles` check the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError, raise_faults
+from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
+from flowtex.sources.meshes.components import named_axes
+from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
+from flowtex.sources.meshes.nodes import Masks, Sheet
+from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps
+from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
+from flowtex.sources.meshes.series import (
+    aligned,
+    check_arrays,
+    check_nodes,
+    common_scalars,
+    ordered_times,
+)
+from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity, thick_axes
+from flowtex.sources.record import Record
+
+#: Greatest ratio of the variances across and along a flat mesh.
+FLAT = 1e-10
+
+
+def read_meshes(
+    mesh: Any,
+    *,
+    vectors: str | None = None,
+    plane: str | None = None,
+    slice: Any = None,
+    contour: Any = None,
+    times: ArrayLike | None = None,
+    periodic: str | None = None,
+    sign_free: bool = False,
+    block: int | str | None = None,
+    name: str = "",
+) -> GridArrays | TriangleArrays:
+    """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
+    record = Record()
+    cut = find_cut(slice, contour)
+    if cut is not None and plane is not None:
+        option = "slice" if slice is not None else "contour"
+        msg = f"plane is {plane!r} and {option} is {cut.text}; choose one of the two"
+        raise FieldError(msg)
+    steps = time_steps(mesh, block, cut=cut is not None, record=record)
+    first = next(steps)
+    on_grid = is_structured(first.grid) and cut is None
+    if not on_grid:
+        _refuse({"plane": plane, "periodic": periodic, "sign_free": sign_free or None})
+    velocity, chosen = choose(first.grid, vectors, plane, cut, record)
+
+    def draw(grid: Any) -> Sheet:
+        if chosen is not None:
+            return plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
+        return surface_sheet(grid, cut, velocity, record)
+
+    arrays = _stacked(chain([first], steps), velocity, draw, times, record)
+    record.notify()
+    arrays |= {"name": name, "reading": record.reading}
+    if first.grid.max_cell_dimensionality < 3:
+        arrays["notable_normal"] = NOTABLE_SHARE
+    if on_grid:
+        return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
+    return TriangleArrays(**arrays)
+
+
+def _refuse(choices: dict[str, Any]) -> None:
+    """Raise a FieldError for choices that apply to structured meshes only."""
+    if refused := [f"{k}={value!r}" for k, value in choices.items() if value not in (None, "")]:
+        plane = choices["plane"]
+        cut_here = plane if plane and plane[0] in "xyz" else "x=0.5"
+        remedy = f'to cut it, use slice="{cut_here}"; otherwise ' if plane is not None else ""
+        msg = (
+            f"{', '.join(refused)} applies to structured meshes, and this one is not; {remedy}omit "
+            "it, or sample the mesh onto a structured one, as in "
+            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
+        )
+        raise FieldError(msg)
+
+
+def choose(
+    grid: Any, vectors: str | None, plane: str | None, cut: Cut | None, record: Record
+) -> tuple[MeshArray, Plane | None]:
+    """Find the velocity and the plane, if there is one; raise an error with all faults."""
+    chosen, text, selection = None, "", Selection(None, "")
+    if is_structured(grid) and cut is None:
+        chosen, text = find_plane(grid, plane)
+        faults = [] if chosen else [text]
+    else:
+        faults = cut_faults(grid, cut)
+    if grid.n_cells:
+        selection = select_velocity(grid, vectors)
+        faults += [] if selection.array else [selection.text]
+    raise_faults(faults)
+    assert selection.array is not None
+    record("select", selection.text, notable=selection.notable)
+    if text:
+        record("select", text, notable=plane is None)
+    return selection.array, chosen
+
+
+def _stacked(
+    steps: Iterator[TimeStep],
+    velocity: MeshArray,
+    draw: Callable[[Any], Sheet],
+    times: ArrayLike | None,
+    record: Record,
+) -> dict[str, Any]:
+    """Return the arrays of all steps on the nodes of the first."""
+    masks, first, reordered = Masks(velocity), next(steps), 0
+    start: Sheet | None = None
+    read = []
+    for step in chain([first], steps):
+        check_arrays(step, first, velocity)
+        same = aligned(step, first)
+        sheet = draw(masks.masked(same.grid))
+        start = sheet if start is None else start
+        check_nodes(start, sheet, step.label)
+        values = sheet.nodes(velocity), _scalars(sheet)
+        # Meshes are not kept.
+        read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
+        reordered += same is not step
+    assert start is not None
+    kept, shown, cells, vectors, scalars = zip(*read, strict=True)
+    order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), None)
+    if reordered:
+        text = f"nodes or cells of {reordered} steps are in another order than those of the first"
+        record("align", f"{text}, and were matched by their labels or places", notable=True)
+    masks.tell(record)
+    valid = np.logical_and.reduce(shown)
+    if start.cells is not None:
+        valid &= nodes_to_keep(np.logical_and.reduce(cells), start.wrap)
+    if velocity.where == "cells":
+        record("surface", "cell data averaged to the nodes")
+    axes = _axes(velocity, start, record, solid=first.grid.max_cell_dimensionality == 3)
+    flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
+    for n, number in enumerate(order):
+        flow[n][..., axes] = vectors[number]
+    moving = [n for n, step in enumerate(flow) if np.nan_to_num(step).any()]
+    if moving and moving[0]:
+        when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
+        text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
+        record("mask", text, notable=True)
+    common = common_scalars([scalars[n] for n in order], moments, record)
+    arrays = {"points": start.points, "velocity": flow, "valid": valid, "scalars": common}
+    triangles = {} if start.triangles is None else {"triangles": start.triangles}
+    return {**arrays, **triangles, "times": moments if times is None else times}
+
+
+def _scalars(sheet: Sheet) -> dict[str, Floats]:
+    scalars: dict[str, Floats] = {}
+    for array in sheet.arrays:
+        # Points come first in the catalogue, and take precedence over cells of the same name.
+        if array.numeric and array.components == 1 and array.name not in scalars:
+            scalars[array.name] = sheet.nodes(array)
+    return scalars
+
+
+def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> list[int]:
+    """Return the axes in space, 0 to 2, of the components of a velocity.
+
+    Names with x, y or z say it. Otherwise two components lie in the plane of a flat mesh; those of
+    a volume or a curved surface are along x and y, or as ``u``, ``v`` and ``w`` say.
+    """
+    name, parts = velocity.name, velocity.parts
+    if parts:
+        record("components", f"{', '.join(parts)} combined")
+    if velocity.components == 3:
+        return [0, 1, 2]
+    points = sheet.points[sheet.shown & np.isfinite(sheet.points).all(axis=-1)]
+    in_plane = thick_axes(points)
+    named, is_sure = named_axes(parts)
+    if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
+        axes = list(named)
+    elif len(in_plane) == 2 and not solid:
+        axes = in_plane
+    elif solid or not _is_flat(points):
+        axes = [0, 1]
+    else:
+        msg = (
+            f"the velocity {name!r} has two components, and the mesh lies in a plane across the "
+            "axes, where their directions are unknown; expected three components"
+        )
+        raise FieldError(msg)
+    along = " and ".join("xyz"[axis] for axis in axes)
+    if sorted(axes) == in_plane:
+        record("components", f"{name}: two components, along {along} in the plane of the mesh")
+    else:
+        (lacking,) = {0, 1, 2} - set(axes)
+        text = f"{name} has two components, which are drawn along {along}: the one along "
+        record("components", f"{text}{'xyz'[lacking]} is taken to be zero", notable=True)
+    return axes
+
+
+def _is_flat(points: Floats) -> bool:
+    """Return whether points lie in a plane."""
+    if len(points) < 3:
+        return False
+    variances = np.linalg.eigvalsh(np.cov(points.T))
+    return bool(variances[0] <= FLAT * variances[-1])

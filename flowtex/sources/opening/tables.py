@@ -1,0 +1,239 @@
+"""Tables, single arrays and GeoJSON as datasets.
+
+Rows of a grid become a grid, with NaN where rows are missing; other rows are points along one
+dimension. Columns of positions and time are found by their names.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.inspection.limits import check_memory
+from flowtex.sources.opening.components import of_array
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+ACROSS = re.compile(r"^(x|x_?coord\w*|x_?pos\w*|easting)$", re.I)
+UPWARD = re.compile(r"^(y|y_?coord\w*|y_?pos\w*|northing)$", re.I)
+LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
+TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
+#: A column with its unit, as ``"u [m/s]"``.
+WITH_UNIT = re.compile(r"^(.*?)\s*[\[(](.*)[\])]$")
+#: Names and units of columns in the header of a .vec file, and its column of flags.
+VEC_COLUMN, VEC_FLAG = re.compile(r'"(\S+)\s*([^",]*)"'), "CHC"
+#: Most places of a grid for each row, and fewest whole cells, for which rows are a grid.
+MOST_PLACES, FEWEST_CELLS = 4, 0.4
+#: Share of the points that must have values, over all times.
+FEWEST_ROWS = 0.5
+#: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
+TEXT_GROWTH = 24
+
+
+def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
+    """Return a dataset, or make one of an array with an axis of components, or of a table.
+
+    One of several arrays may be a single component.
+    """
+    xarray = import_extra("xarray", "xarray")
+    if isinstance(item, xarray.Dataset):
+        return item
+    if isinstance(item, xarray.DataArray):
+        return of_array(item, several=several)
+    if is_dataset(item):
+        return of_table(item)
+    msg = (
+        f"data has type {type(item).__name__}; expected an xarray Dataset, DataTree or DataArray, "
+        "a pandas DataFrame, or a list of them"
+    )
+    raise FieldError(msg)
+
+
+def of_table(table: Any) -> xr.Dataset:
+    """Return the dataset of a table with a row for each point, or each point and time."""
+    frame, attributes = _plain(table)
+    columns = [str(c) for c in frame.columns]
+    pair = _pair(columns, LONGITUDE, LATITUDE) or _pair(columns, ACROSS, UPWARD)
+    if pair is None:
+        msg = (
+            f"the table has the columns {', '.join(columns)}; expected lon and lat, or x and y, "
+            "beside the components; rename the columns, as in df.rename(columns=...)"
+        )
+        raise FieldError(msg)
+    x, y = pair
+    frame = frame.dropna(subset=[x, y])
+    planar = [c for c in columns if (ACROSS.match(c) or UPWARD.match(c)) and c not in pair]
+    frame = frame.drop(columns=planar)  # the same positions on a map
+    frame, axes = _axes(frame, x, y)
+    data = frame.select_dtypes(["number", "bool"]).columns
+    frame = frame[list(dict.fromkeys([*axes, y, x, *data]))]
+    points = frame.drop_duplicates([x, y])
+    if _is_grid(points[x].to_numpy(), points[y].to_numpy()):
+        ds = frame.set_index([*axes, y, x]).to_xarray()
+    else:
+        ds = _points(frame, points, axes, x, y)
+    for name, attrs in attributes.items():
+        if name in ds.variables:
+            ds[name].attrs.update(attrs)
+    if LONGITUDE.match(x):
+        ds[x].attrs["units"], ds[y].attrs["units"] = "degrees_east", "degrees_north"
+    for name in axes:
+        ds[name].attrs["axis"] = "T" if TIMES.match(name) else "Z"
+    return ds
+
+
+def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
+    """Return a table of pandas with columns of positions, and the units in names of columns."""
+    pandas = import_extra("pandas", "xarray")
+    frame = table
+    if type(table).__module__.startswith("polars"):
+        frame = pandas.DataFrame(table.to_dict(as_series=False))
+    elif hasattr(table, "to_crs"):
+        if not (table.geometry.geom_type == "Point").all():
+            kinds = ", ".join(map(str, table.geometry.geom_type.unique()))
+            msg = f"the geometries are {kinds}; expected points"
+            raise FieldError(msg)
+        on_earth = table.crs is not None
+        at = (table.to_crs(4326) if on_earth else table).geometry
+        names = ("lon", "lat") if on_earth else ("x", "y")
+        frame = pandas.DataFrame(table.drop(columns=table.geometry.name))
+        frame = frame.drop(columns=[n for n in names if n in frame])
+        frame = frame.assign(**{names[0]: at.x, names[1]: at.y})
+    levels = [name for name in frame.index.names if name is not None]
+    frame = frame.reset_index(levels) if levels else frame
+    named, attributes = {}, {}
+    for column in frame.columns:
+        match = WITH_UNIT.match(str(column))
+        named[column] = match[1] if match else str(column).strip()
+        if match:
+            attributes[match[1]] = {"units": match[2]}
+    return frame.rename(columns=named), attributes
+
+
+def _pair(
+    columns: list[str], first: re.Pattern[str], second: re.Pattern[str]
+) -> tuple[str, str] | None:
+    """Return the columns with the shortest names that match, as ``lon`` before ``lon_bnds``."""
+    found = [sorted(filter(p.match, columns), key=len) for p in (first, second)]
+    return (found[0][0], found[1][0]) if all(found) else None
+
+
+def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
+    """Return the columns of time and level for which the same positions repeat."""
+    pandas = import_extra("pandas", "xarray")
+    named = [next(filter(p.match, map(str, frame.columns)), None) for p in (TIMES, LEVELS)]
+    time, level = (None if name in (x, y) else name for name in named)
+    if time is not None and frame[time].dtype.kind not in "fiu":
+        try:
+            dates = pandas.to_datetime(frame[time], utc=True).dt.tz_convert(None)
+        except (ValueError, TypeError) as error:
+            msg = f"the column {time!r} has {frame[time].iloc[0]!r}; expected dates or numbers"
+            raise FieldError(msg) from error
+        frame = frame.assign(**{time: dates})
+    for axes in ([], [time], [level], [time, level]):
+        if None not in axes and not frame.duplicated([*axes, y, x]).any():
+            break
+    else:
+        names = [name for name in (x, y, time, level) if name is not None]
+        same = frame[frame.duplicated(names, keep=False)]
+        first = same[(same[names] == same[names].iloc[0]).all(axis=1)]
+        place = ", ".join(f"{name} {first[name].iloc[0]}" for name in names)
+        msg = (
+            f"{len(same):,} rows repeat a position; the rows {first.index[0]} and "
+            f"{first.index[1]} both have {place}. Average them, as in "
+            f"df.groupby({names!r}).mean(), or draw a part of the table"
+        )
+        raise FieldError(msg)
+    if not axes and time is not None and frame[time].nunique() > max(len(frame) / 2, 1):
+        msg = (
+            f"nearly each of {len(frame):,} rows has its own {time} and position: a trajectory, or "
+            "points that move. Flowtex draws the flow on a surface; interpolate the values to "
+            "a grid, or drop the column"
+        )
+        raise FieldError(msg)
+    return frame, [str(axis) for axis in axes]
+
+
+def _is_grid(a: AnyArray, b: AnyArray) -> bool:
+    """Return whether points are most of the nodes of rows and columns."""
+    (columns, i), (rows, j) = (np.unique(c, return_inverse=True) for c in (a, b))
+    if not 0 < len(columns) * len(rows) <= MOST_PLACES * len(a):
+        return False
+    present = np.zeros((len(rows), len(columns)), dtype=bool)
+    present[j, i] = True
+    cells = present[1:, 1:] & present[1:, :-1] & present[:-1, 1:] & present[:-1, :-1]
+    return bool(cells.sum() >= FEWEST_CELLS * len(a))
+
+
+def _points(frame: Any, points: Any, axes: list[str], x: str, y: str) -> xr.Dataset:
+    """Return points along one dimension, and times and levels along others."""
+    places = len(points) * int(np.prod([frame[axis].nunique() for axis in axes]))
+    if len(frame) < FEWEST_ROWS * places:
+        msg = (
+            f"{len(points):,} positions differ along {' and '.join(axes)}: points that move. "
+            f"Choose rows of one {axes[0]}, or interpolate the values to a grid"
+        )
+        raise FieldError(msg)
+    number = frame.groupby([x, y], sort=False).ngroup()
+    at = {name: ("point", points[name].to_numpy()) for name in (x, y)}
+    rows = frame.drop(columns=[x, y]).assign(point=number)
+    ds: xr.Dataset = rows.set_index([*axes, "point"]).to_xarray()
+    return ds.drop_vars("point").assign_coords(at)
+
+
+def of_features(collection: dict[str, Any]) -> xr.Dataset:
+    """Return the dataset of points in GeoJSON, whose properties are columns."""
+    pandas = import_extra("pandas", "xarray")
+    rows = []
+    for feature in collection.get("features", []):
+        geometry = feature.get("geometry") or {}
+        if geometry.get("type") != "Point":
+            msg = f"a feature has the geometry {geometry.get('type')!r}; expected points"
+            raise FieldError(msg)
+        lon, lat, *_ = geometry["coordinates"]
+        rows.append({**(feature.get("properties") or {}), "lon": lon, "lat": lat})
+    return of_table(pandas.DataFrame(rows))
+
+
+def read_csv(path: Path) -> xr.Dataset:
+    """Read columns separated by commas, semicolons, tabs or spaces, below a header."""
+    pandas = import_extra("pandas", "xarray")
+    check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
+    with path.open(encoding="utf-8-sig") as file:
+        header = next((line for line in file if line.strip() and not line.startswith("#")), "")
+    separator = max(",;\t", key=header.count)
+    options = {"sep": separator if separator in header else r"\s+", "comment": "#"}
+    names = next(csv.reader([header.strip()], delimiter=separator), [])
+    if not names or any(re.fullmatch(r"[-+.\deE]+", name.strip()) for name in names):
+        msg = f"its first line is {header.strip()[:60]!r}; expected the names of columns"
+        raise FieldError(msg)
+    return of_table(pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options))
+
+
+def read_vec(path: Path) -> xr.Dataset:
+    """Read vectors of particle image velocimetry; those with a flag of 0 or less are blank."""
+    pandas = import_extra("pandas", "xarray")
+    check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
+    with path.open(encoding="utf-8", errors="replace") as file:
+        header = file.readline()
+    _, found, columns = header.partition("VARIABLES=")
+    names = VEC_COLUMN.findall(columns.partition("DATASETAUXDATA")[0].partition("ZONE")[0])
+    if not found or len(names) < 4:
+        msg = f"its first line is {header[:60]!r}; expected VARIABLES= with X, Y, U and V"
+        raise FieldError(msg)
+    labels = [name if not unit else f"{name} [{unit.strip()}]" for name, unit in names]
+    frame = pandas.read_csv(path, skiprows=1, header=None, names=labels, skipinitialspace=True)
+    if VEC_FLAG in frame:
+        flow = [c for c in labels if c.split()[0] in ("U", "V", "W")]
+        frame[flow] = frame[flow].where(frame[VEC_FLAG] > 0)
+    return of_table(frame)

@@ -1,0 +1,96 @@
+"""Meshes of TUFLOW FV and TELEMAC, and directions that are classes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+
+pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
+
+FORMS = Path(os.environ.get("FLOWTEX_DATA", "")) / "forms"
+needs_data = pytest.mark.skipif(
+    not FORMS.is_dir(), reason="FLOWTEX_DATA names no folder of real data"
+)
+
+
+@needs_data
+def test_tuflow_matches_means_of_cells() -> None:
+    ds = xr.open_dataset(FORMS / "tuflow_cone.nc")
+    field = FlowField.from_file(FORMS / "tuflow_cone.nc")
+    assert len(field.times) == 16 and np.allclose(np.diff(field.times), 60, rtol=1e-3)
+    step, nodes = 3, ds.cell_node.values - 1
+    wet = ds.stat.values[step] != 0
+    area = np.where(wet, ds.cell_A.values, 0.0)
+    for name, component in (("V_x", 0), ("V_y", 1)):
+        totals, weights = np.zeros(ds.sizes["NumVert2D"]), np.zeros(ds.sizes["NumVert2D"])
+        for corner in range(4):
+            at, has = nodes[:, corner], nodes[:, corner] >= 0
+            np.add.at(totals, at[has], (area * ds[name].values[step])[has])
+            np.add.at(weights, at[has], area[has])
+        known = weights > 0
+        drawn = np.asarray(field.velocity[step])[0, :, component]
+        assert known.any() and not known.all()
+        assert np.allclose(drawn[known], totals[known] / weights[known], atol=1e-5)
+    assert np.allclose(field.points[0, :, 0], ds.node_X) and field.length_unit == "m"
+
+
+def test_tuflow_with_layers_draws_the_top() -> None:
+    x, y = (c.ravel() for c in np.meshgrid(np.arange(4.0), np.arange(4.0)))
+    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel() + 1
+    cells = np.stack([first, first + 1, first + 5, first + 4], axis=-1)
+    top = np.cumsum([0, *[1, 2, 3] * 3])[:9] + 1
+    values = np.full(18, -9.0)
+    values[top - 1] = 2.0
+    ds = xr.Dataset(
+        {
+            "cell_node": (("NumCells2D", "MaxNumCellVert"), cells),
+            "cell_Nvert": ("NumCells2D", np.full(9, 4)),
+            "idx3": ("NumCells2D", top),
+            "node_X": ("NumVert2D", x, {"units": "m"}),
+            "node_Y": ("NumVert2D", y, {"units": "m"}),
+            "V_x": (("Time", "NumCells3D"), values[None], {"units": "m s^-1"}),
+            "V_y": (("Time", "NumCells3D"), 2 * values[None], {"units": "m s^-1"}),
+            "stat": (("Time", "NumCells2D"), np.full((1, 9), -1)),
+            "ResTime": ("Time", [0.5], {"units": "hours"}),
+        }
+    )
+    field = FlowField.from_xarray(ds)
+    assert np.allclose(field.velocity[0][0], [2, 4, 0]) and field.triangles is not None
+    assert len(field.triangles) == 18
+
+
+def test_telemac_uses_its_triangles() -> None:
+    x, y = (c.ravel() for c in np.meshgrid(np.arange(6.0), np.arange(6.0)))
+    number = np.arange(36).reshape(6, 6) + 1
+    a, b, c, d = (
+        number[r, c].ravel()
+        for r, c in [
+            (np.s_[:-1], np.s_[:-1]),
+            (np.s_[:-1], np.s_[1:]),
+            (np.s_[1:], np.s_[1:]),
+            (np.s_[1:], np.s_[:-1]),
+        ]
+    )
+    faces = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])[:-1]
+    ds = xr.Dataset(
+        {"U": (("time", "node"), x[None]), "V": (("time", "node"), y[None])},
+        {"x": ("node", x), "y": ("node", y)},
+        {"ikle2": faces},
+    )
+    field = FlowField.from_xarray(ds)
+    assert field.triangles is not None
+    assert {*map(frozenset, field.triangles.tolist())} == {*map(frozenset, (faces - 1).tolist())}
+    assert np.allclose(field.velocity[0][0, :, :2], np.stack([x, y], -1))
+
+
+@needs_data
+def test_classes_of_directions_raise() -> None:
+    with pytest.raises(FieldError, match="store classes of the speed and the direction"):
+        FlowField.from_file(FORMS / "speed_from_direction.nc")

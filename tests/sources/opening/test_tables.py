@@ -1,0 +1,204 @@
+"""Tables, GeoJSON, CSV and vectors of particle image velocimetry as fields."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from earth_data import on_sphere
+from scipy.spatial import cKDTree
+
+from flowtex import FlowField, render
+from flowtex.errors import FieldError
+from flowtex.field.earth import EARTH_RADIUS
+from flowtex.sources.opening.tables import of_table
+
+pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
+
+FORMS = Path(os.environ.get("FLOWTEX_DATA", "")) / "forms"
+needs_data = pytest.mark.skipif(
+    not FORMS.is_dir(), reason="FLOWTEX_DATA names no folder of real data"
+)
+
+
+def plane(x: Any, y: Any) -> tuple[Any, Any]:
+    return 1 + 0.5 * np.sin(3 * x), 0.7 * np.cos(2 * y) + 0.2 * x
+
+
+def rows(x: Any, y: Any) -> pd.DataFrame:
+    u, v = plane(x, y)
+    return pd.DataFrame({"x": x, "y": y, "u": u, "v": v})
+
+
+def lattice() -> pd.DataFrame:
+    x, y = np.meshgrid(np.linspace(0, 3, 40), np.linspace(0, 1, 21))
+    return rows(x.ravel(), y.ravel())
+
+
+def scattered(count: int = 500) -> pd.DataFrame:
+    return rows(*np.random.default_rng(0).uniform(0, 1, (2, count)))
+
+
+def check(field: FlowField) -> None:
+    expected = np.stack(plane(field.points[..., 0], field.points[..., 1]), axis=-1)
+    for step in range(len(field.times)):
+        drawn = np.asarray(field.velocity[step])[..., :2]
+        assert np.allclose(drawn[field.valid], expected[field.valid])
+
+
+def test_rows_of_grid_with_missing_row() -> None:
+    frame = lattice().sample(frac=1, random_state=1).drop(index=100)
+    field = FlowField.from_xarray(frame)
+    check(field)
+    assert field.shape == (21, 40) and field.triangles is None
+    assert np.argwhere(~field.valid).tolist() == [[100 // 40, 100 % 40]]
+
+
+def test_scattered_rows_are_points() -> None:
+    field = FlowField.from_xarray(scattered())
+    check(field)
+    assert field.shape == (1, 500) and field.triangles is not None
+
+
+@pytest.mark.parametrize("table", [lattice(), scattered()], ids=["grid", "points"])
+def test_times_are_a_series(table: pd.DataFrame) -> None:
+    dates = ["2024-01-01T00Z", "2024-01-01T06Z", "2024-01-02T00Z"]
+    frame = pd.concat([table.assign(time=date) for date in dates]).sample(frac=1, random_state=2)
+    field = FlowField.from_xarray(frame)
+    check(field)
+    assert field.times.tolist() == [0, 21600, 86400]
+    assert str(field.start).startswith("2024-01-01")
+
+
+def test_steps_keep_their_values() -> None:
+    table = scattered()
+    frame = pd.concat([table.assign(time=t, u=t) for t in pd.date_range("2024", periods=3)])
+    frame["u"] = (frame["time"] - frame["time"].min()).dt.days.astype(float)
+    field = FlowField.from_xarray(frame)
+    for step in range(3):
+        assert np.allclose(np.asarray(field.velocity[step])[..., 0], step)
+
+
+def test_index_and_units_of_columns() -> None:
+    frame = lattice().rename(columns={"x": "x [mm]", "u": "u (cm/s)"}).set_index(["y", "x [mm]"])
+    ds = of_table(frame)
+    assert ds["x"].attrs["units"] == "mm" and ds["u"].attrs["units"] == "cm/s"
+    assert dict(ds.sizes) == {"y": 21, "x": 40}
+
+
+def test_longitudes_are_on_the_earth() -> None:
+    frame = scattered().rename(columns={"x": "Longitude", "y": "LATITUDE"})
+    field = FlowField.from_xarray(frame, globe=True)
+    assert field.surface.on_globe
+
+
+def test_levels_are_an_axis() -> None:
+    frame = pd.concat([lattice().assign(depth=d) for d in (0.0, 10.0)])
+    frame.loc[frame["depth"] == 10.0, "u"] = 9.0
+    assert np.allclose(FlowField.from_xarray(frame, level=10).velocity[0][..., 0], 9)
+    check(FlowField.from_xarray(frame, level=0))
+
+
+def test_repeated_rows_raise() -> None:
+    frame = scattered()
+    with pytest.raises(FieldError, match=r"2 rows repeat.*rows 5 and 5 both have x 0\.\d+, y"):
+        FlowField.from_xarray(pd.concat([frame, frame.iloc[[5]]]))
+
+
+def test_trajectories_raise() -> None:
+    frame = scattered().assign(time=pd.date_range("2024", periods=500))
+    with pytest.raises(FieldError, match="own time and position: a trajectory"):
+        FlowField.from_xarray(frame)
+
+
+def test_moving_points_raise() -> None:
+    parts = [
+        scattered(100 + k).assign(time=t, x=lambda f, k=k: f.x + k) for k, t in enumerate(range(4))
+    ]
+    shared = [part.assign(time=9) for part in (scattered(50).assign(x=0.5 + np.arange(50)),)]
+    frame = pd.concat([*parts, *shared, shared[0].assign(time=8)])
+    with pytest.raises(FieldError, match="positions differ along time: points that move"):
+        FlowField.from_xarray(frame)
+
+
+def test_table_without_positions_raises() -> None:
+    with pytest.raises(FieldError, match="the columns a, u, v; expected lon and lat, or x and y"):
+        FlowField.from_xarray(scattered().drop(columns="y").rename(columns={"x": "a"}))
+
+
+def test_polars() -> None:
+    polars = pytest.importorskip("polars")
+    check(FlowField.from_xarray(polars.DataFrame(scattered().to_dict("list"))))
+
+
+def test_front_ends_accept_tables() -> None:
+    assert render(scattered()).ndim == 3
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", "  "])
+def test_csv(tmp_path: Path, separator: str) -> None:
+    path = tmp_path / "flow.csv"
+    lines = [separator.join(map(repr, row)) for row in lattice().to_numpy().tolist()]
+    path.write_text("\n".join(["# made", separator.join("xyuv"), *lines]), encoding="utf-8")
+    field = FlowField.from_file(path)
+    check(field)
+    assert field.shape == (21, 40)
+
+
+def test_csv_without_header_raises(tmp_path: Path) -> None:
+    path = tmp_path / "flow.csv"
+    path.write_text("0,1,2,3\n4,5,6,7\n", encoding="utf-8")
+    with pytest.raises(FieldError, match=r"flow.csv: its first line is '0,1,2,3'; expected the"):
+        FlowField.from_file(path)
+
+
+def test_geojson(tmp_path: Path) -> None:
+    path = tmp_path / "flow.geojson"
+    features: list[Any] = [
+        {
+            "type": "Feature",
+            "geometry": {"type": "Point", "coordinates": [10 + row.x, 40 + row.y]},
+            "properties": {"u": row.u, "v": row.v, "name": "a"},
+        }
+        for row in scattered().itertuples()
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    field = FlowField.from_file(path, globe=True)
+    assert field.shape == (1, 500)
+    assert np.allclose(field.speed[0][0], np.hypot(scattered().u, scattered().v))
+    features[3]["geometry"]["type"] = "Polygon"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    with pytest.raises(FieldError, match="geometry 'Polygon'; expected points"):
+        FlowField.from_file(path)
+
+
+@needs_data
+def test_swath_of_satellite() -> None:
+    field = FlowField.from_file(FORMS / "ascat.geojson", globe=True)
+    data = json.loads((FORMS / "ascat.geojson").read_text())["features"]
+    lon, lat = np.array([f["geometry"]["coordinates"] for f in data]).T
+    speed = np.array([np.hypot(f["properties"]["u"], f["properties"]["v"]) for f in data])
+    tree = cKDTree(EARTH_RADIUS * on_sphere(lon, lat))
+    distance, at = map(np.asarray, tree.query(field.points[0]))
+    assert distance.max() < 10 and len(at) > 4880
+    assert np.allclose(np.linalg.norm(field.velocity[0][0], axis=-1), speed[at])
+    assert field.triangles is not None
+    edges = np.diff(field.points[0][field.triangles], axis=1)
+    assert np.linalg.norm(edges, axis=-1).max() < 250e3  # none from one swath to another
+
+
+@needs_data
+def test_flags_of_vec_are_blank() -> None:
+    field = FlowField.from_file(FORMS / "piv.vec")
+    table = np.loadtxt(FORMS / "piv.vec", delimiter=",", skiprows=1)
+    order = np.lexsort((table[:, 0], table[:, 1]))
+    assert field.shape == (63, 63)
+    assert (field.valid.ravel() == (table[order, 4] > 0)).all()
+    drawn, valid = np.asarray(field.velocity[0]).reshape(-1, 3), field.valid.ravel()
+    assert (field.length_unit, field.time_unit) == ("mm", "s")
+    assert np.allclose(drawn[valid, :2], 1e3 * table[order][valid, 2:4])  # from m/s
