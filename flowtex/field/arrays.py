@@ -22,7 +22,16 @@ STEPS = ("select", "align", "coordinates", "mask", "units", "components", "surfa
 
 
 class ReadingStep(NamedTuple):
-    """One sentence about what a step of reading did."""
+    """One sentence about what a step of reading did.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.FlowField.from_xarray(flowtex.examples.weather(), level=250)
+    >>> step = field.reading[1]
+    >>> step.step, step.text, step.caption
+    ('select', 'level: 250 hPa', '250 hPa')
+    """
 
     step: str  #: One of :data:`STEPS`.
     text: str
@@ -31,7 +40,15 @@ class ReadingStep(NamedTuple):
 
 
 class Reading(tuple[ReadingStep, ...]):
-    """What was done to data before they became a field, one sentence after the other."""
+    """What was done to data before they became a field, one sentence after the other.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.FlowField.from_xarray(flowtex.examples.weather(), level=250)
+    >>> field.reading.of("components")
+    ('eastward and northward (by the names of the variables)',)
+    """
 
     __slots__ = ()
 

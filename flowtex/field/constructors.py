@@ -257,13 +257,14 @@ class FieldConstructors:
             magnitude; or a dimension, such as ``"number"`` of an ensemble: the mean over it is
             drawn, and its spread becomes a scalar.
         mask
-            The variable that marks where there is data. By default those of CF's standard names and
-            of common names, quality flags, and values that stand for missing data without being
-            declared; ``False`` draws all of these.
+            Name of the only variable that marks missing data, or ``False`` to draw all values. By
+            default flowtex applies masks with CF standard names or common names, quality flags, and
+            undeclared fill values such as -999. Land masks do not apply to winds that vary over
+            land.
         components
             Directions of the components: ``"earth"`` for eastward and northward, ``"grid"`` for
             along rows and columns, ``"plane"`` for along x and y. By default the names of the
-            variables and the grid decide; ``field.reading`` tells how.
+            variables and the grid decide; ``field.reading.of("components")`` names the rule.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level
@@ -272,29 +273,37 @@ class FieldConstructors:
         Returns
         -------
         FlowField
-            For data on longitude and latitude, positions are metres on the map, and the velocity in
-            m/s is projected with them; otherwise positions are the x and y coordinates. Components
-            on the sides of cells (Arakawa C) are averaged to the centres. Other variables at the
-            same nodes are ``scalars``; on a flat map ``"speed"`` is the speed on the Earth.
+            Positions on longitude and latitude become metres on the map or the globe; x and y keep
+            their unit, and velocities keep theirs as ``velocity_unit``. A flat map has the
+            projected velocity in m/s, and its scalar ``"speed"`` is the speed on the Earth in the
+            unit of the data. Components on the sides of cells (Arakawa C) are averaged to the
+            centres. Other variables at the same nodes are ``scalars``. ``reading`` lists what was
+            done.
 
         Raises
         ------
         FieldError
-            When components or coordinates are not recognised, or a selection does not exist.
+            When components or coordinates are not recognised, a selection does not exist, the
+            components lie at different positions or times, or positions move within a series.
         ModuleNotFoundError
             When xarray, cf_xarray or pyproj is missing.
 
         Warns
         -----
         DatasetNotice
-            When flowtex made a choice, such as a level.
+            When flowtex made a choice, such as a level, or left out values that only one of the
+            components has.
 
         Examples
         --------
         >>> import flowtex
         >>> winds = flowtex.examples.weather()
-        >>> flowtex.FlowField.from_xarray(winds, level=500, projection="robinson").steady
-        True
+        >>> field = flowtex.FlowField.from_xarray(winds, level=500, projection="robinson")
+        >>> print(field.reading)
+        select: velocity: u, v (standard name with 'eastward' and 'northward')
+        select: level: 500 hPa
+        coordinates: longitude and latitude
+        components: eastward and northward (by the names of the variables)
         """
         from flowtex.sources.datasets.read import read_datasets
 
