@@ -29,7 +29,7 @@ from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
 from flowtex.field.metric import IndexVelocity
-from flowtex.field.steps import LazySteps, Steps, scaled_steps, typical_steps
+from flowtex.field.steps import LazySteps, Steps, moves_later, scaled_steps, typical_steps
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
@@ -264,7 +264,7 @@ class FlowField(FieldConstructors, FieldQuantities):
             uncertainty=filled.uncertainty,
         )
         flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
-        if not nodes.moves:
+        if not nodes.moves and not moves_later(nodes.velocity):
             notify(ALL_AT_REST, UserWarning)
         return flow
 

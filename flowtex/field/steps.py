@@ -113,6 +113,12 @@ def typical_steps(count: int) -> list[int]:
     return sorted({0, (count - 1) // 2, count - 1})
 
 
+def moves_later(steps: Steps) -> bool:
+    """Return whether a late series moves at another typical step than the first one."""
+    late = isinstance(steps, LazySteps)
+    return late and any(np.nan_to_num(steps[n]).any() for n in typical_steps(len(steps))[1:])
+
+
 def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
     """Apply a function to each step (J, I, ...) of an array, or later to those of a lazy one."""
     if isinstance(steps, LazySteps):

@@ -226,6 +226,9 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     """Return the path of a mesh; raises a FieldError for several."""
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
+    if missing := [str(each) for each in path if not Path(each).expanduser().exists()]:
+        msg = f"{', '.join(missing)} does not exist; check the path and the working directory"
+        raise FieldError(msg)
     msg = (
         f"{len(path)} files are given, but several are read only as datasets; for the steps of a "
         "mesh give a .pvd file, or in Python a list of meshes"

@@ -4,12 +4,15 @@
 the data say                                the components are
 ==========================================  =============================================
 ``components=``                             as given
+speed and direction                         eastward and northward
+along a radius and an angle                 along x and y, by the angle
 ``GRIB_uvRelativeToGrid``                   along the grid if 1, else eastward and northward
 standard or long names with *eastward*      eastward and northward
 standard names ``x_wind``, ``grid_...``     along the grid
 values on the sides of cells (Arakawa C)    along the grid
 positions in a plane                        along x and y
 unknown, rows and columns of the Earth      eastward and northward
+unknown, meshes and points of the Earth     eastward and northward
 unknown, a curvilinear grid of the Earth    along the grid, as WRF, ROMS, NEMO and POP have it
 ==========================================  =============================================
 """

@@ -195,7 +195,8 @@ def _note_rest(read: Callable[[int], tuple[Floats, Floats]], count: int, flow: F
         return
     first = next((n for n in range(1, min(count, MOST_SEARCHED)) if moves(n)), None)
     if first is not None:
-        time = labels.text(np.asarray(flow.drawn.times)[first : first + 1])
+        times = np.asarray(flow.drawn.times)[first : first + 1]
+        time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
         flow.record(
             "select",
             f"the velocity is zero everywhere in the first step; step {first} ({time}) is the "

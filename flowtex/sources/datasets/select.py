@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.sources.datasets.axes import FACES, NODES
+from flowtex.sources.datasets.masks import LAND, SEA
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -219,6 +220,7 @@ def _may_be_component(array: xr.DataArray) -> bool:
     fewest = 1 if _on_mesh(array) else 2
     named = f"{array.name} {array.attrs.get('standard_name', '')}"
     other = "bounds" in named or "_bnds" in named or MODIFIERS.search(named)
+    other = other or SEA.match(str(array.name)) or LAND.match(str(array.name))
     return array.ndim >= fewest and array.dtype.kind in "fiu" and not other
 
 

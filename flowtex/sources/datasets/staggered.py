@@ -220,19 +220,21 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
     (a_u, b_u), (a_v, b_v) = at_u.lines, at_v.lines
     matches = labels.match(b_u, b_v), labels.match(a_u, a_v, period)
     if all(len(found.one) for found in matches):
-        if not all(found.is_whole for found in matches):
-            for n, (one, other) in enumerate(((b_u, b_v), (a_u, a_v))):
-                kept = matches[n]
-                if len(kept.one) < max(len(one), len(other)):
-                    record(
-                        "align",
-                        f"{dims[0][n]}: {len(kept.one)} positions that {u.name} "
-                        f"({labels.text(one)}) and {v.name} ({labels.text(other)}) have in common",
-                        notable=True,
-                    )
-                elif not kept.is_whole:
-                    word = "reversed" if (np.diff(kept.other) < 0).all() else "reordered"
-                    record("align", f"{v.name}: {dims[1][n]} {word} to match {u.name}")
+        for n, (one, other) in enumerate(((b_u, b_v), (a_u, a_v))):
+            kept = matches[n]
+            if len(kept.one) < max(len(one), len(other)):
+                record(
+                    "align",
+                    f"{dims[0][n]}: {len(kept.one)} positions that {u.name} "
+                    f"({labels.text(one)}) and {v.name} ({labels.text(other)}) have in common",
+                    notable=True,
+                )
+            elif period and n and np.abs(a_u - a_v[kept.other]).max() > period / 2:
+                text = f"{v.name}: {dims[1][n]} counted from the meridian of {u.name}"
+                record("align", text)
+            elif not kept.is_whole:
+                word = "reversed" if (np.diff(kept.other) < 0).all() else "reordered"
+                record("align", f"{v.name}: {dims[1][n]} {word} to match {u.name}")
         u = u.isel({d: as_slice(found.one) for d, found in zip(dims[0], matches, strict=True)})
         v = v.isel({d: as_slice(found.other) for d, found in zip(dims[1], matches, strict=True)})
         at = np.ix_(*(found.one for found in matches))
