@@ -35,7 +35,7 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
         ds.flowtex.render(glob=True)
     with pytest.raises(FieldError, match="plane applies to meshes"):
         ds.flowtex.render(plane="k=2")
-    with pytest.raises(FieldError, match="globe applies to data of the Earth"):
+    with pytest.raises(FieldError, match="globe applies to datasets"):
         flowtex.render(flowtex.examples.double_gyre(), globe=True)
 
 
