@@ -454,8 +454,11 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     @property
     def speed_label(self) -> str:
-        """Text for :attr:`speed` in legends; an array of a file may already be named ``speed``."""
-        apart = self.leaves_surface or "speed" in self.scalars
+        """Text for :attr:`speed` in legends; an array of a file may already be named ``speed``.
+
+        On a map the scalar of that name is the same speed, on the Earth.
+        """
+        apart = self.leaves_surface or ("speed" in self.scalars and self.projection is None)
         return "speed in the surface" if apart else "speed"
 
     def label_of(self, name: str) -> str:
