@@ -43,7 +43,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
         more = f" and {len(files) - 1} more" if len(files) > 1 else ""
         console.print(Text(f"{files[0]}{more}", "bold"), soft_wrap=True)
         console.print(_recognised_table(paths))
-        console.print(_field_table(load_field(files, options)))
+        console.print(_field_table(load_field(files, options), has_reading=True))
         return 0
     if len(files) != 1:
         msg = f"{len(files)} files are given; name one, or several only for data of the Earth"
@@ -160,7 +160,7 @@ def _span(array: ArraySummary) -> tuple[str, str]:
     return f"{array.low:.4g}", f"{array.high:.4g}{magnitude}"
 
 
-def _field_table(field: FlowField) -> Table:
+def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     import numpy as np
 
     from flowtex.field.dates import expected_times
@@ -201,7 +201,7 @@ def _field_table(field: FlowField) -> Table:
             "cells", f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest"
         )
     table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
-    for step in field.reading:
+    for step in () if has_reading else field.reading:
         table.add_row(step.step, step.text)
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table

@@ -163,7 +163,7 @@ class FieldOptions:
         None,
         "Variable of a dataset that marks where there is data; by default masks of common names, "
         "quality flags and undeclared fill values count. ``False`` draws all values.",
-        Form(read=or_none(value=False)),
+        Form(read=lambda text: text if text.lower() not in ("none", "false") else False),
     )
     components: str | None = _option(
         None,
