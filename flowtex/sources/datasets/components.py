@@ -31,6 +31,10 @@ from flowtex.sources.record import Record
 DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plane": "along x and y"}
 
 
+#: The reason where neither names nor positions tell.
+UNKNOWN = "a curvilinear grid, and no name that tells"
+
+
 class Orientation(NamedTuple):
     """Directions of the components: a key of :data:`DIRECTIONS`, and the reason."""
 
@@ -108,4 +112,4 @@ def _orientation(pair: Pair, places: Places, *, staggered: bool, wanted: str | N
         return Orientation(pair.along, "by the names of the variables")
     if places.is_line:
         return Orientation("earth", "rows and columns of the Earth")
-    return Orientation("grid", "a curvilinear grid without other names; components='earth' if not")
+    return Orientation("grid", UNKNOWN)

@@ -21,7 +21,7 @@ from flowtex.sources.datasets.axes import (
     coordinate_of,
     horizontal_dims,
 )
-from flowtex.sources.datasets.components import Orientation, component_units, orientation
+from flowtex.sources.datasets.components import UNKNOWN, Orientation, component_units, orientation
 from flowtex.sources.datasets.coordinates import Places, ordered
 from flowtex.sources.datasets.masks import (
     Mask,
@@ -43,6 +43,8 @@ from flowtex.sources.record import Record
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Sine of the angle between rows and parallels from which on the directions matter.
+NOTABLE_TURN = 0.02
 #: Share of nodes at rest from which on those of a staggered grid count as land.
 LAND_SHARE = 0.01
 #: Values of a step that are examined, and lines of each of the nine parts of larger ones.
@@ -176,7 +178,17 @@ def read_flow(
     found = orientation(
         pair, flow.places, staggered=flow.staggered, wanted=components, record=record
     )
+    if found.why == UNKNOWN and _is_turned(flow):
+        text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
+        record("components", text + "north; components='earth' if they are not", notable=True)
     return _masked(replace(flow, unit=unit, orientation=found), factors, mask)
+
+
+def _is_turned(flow: Flow) -> bool:
+    """Return whether rows of a grid are turned notably against the parallels."""
+    ones = np.ones_like(flow.places.a)
+    _, north = flow.places.turned(flow.ahead, ones, 0 * ones)
+    return bool(np.nanmax(np.abs(north), initial=0.0) > NOTABLE_TURN)
 
 
 def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
@@ -272,6 +284,9 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     masks = []
     for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
         part_of = flow.beside(mask.array)
+        if part_of is None and wanted is None:
+            text = f"{mask.array.name} lies at other positions or times, and is not used as a mask"
+            record("mask", text, notable=mask.array.ndim > 1)
         if part_of is None and wanted is not None:
             msg = f"mask is {wanted!r}, which lies at other positions than the velocity"
             raise FieldError(msg)

@@ -366,7 +366,9 @@ def _scalars(flow: Flow, choice: Choice) -> dict[str, _Scalar]:
             if name in (*used, *scalars) or not numbers or of_mesh or array.ndim < flow.values.axes:
                 continue
             part = flow.beside(array)
-            if part is not None:
+            if part is None:
+                flow.record("align", f"{name} lies at other positions or times, and is left out")
+            else:
                 scalars[str(name)] = _Scalar(part, partial(_scalar_step, flow, part))
     return scalars
 

@@ -143,7 +143,7 @@ def find_grid(
         if len(known) == 2 and known[0].is_earth == known[1].is_earth:
             grid = _by_positions(u, v, known[0], known[1], record)
             if grid is not None:
-                return grid
+                return _at_true_cells(grid, dims, datasets, drawn)
     (row_u, column_u), (_, column_v) = dims
     if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
@@ -171,6 +171,37 @@ def _staggered(
     places = replace(places, a=places.a[at], b=places.b[at])
     record("align", f"{u.name} and {v.name} averaged from the sides of cells to their centres")
     return Grid(u, v, places, rows, columns, words)
+
+
+def _at_true_cells(
+    grid: Grid,
+    dims: tuple[tuple[str, ...], tuple[str, ...]],
+    datasets: Sequence[xr.Dataset],
+    drawn: Drawn,
+) -> Grid:
+    """Return a staggered grid at the positions of its cells, if these are known in two dimensions.
+
+    The lines of a model's axes may be nominal, as those of MOM6 beside the poles of its grid.
+    """
+    if grid.rows is None or grid.columns is None or {*dims[0]} & {*dims[1]}:
+        return grid
+    try:
+        places = _cell_places(grid.u, (dims[0][0], dims[1][1]), datasets, drawn)
+    except FieldError:
+        return grid
+    if places.is_line or places.is_earth != grid.places.is_earth:
+        return grid
+    at = np.ix_(grid.rows.cells, grid.columns.cells)
+    return grid._replace(places=replace(places, a=places.a[at], b=places.b[at]))
+
+
+def _cell_places(
+    u: xr.DataArray, cells: tuple[str, str], datasets: Sequence[xr.Dataset], drawn: Drawn
+) -> Places:
+    """Return the places in the middle of cells, by the dimensions of these."""
+    other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
+    inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
+    return find_places(inside, cells, datasets, drawn)
 
 
 def _by_positions(
@@ -342,10 +373,8 @@ def _by_names(
         first_side(row_v, row_u, counts["row"], datasets),
         first_side(column_u, column_v, counts["column"], datasets),
     ]
-    other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
-    inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
     try:
-        places = find_places(inside, cells, datasets, drawn)
+        places = _cell_places(u, cells, datasets, drawn)
     except FieldError as error:
         try:
             on_sides = find_places(u, horizontal_dims(u), datasets, drawn)
