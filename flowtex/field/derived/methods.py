@@ -5,13 +5,7 @@ from __future__ import annotations
 from typing import Any, Self
 
 from flowtex.errors import FieldError
-from flowtex.field.derived import (
-    FOLLOWED,
-    LONG_NAMES,
-    derived_steps,
-    derived_unit,
-    followed_steps,
-)
+from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
 from flowtex.field.point_values import PointValues, point_at
 from flowtex.field.steps import Steps
 

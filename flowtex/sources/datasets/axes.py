@@ -368,12 +368,7 @@ def _time_beside(array: xr.DataArray) -> AnyArray | None:
 
 
 def _drawn(
-    kind: str,
-    dim: str,
-    line: AnyArray | None,
-    array: xr.DataArray,
-    choice: Choice,
-    record: Record,
+    kind: str, dim: str, line: AnyArray | None, array: xr.DataArray, choice: Choice, record: Record
 ) -> int | list[int]:
     """Return the drawn numbers along one axis, all of a time without a choice."""
     count = array.sizes[dim]

@@ -19,6 +19,7 @@ unknown, a curvilinear grid of the Earth    along the grid, as WRF, ROMS, NEMO a
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from flowtex.errors import FieldError
@@ -31,6 +32,8 @@ from flowtex.sources.record import Record
 DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plane": "along x and y"}
 
 
+#: Coordinates of models whose components are along the grid: WRF, NEMO, ROMS, POP, MITgcm, MOM.
+MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
 #: The reason where neither names nor positions tell.
 UNKNOWN = "a curvilinear grid, and no name that tells"
 
@@ -112,4 +115,6 @@ def _orientation(pair: Pair, places: Places, *, staggered: bool, wanted: str | N
         return Orientation(pair.along, "by the names of the variables")
     if places.is_line:
         return Orientation("earth", "rows and columns of the Earth")
+    if MODELS.match(places.why):
+        return Orientation("grid", "as models with these coordinates have it")
     return Orientation("grid", UNKNOWN)

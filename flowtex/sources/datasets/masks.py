@@ -114,11 +114,7 @@ def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> 
 
 
 def _marked(
-    array: xr.DataArray,
-    name: str,
-    words: Sequence[str],
-    flags: Mapping[str, float],
-    **marks: bool,
+    array: xr.DataArray, name: str, words: Sequence[str], flags: Mapping[str, float], **marks: bool
 ) -> Mask | None:
     bad = tuple(float(flags[word]) for word in words)
     return Mask(array, f"{name} is {' or '.join(words)}", bad, **marks) if bad else None

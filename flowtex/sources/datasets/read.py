@@ -25,19 +25,11 @@ from flowtex.field.earth import GLOBE
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import (
-    TIME,
-    Choice,
-    axis_kind,
-    axis_values,
-    horizontal_dims,
-)
+from flowtex.sources.datasets.axes import TIME, Choice, axis_kind, axis_values, horizontal_dims
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.ensembles import mean_and_spread
 from flowtex.sources.datasets.flow import Flow, read_flow
-from flowtex.sources.datasets.masks import (
-    WET,
-)
+from flowtex.sources.datasets.masks import WET
 from flowtex.sources.datasets.regions import Regions, Words, region_lines
 from flowtex.sources.datasets.select import (
     Pair,
@@ -222,11 +214,7 @@ def _averaged(
         raise FieldError(msg)
     members = [
         read_flow(
-            datasets,
-            str(u.name),
-            str(v.name),
-            record,
-            **{**options, "isel": {**isel, dim: number}},
+            datasets, str(u.name), str(v.name), record, **{**options, "isel": {**isel, dim: number}}
         )
         for number in range(u.sizes[dim])
     ]

@@ -21,13 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: Words for the first component, and those for the second one.
-PARTNERS = {
-    "eastward": "northward",
-    "zonal": "meridional",
-    "east": "north",
-    "x": "y",
-    "u": "v",
-}
+PARTNERS = {"eastward": "northward", "zonal": "meridional", "east": "north", "x": "y", "u": "v"}
 FIRST_OF = {second: first for first, second in PARTNERS.items()}
 #: First words for directions of the Earth, not of a grid.
 EARTH = ("eastward", "zonal", "east")

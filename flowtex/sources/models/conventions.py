@@ -27,12 +27,7 @@ TELEMAC = "ikle2"
 #: Each has the mesh's words, the corners, pairs of coordinates, and the number of the first node.
 MODELS = (
     ("FVCOM", ("nv",), (("lon", "lat"), ("x", "y")), 1),
-    (
-        "SCHISM",
-        ("SCHISM_hgrid_face_nodes",),
-        (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),),
-        1,
-    ),
+    ("SCHISM", ("SCHISM_hgrid_face_nodes",), (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),), 1),
     (
         "FESOM",
         ("face_nodes", "elem_nodes", "elements", "elem"),
