@@ -33,8 +33,8 @@ from flowtex.pyramid.places import (
     DOCUMENT,
     ChangedError,
     DamageError,
-    Lease,
     PyramidError,
+    building,
     check_room,
     is_store,
     listed,
@@ -189,9 +189,9 @@ def build(
         raise FieldError(msg)
     identity, threads = about["source"], Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
-    with plain_faults(), closing(workers), Lease(place) as lease:
+    with plain_faults(), closing(workers), building(place):
         group, arrays, about, new = _prepared(place, about, data, fresh=fresh)
-        run, depth = _Run(group, arrays, about, lease, identity, progress), about["depth"]
+        run, depth = _Run(place, group, arrays, about, identity, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
             units = sorted({u for name in run.arrays for u in _existing_units(run, name)}, key=repr)
@@ -320,21 +320,20 @@ class _Run:
 
     def __init__(
         self,
+        place: str,
         group: Any,
         arrays: Mapping[str, Sequence[str]],
         about: dict[str, Any],
-        lease: Lease,
         source: str,
         progress: bool,  # noqa: FBT001
     ) -> None:
-        self.place, self.group, self.arrays, self.about = lease.place, group, arrays, about
-        self.lease, self.source, self.progress = lease, source, progress
+        self.place, self.group, self.arrays, self.about = place, group, arrays, about
+        self.source, self.progress = source, progress
         self.name = uuid.uuid4().hex
         self.made = self.kept = 0
 
     def update(self, **entries: Any) -> None:
         """Add to the description of the pyramid; under the new name, workers open it again."""
-        self.lease.check()
         self.about = {**self.about, **entries}
         self.group.attrs["flowtex"] = sealed(self.about)
         self.name = uuid.uuid4().hex
@@ -369,7 +368,6 @@ class _Run:
         # An error holds its frames: the workers would end whenever these are collected.
         with closing(workers.run(function, named, need, *arguments)) as results:
             for error in track(results, len(tasks), text, show=self.progress):
-                self.lease.check()
                 if isinstance(error, ChangedError):
                     raise error
                 if error is None:

@@ -7,13 +7,10 @@ messages, titles and links, so one that carries a secret is refused, without rep
 from __future__ import annotations
 
 import json
-import math
 import os
 import platform
 import re
 import sys
-import threading
-import time
 import uuid
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -33,8 +30,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 #: Format of every store; a reader refuses any other.
 FORMAT = "flowtex-pyramid-6"
-#: The object of a store that names its builder.
-LEASE = "building.json"
+#: The object of a store that names the process which builds it.
+BUILDING = "building.json"
 DOCUMENT = "zarr.json"
 #: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
 #: files are paths. One letter is a drive.
@@ -53,8 +50,6 @@ _CREDENTIALS = (
     "credentials come from the environment, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, "
     "or AWS_SKIP_SIGNATURE=true for a public bucket"
 )
-#: Seconds between renewals, and after which a lease that was not renewed is stale.
-RENEWAL_S, STALE_S = 20.0, 120.0
 
 
 class PyramidError(FieldError):
@@ -234,7 +229,7 @@ def check_room(place: str, names: Iterable[str]) -> None:
     if not is_remote(place) and Path(place).is_file():
         msg = f"{place} is a file; expected a new folder, an empty one, or a flowtex store"
         raise PyramidError(msg)
-    others = sorted({*names} - {LEASE})
+    others = sorted({*names} - {BUILDING})
     if others and not is_store(place):
         examples = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
         msg = (
@@ -301,112 +296,42 @@ def _first_line(error: Exception) -> str:
     return str(error).partition("\n")[0]
 
 
-class Lease:
-    """The right to build a store, held inside a ``with``; a PyramidError when another holds it.
+@contextmanager
+def building(place: str) -> Iterator[None]:
+    """Mark a store as being built; a PyramidError when another build has marked it.
 
-    It is an object of the store with the name of its holder and the time of its last renewal. One
-    that is not renewed, or whose process has ended, is stale and taken over.
-
-    The ``clock`` must agree on all machines to within some seconds.
+    The mark is an object of the store with the name of its process. A process of this machine that
+    has ended has left it behind, so it is removed.
     """
+    from zarr.core.buffer import default_buffer_prototype
 
-    def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:
-        self.place, self._clock = place, clock
-        self._store = store_at(place, read_only=False)
-        self._identity = {"id": uuid.uuid4().hex, "host": platform.node(), "process": os.getpid()}
-        self._renewed, self._holder = -math.inf, ""
-        self._end = threading.Event()
-        self._thread = threading.Thread(target=self._keep, name="flowtex-lease", daemon=True)
-
-    def __enter__(self) -> Lease:
-        """Take the lease."""
-        content = self._read()
-        if content and not self._is_stale(content):
-            self._refuse(content)
-        if content:
-            sync(self._store.delete(LEASE))
-        self._write(create=True)
-        content = self._read()
-        if content.get("id") != self._identity["id"]:
-            self._refuse(content)
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Give the lease back."""
-        self._end.set()
-        self._thread.join()
-        if not self._holder:
-            with suppress(Exception):  # an error of the work inside is more important
-                if self._read().get("id") == self._identity["id"]:
-                    sync(self._store.delete(LEASE))
-
-    def check(self) -> None:
-        """Raise a PyramidError if another process has taken over the lease."""
-        if not self._holder and self._clock() - self._renewed > STALE_S:
-            self.renew()
-        if self._holder:
-            msg = f"{self.place} was taken over by {self._holder}, which is building it now"
-            raise PyramidError(msg)
-
-    def renew(self) -> None:
-        """Show that the holder is still running."""
-        content = self._read()
-        if content.get("id") != self._identity["id"]:
-            self._holder = _process_text(content)
-        else:
-            self._write(create=False)
-
-    def _keep(self) -> None:
-        while not self._end.wait(RENEWAL_S):
-            with suppress(Exception):  # of the network: check() tries again
-                self.renew()
-
-    def _is_stale(self, content: dict[str, Any]) -> bool:
-        if self._clock() - content["at"] > STALE_S:
-            return True
-        is_local = content.get("host") == self._identity["host"]
-        return is_local and not _is_running(content.get("process"))
-
-    def _refuse(self, content: dict[str, Any]) -> None:
-        age = max(self._clock() - content.get("at", 0.0), 0.0)
+    store, kind = store_at(place, read_only=False), default_buffer_prototype()
+    host, own = platform.node(), uuid.uuid4().hex
+    for _ in range(2):
+        text = json.dumps({"id": own, "host": host, "process": os.getpid()}).encode()
+        mark, holder = kind.buffer.from_bytes(text), dict[str, Any]()
+        try:
+            sync(store.set_if_not_exists(BUILDING, mark))
+        except (OSError, NotImplementedError):  # not all storage has links or conditional writes
+            if sync(store.get(BUILDING, kind)) is None:
+                sync(store.set(BUILDING, mark))
+        with suppress(ValueError, TypeError, AttributeError):
+            holder = {**json.loads(sync(store.get(BUILDING, kind)).to_bytes())}
+        if holder and (holder.get("host") != host or _is_running(holder.get("process"))):
+            break
+        sync(store.delete(BUILDING))  # it was cut off, or its process has ended
+    if holder.get("id") != own:
         msg = (
-            f"{self.place} is being built by {_process_text(content)}, last active {age:.0f} s "
-            f"ago; wait until it ends. If it is no longer running, build again {STALE_S:.0f} s "
-            "after its last activity"
+            f"{place} is being built by process {holder.get('process', '?')} on "
+            f"{holder.get('host', 'another machine')}; wait until it ends. If it is no longer "
+            f"running, delete {BUILDING} in the store and build again"
         )
         raise PyramidError(msg)
-
-    def _read(self) -> dict[str, Any]:
-        """Return the content of the lease; empty without one."""
-        from zarr.core.buffer import default_buffer_prototype
-
-        data = sync(self._store.get(LEASE, default_buffer_prototype()))
-        if data is None:
-            return {}
-        with suppress(ValueError, KeyError, TypeError):
-            content: dict[str, Any] = json.loads(data.to_bytes())
-            if isinstance(content["at"], (int, float)):
-                return content
-        return {"at": -math.inf}  # it was cut off, so it is not held
-
-    def _write(self, *, create: bool) -> None:
-        from zarr.core.buffer import default_buffer_prototype
-
-        now = self._clock()
-        text = json.dumps({**self._identity, "at": now}).encode()
-        data = default_buffer_prototype().buffer.from_bytes(text)
-        try:
-            set_ = self._store.set_if_not_exists if create else self._store.set
-            sync(set_(LEASE, data))
-        except (OSError, NotImplementedError):
-            # Not all storage has links or conditional writes; then the content decides.
-            sync(self._store.set(LEASE, data))
-        self._renewed = now
-
-
-def _process_text(content: dict[str, Any]) -> str:
-    return f"process {content.get('process', '?')} on {content.get('host', 'another machine')}"
+    try:
+        yield
+    finally:
+        with suppress(Exception):  # an error of the work inside is more important
+            sync(store.delete(BUILDING))
 
 
 def _is_running(process: object) -> bool:
@@ -415,8 +340,6 @@ def _is_running(process: object) -> bool:
         return True
     try:
         os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
+    except OSError as error:
+        return not isinstance(error, ProcessLookupError)
     return True

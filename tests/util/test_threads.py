@@ -14,7 +14,7 @@ from flowtex._util import threads
 
 PACKAGE = Path(flowtex.__file__).parent
 #: Where threads are made otherwise: they serve or end processes, and keep stores.
-OTHERS = ("app", "_util/threads.py", "_util/child", "_util/terminal", "pyramid/places.py")
+OTHERS = ("app", "_util/threads.py", "_util/child", "_util/terminal")
 
 
 @pytest.fixture
