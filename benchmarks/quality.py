@@ -7,7 +7,7 @@ sticks to the surface, beside VTK's Surface LIC), ``popping`` (a slow zoom), ``m
 ``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
 
 ``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
-:mod:`flowtex.quality`: a module with the functions alignment, grain, aliasing and carried.
+:mod:`paper.quality`: a module with the functions alignment, grain, aliasing and carried.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from scenes import Stage, gyre_field, gyre_view, vortex_view
 from seams import across_lines, seams
 
 import flowtex
-from flowtex import quality
 from flowtex._util.blocks import block_means
 from flowtex.rendering.diagnostics import require_opengl
+from paper import quality
 
 Figures = dict[str, dict[str, float]]
 

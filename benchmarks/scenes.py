@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ from scipy.ndimage import map_coordinates
 
 import flowtex
 
+sys.path.append(str(Path(__file__).parents[1]))  # for paper.quality
 Floats = NDArray[np.float64]
 
 #: A point of the double gyre where nothing special happens.

@@ -17,7 +17,7 @@ from flowtex.settings import Settings
 from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
-    from flowtex import examples, pyramid, quality
+    from flowtex import examples, pyramid
     from flowtex.app.display import show
     from flowtex.field.formula.make import formula
     from flowtex.plotting.offscreen.dynamic import dynamic_map
@@ -55,7 +55,6 @@ __all__ = [
     "formula",
     "movie",
     "pyramid",
-    "quality",
     "render",
     "separatrices",
     "show",
@@ -89,7 +88,7 @@ def __getattr__(name: str) -> Any:
     """Import what draws (PyVista, VTK, the widget) only when it is used."""
     import importlib
 
-    if name in ("examples", "pyramid", "quality"):
+    if name in ("examples", "pyramid"):
         return importlib.import_module(f"flowtex.{name}")
     if name in _DRAWS:
         importlib.import_module("flowtex.rendering.diagnostics").begin_trial()

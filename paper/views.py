@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from flowtex import quality
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
@@ -23,6 +22,7 @@ from flowtex.rendering.cpu.shade import shade
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
+from paper import quality
 from paper.bench import Bench
 
 #: Colour of a surface without scalars.

@@ -27,7 +27,6 @@ PACKAGE = ROOT / "flowtex"
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("errors",),
     ("_util",),
-    ("quality",),
     ("settings",),
     ("field",),
     ("sources",),

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from flowtex import quality
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.noise import PaperImages, PaperNoise
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.textures import PaperTextures
-from paper import measures
+from paper import measures, quality
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.plots import Line, line_plot

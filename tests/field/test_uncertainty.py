@@ -10,7 +10,7 @@ import xarray as xr
 from flows import gyre, scattered_gyre
 from small_tiles import shrink
 
-from flowtex import FlowField, quality
+from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.uncertainty import UNCERTAINTY, unknown_share, with_uncertainty
@@ -20,6 +20,7 @@ from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import Settings
 from flowtex.textures.tiles import Pyramid
+from paper import quality
 
 
 def straight() -> FlowField:

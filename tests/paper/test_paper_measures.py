@@ -7,8 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from flowtex import quality
-from paper import measures
+from paper import measures, quality
 
 Floats = NDArray[np.float64]
 SIZE = (160, 200)

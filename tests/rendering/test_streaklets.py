@@ -9,7 +9,7 @@ import pytest
 from flows import fountain, gyre, lines, swinging
 from scipy import ndimage
 
-from flowtex import FlowField, quality
+from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.locate import locator
 from flowtex.rendering import constants as const
@@ -18,6 +18,7 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
+from paper import quality
 
 SIZE = (120, 80)
 #: Pixels along the border that are not judged.

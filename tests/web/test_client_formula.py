@@ -14,6 +14,7 @@ from pages import COMPLETE, acted, opened_page
 from PIL import Image
 
 import flowtex
+from paper import quality
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -93,7 +94,7 @@ def test_a_formula_is_sharp_at_a_zoom_of_100_000(browser: Browser, tmp_path: Pat
         drawn = picture(page)[..., :3]
     y, x = np.mgrid[1 : -1 : drawn.shape[0] * 1j, -1 : 1 : drawn.shape[1] * 1j]
     x *= drawn.shape[1] / drawn.shape[0]
-    found = flowtex.quality.alignment(drawn, y, -x - 0.2 * y, np.hypot(x, y) > 0.25)
+    found = quality.alignment(drawn, y, -x - 0.2 * y, np.hypot(x, y) > 0.25)
     assert found.angle < 3 and found.coherence > 0.93
 
 

@@ -42,7 +42,7 @@ class Alignment(NamedTuple):
 
     Examples
     --------
-    >>> from flowtex.quality import Alignment
+    >>> from paper.quality import Alignment
     >>> Alignment(1.9, 0.97).coherence
     0.97
     """
@@ -56,7 +56,7 @@ class Grain(NamedTuple):
 
     Examples
     --------
-    >>> from flowtex.quality import Grain
+    >>> from paper.quality import Grain
     >>> Grain(15.1, 1.2).along
     15.1
     """
@@ -102,7 +102,7 @@ def alignment(
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import alignment
+    >>> from paper.quality import alignment
     >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
     >>> found = alignment(stripes, np.ones((80, 100)), np.zeros((80, 100)))
     >>> round(found.angle), round(found.coherence, 2)
@@ -149,7 +149,7 @@ def grain(
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import grain
+    >>> from paper.quality import grain
     >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
     >>> found = grain(stripes, np.ones((80, 100)), np.zeros((80, 100)))
     >>> found.along, round(found.across, 1)
@@ -217,7 +217,7 @@ def sense(picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import sense
+    >>> from paper.quality import sense
     >>> ramps = np.tile((np.arange(120) % 20) ** 2, (90, 1))
     >>> ones, zeros = np.ones((90, 120)), np.zeros((90, 120))
     >>> sense(ramps, ones, zeros), sense(ramps, -ones, zeros)
@@ -262,7 +262,7 @@ def sticking(
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import sticking
+    >>> from paper.quality import sticking
     >>> noise = np.random.default_rng(0).random((60, 80))
     >>> round(sticking(noise, np.roll(noise, 3, axis=1), 3, 0), 2)
     1.0
@@ -303,7 +303,7 @@ def aliasing(picture: ArrayLike, reference: ArrayLike, mask: ArrayLike | None = 
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import aliasing
+    >>> from paper.quality import aliasing
     >>> noise = np.random.default_rng(0).random((60, 80))
     >>> aliasing(noise, noise)
     0.0
@@ -337,7 +337,7 @@ def spacing(points: ArrayLike) -> float:
     Examples
     --------
     >>> import numpy as np
-    >>> from flowtex.quality import spacing
+    >>> from paper.quality import spacing
     >>> spacing(np.stack(np.meshgrid(range(5), range(4)), axis=-1).reshape(-1, 2))
     0.0
     """

@@ -11,8 +11,8 @@ from measures import streaks as other_streaks
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from flowtex import quality
 from flowtex.errors import FieldError
+from paper import quality
 
 Floats = NDArray[np.float64]
 SIZE = (160, 200)
