@@ -14,17 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from lab import BASE, Lab, LabServer
+from lab import Lab, LabServer
 from numpy.typing import NDArray
 from pages import COMPLETE, acted, opened_page
 from PIL import Image
 from waiting import PATIENCE_S, wait_until
-from watching import COUNT as PICTURES
-from watching import DRAWN as PAINTED_NOW
-from watching import SHARP
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Frame, Page
+    from playwright.sync_api import Browser, Page
 
 pytest.importorskip("anywidget")
 
@@ -311,61 +308,6 @@ def test_two_views_of_a_formula_are_drawn_while_the_cell_still_runs(
     page.wait_for_function("() => !document.querySelector('[data-failed]')")
     assert lab.said("w.close()") == "None"
     page.wait_for_function("() => !document.querySelector('.flowtex')")
-
-
-APPLICATION = """import flowtex
-from flowtex.app import FlowApp
-app = FlowApp(flowtex.examples.double_gyre_field(), samples=5)
-app"""
-#: What a kernel finds in its environment on JupyterHub.
-HUB = f"__import__('os').environ.update(JUPYTERHUB_SERVICE_PREFIX='{BASE}/')"
-
-
-def frame_of(page: Page) -> Frame:
-    frame = page.locator("iframe[title=flowtex]").element_handle().content_frame()
-    assert frame is not None
-    return frame
-
-
-def application(page: Page, frame: Frame, before: int = 0) -> Any:
-    """Wait for the next full picture, and return the frame as (h, w) greys."""
-    frame.wait_for_function(f"n => ({PICTURES})() > n && ({SHARP})()", arg=before)
-    frame.evaluate(PAINTED_NOW)
-    with Image.open(io.BytesIO(page.locator("iframe[title=flowtex]").screenshot())) as picture:
-        return np.asarray(picture.convert("L"), dtype=float)[140:300, 80:-30]
-
-
-@pytest.mark.usefixtures("opengl")
-def test_a_cell_shows_the_application(notebook: Lab) -> None:
-    """Through the proxy, as on JupyterHub; without it the page is that of a server."""
-    page = notebook.page
-    page.set_viewport_size({"width": 700, "height": 700})
-    asked: list[str] = []
-    page.on("websocket", lambda socket: asked.append(socket.url))
-    assert notebook.said(HUB) == "None"
-    notebook.run(APPLICATION)
-    page.locator("iframe[title=flowtex]").wait_for()
-    frame = frame_of(page)
-    before = application(page, frame)
-    assert np.abs(np.diff(before, axis=0)).mean() > 5
-    (link,) = [url for url in asked if "/page/" in url]
-    assert f"{BASE}/proxy/" in link
-    assert "secret" not in frame.url
-
-    # The browser to Python, and Python to the browser.
-    count = int(frame.evaluate(PICTURES))
-    frame.locator(".picture").hover(position={"x": 200, "y": 200})
-    for _ in range(8):
-        page.mouse.wheel(0, -100)
-    closer = application(page, frame, count)
-    assert np.abs(closer - before).mean() > 5
-    assert float(notebook.said("app.viewport.zoom")) > 3
-    assert notebook.said("app.area.reset_camera()") == "None"
-    # A picture of the closer view may still be on its way.
-    wait_until(lambda: np.abs(application(page, frame) - before).mean() < 1)
-
-    assert notebook.said("app.close()") == "None"
-    frame.get_by_text("lost its connection").wait_for()
 
 
 def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(

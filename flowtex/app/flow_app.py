@@ -18,7 +18,6 @@ from flowtex.app.controllers.context import Context, State
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.controllers.sharing import FORMATS
 from flowtex.app.server.files import UPLOAD_SUFFIXES
-from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions.local import MakeApp, opener
@@ -64,7 +63,7 @@ WORDS = {
 }
 
 
-class FlowApp(NotebookPage):
+class FlowApp:
     """The page of ``flowtex show``, with one or several flows and all controls.
 
     Parameters
@@ -158,7 +157,6 @@ class FlowApp(NotebookPage):
 
     def close(self) -> None:
         """End the tasks and free the graphics memory."""
-        self.leave_cell()
         for controller in self.context.controllers:
             controller.close()
         self.area.close()

@@ -36,7 +36,7 @@ ANY = "*"
 #: The page's own scripts need eval: Vue compiles the templates that trame sends it.
 POLICY = (
     "default-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:; connect-src 'self' ws: wss:"
-    " blob: data:; object-src 'none'; base-uri 'self'"
+    " blob: data:; object-src 'none'; base-uri 'self'; frame-ancestors 'self'"
 )
 HEADERS = {
     "Referrer-Policy": "no-referrer",  # the address carries the secret
@@ -70,7 +70,7 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     names = [*LOCAL, host]
     if host in ("0.0.0.0", "::", ""):
         names.append(platform.node())
-    if os.environ.get("JUPYTERHUB_SERVICE_PREFIX") or os.environ.get("FLOWTEX_PROXY"):
+    if os.environ.get("JUPYTERHUB_SERVICE_PREFIX"):
         names.append(ANY)
     for name in allowed:
         if name != ANY and not re.fullmatch(r"[\w.-]+", name):
@@ -83,15 +83,12 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     return frozenset(name.lower() for name in names)
 
 
-def guard(
-    application: web.Application, *, hosts: Container[str] = LOCAL, framed: bool = False
-) -> None:
+def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> None:
     """Limit times, refuse other sites' pages and unknown names, and write errors only to the log.
 
     Each answer has :data:`HEADERS`. ``hosts`` are valid host names in lower case, besides numeric
-    addresses; with ``framed`` pages of other sites may show it in a frame, as a notebook does.
+    addresses.
     """
-    policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -129,7 +126,7 @@ def guard(
 
     async def add_headers(request: web.Request, response: web.StreamResponse) -> None:
         del request
-        response.headers.update({**HEADERS, "Content-Security-Policy": policy})
+        response.headers.update({**HEADERS, "Content-Security-Policy": POLICY})
 
     application.middlewares.append(faults_to_log)
     limit_time(application)

@@ -82,7 +82,7 @@ class ServeError(FieldError):
 
 
 class Site:
-    """Pages on one port, behind a secret; hosts and framed are those of :func:`guard`."""
+    """Pages on one port, behind a secret; hosts are those of :func:`guard`."""
 
     def __init__(
         self,
@@ -90,12 +90,11 @@ class Site:
         secret: str,
         *,
         hosts: Container[str] = LOCAL,
-        framed: bool = False,
     ) -> None:
         self.sessions = sessions
         self.port = 0
         self._secret = secret
-        self._hosts, self._framed = hosts, framed
+        self._hosts = hosts
         self._server: LimitedServer | None = None
         self._sweep: asyncio.Task[None] | None = None
 
@@ -124,7 +123,7 @@ class Site:
 
     def _application(self, static: dict[str, str]) -> web.Application:
         application = web.Application(client_max_size=REQUEST_BYTES)
-        guard(application, hosts=self._hosts, framed=self._framed)
+        guard(application, hosts=self._hosts)
         router = application.router
         router.add_get("/", self._door)
         router.add_get("/index.html", self._door)
@@ -156,7 +155,7 @@ class Site:
         if session is None:
             raise web.HTTPNotFound
         keep(request)
-        return await session.connect(request, shared=self.sessions.shared)
+        return await session.connect(request)
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
         try:

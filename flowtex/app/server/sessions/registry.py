@@ -6,7 +6,7 @@ it ends, and with it its window, its tasks and its trame server, or the process 
 
 What ``flowtex show`` and ``flowtex demo`` serve is a process for each session, where the system
 can fork (:mod:`flowtex.app.server.sessions.process`): a crash ends one page, and pages draw on all
-cores. A notebook, a script, and other systems have all sessions in their own process
+cores. A script and other systems have all sessions in their own process
 (:mod:`flowtex.app.server.sessions.local`); fields and their traces are shared there.
 """
 
@@ -86,8 +86,8 @@ class Session(ABC):
         Raises an error for a message that no page of ours sends.
         """
 
-    async def connect(self, request: web.Request, *, shared: bool) -> web.StreamResponse:
-        """Connect a page, in place of another one unless pages share the session."""
+    async def connect(self, request: web.Request) -> web.StreamResponse:
+        """Connect a page, in place of another one."""
         socket = web.WebSocketResponse(
             max_msg_size=MAX_MSG_SIZE + MESSAGE_OVERHEAD_BYTES,
             heartbeat=HEARTBEAT_S,
@@ -95,7 +95,7 @@ class Session(ABC):
             compress=False,
         )
         await socket.prepare(request)
-        others = [] if shared else list(self._sockets)
+        others = list(self._sockets)
         self._sockets.add(socket)
         self._loading = False
         for other in others:
@@ -152,16 +152,12 @@ def usual_limit() -> int:
 class Sessions:
     """The sessions of one start, at most ``limit`` at one time.
 
-    One that is ``idle``, without a connection, for this many minutes ends. Pages may have the first
-    session together, as the cells of a notebook.
+    One that is ``idle``, without a connection, for this many minutes ends.
     """
 
-    def __init__(
-        self, open_session: OpenSession, *, limit: int, idle: float, shared: bool = False
-    ) -> None:
+    def __init__(self, open_session: OpenSession, *, limit: int, idle: float) -> None:
         self.limit = limit
         self.idle = idle
-        self.shared = shared
         self._open = open_session
         self._by_token: dict[str, Session] = {}
         self._ready: Session | None = None
@@ -197,8 +193,6 @@ class Sessions:
         When another page is connected with the token, such as that of a copied tab, the page gets
         its own session.
         """
-        if self.shared and self._ready is not None:
-            return self._ready
         session = self._by_token.get(token or "")
         if session is not None and await session.is_free() and session.token in self._by_token:
             session.expect()
