@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,75 +27,58 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 
-def cylinder() -> pv.StructuredGrid:
-    """Return vortex shedding behind a cylinder at the last time.
+def _mesh(make: Callable[[], FlowField], nodes: int) -> Callable[[], pv.StructuredGrid]:
+    """Return the function that makes the mesh of an example, with this many nodes."""
+    name = make.__name__.removesuffix("_field")
+
+    def mesh() -> pv.StructuredGrid:
+        return to_grid(make())
+
+    mesh.__name__ = mesh.__qualname__ = name
+    mesh.__doc__ = f"""Return the flow of :func:`~flowtex.examples.{name}_field`, at its last time.
 
     Returns
     -------
     pyvista.StructuredGrid
-        161 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``vorticity``, and
-        the field data ``TimeValue``.
+        The nodes with the point array ``velocity`` and the scalar of the field, and the field data
+        ``TimeValue`` if the flow varies in time.
 
     Examples
     --------
     >>> import flowtex
-    >>> flowtex.examples.cylinder().point_data.keys()
-    ['velocity', 'vorticity']
+    >>> flowtex.examples.{name}().n_points
+    {nodes}
     """
-    return to_grid(cylinder_field())
+    return mesh
 
 
-def cylinder_series() -> list[pv.StructuredGrid]:
-    """Return one period of vortex shedding, :func:`~flowtex.examples.cylinder_field`.
+def _series(make: Callable[[], FlowField], times: int) -> Callable[[], list[pv.StructuredGrid]]:
+    """Return the function that makes the meshes of an example at all of this many times."""
+    name = make.__name__.removesuffix("_field")
+
+    def series() -> list[pv.StructuredGrid]:
+        return to_series(make())
+
+    series.__name__ = series.__qualname__ = f"{name}_series"
+    series.__doc__ = f"""Return the flow of :func:`~flowtex.examples.{name}_field` at all times.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        31 times, as from :func:`~flowtex.examples.cylinder`, the last one period after the first.
+        One for each time, as from :func:`~flowtex.examples.{name}`.
 
     Examples
     --------
     >>> import flowtex
-    >>> meshes = flowtex.examples.cylinder_series()
-    >>> flowtex.FlowField.from_pyvista(meshes).steady
-    False
+    >>> len(flowtex.examples.{name}_series())
+    {times}
     """
-    return to_series(cylinder_field())
+    return series
 
 
-def vortex() -> pv.StructuredGrid:
-    """Return vortices of turbulence, :func:`~flowtex.examples.vortex_field`, at the last time.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        100 x 100 x 1 nodes on the unit square, with the arrays of
-        :func:`~flowtex.examples.cylinder`.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.vortex().dimensions
-    (100, 100, 1)
-    """
-    return to_grid(vortex_field())
-
-
-def vortex_series() -> list[pv.StructuredGrid]:
-    """Return vortices of turbulence, :func:`~flowtex.examples.vortex_field`, at all times.
-
-    Returns
-    -------
-    list of pyvista.StructuredGrid
-        31 times, as from :func:`~flowtex.examples.vortex`.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> len(flowtex.examples.vortex_series())
-    31
-    """
-    return to_series(vortex_field())
+cylinder, cylinder_series = _mesh(cylinder_field, 10_465), _series(cylinder_field, 31)
+vortex, vortex_series = _mesh(vortex_field, 10_000), _series(vortex_field, 31)
+airfoil, delta_wing = _mesh(airfoil_field, 12_545), _mesh(delta_wing_field, 3_224)
 
 
 def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
@@ -142,40 +126,6 @@ def double_gyre_series() -> list[pv.StructuredGrid]:
     10.0
     """
     return to_series(double_gyre_field(time_varying=True))
-
-
-def airfoil() -> pv.StructuredGrid:
-    """Return the flow around a Joukowski airfoil, :func:`~flowtex.examples.airfoil_field`.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        193 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``pressure``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.airfoil().dimensions
-    (193, 65, 1)
-    """
-    return to_grid(airfoil_field())
-
-
-def delta_wing() -> pv.StructuredGrid:
-    """Return the flow over a winged body, :func:`~flowtex.examples.delta_wing_field`.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        62 x 52 x 1 nodes along and across; point arrays ``velocity`` and ``height``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.delta_wing().n_points
-    3224
-    """
-    return to_grid(delta_wing_field())
 
 
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:

@@ -13,9 +13,9 @@ After a job that was cancelled or that failed there is no file.
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -24,8 +24,8 @@ import numpy as np
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import whole_file
-from flowtex.app.streaming.painter import LINE_GREY, Cost
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.app.streaming.painter import LINE_GREY, TILE_PX
+from flowtex.app.streaming.viewport import GAP_PX, Rect, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.annotations import annotate
@@ -48,8 +48,6 @@ MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
 MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
 #: Seconds between two checks whether the view has come to rest.
 BUSY_INTERVAL_S = 0.05
-#: Seconds that a tile may take, and its sides in pixels, at most.
-TILE_S, LARGEST_TILE_PX = 0.05, 512
 
 
 class ExportError(FieldError):
@@ -66,9 +64,8 @@ class TiledPicture:
         self, viewport: Viewport, size: tuple[int, int], density: float, supersampling: int
     ) -> None:
         self.size, self._viewport, self._supersampling = size, viewport, supersampling
-        self._cost = Cost()
         self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
-        viewport.window.longest_side = LARGEST_TILE_PX
+        viewport.window.longest_side = TILE_PX
         for pane in viewport.panes:
             pane.handle.density = density * supersampling
 
@@ -83,27 +80,20 @@ class TiledPicture:
             first = number * (wide + self._gap)
             pane_width = wide if number < len(panes) - 1 else width - first
             self._viewport.window.size = pane_width * times, height * times
-            for tile in self._tiles(pane, pane_width, height):
+            for tile in self._tiles(pane_width, height):
                 left, top, across, down = tile
-                started = time.perf_counter()
                 part = (times * left, times * top, times * across, times * down)
                 pixels = pane.draw(part[2], part[3], part)
-                seconds, samples = time.perf_counter() - started, pane.handle.settings.samples
-                self._cost.learn(seconds, part[2] * part[3], samples)
                 place = slice(top, top + down), slice(first + left, first + left + across)
                 canvas[place] = averaged(pixels, times)
                 done += across * down
                 yield canvas, done / (width * height)
 
-    def _tiles(self, pane: Pane, width: int, height: int) -> Iterator[Rect]:
-        """Yield rows of tiles, as large as the time allows."""
-        top = 0
-        while top < height:
-            side = min(self._cost.tile(pane.handle.settings.samples, TILE_S), LARGEST_TILE_PX)
-            side = max(side // self._supersampling, 1)
-            for left in range(0, width, side):
-                yield left, top, min(side, width - left), min(side, height - top)
-            top += side
+    def _tiles(self, width: int, height: int) -> Iterator[Rect]:
+        """Yield rows of tiles."""
+        side = TILE_PX // self._supersampling
+        for top, left in product(range(0, height, side), range(0, width, side)):
+            yield left, top, min(side, width - left), min(side, height - top)
 
     def annotate(self, picture: Bytes) -> None:
         """Write legend, scale bar, time and name on each view of a picture, in place."""

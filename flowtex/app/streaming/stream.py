@@ -23,7 +23,7 @@ from typing import Any
 from flowtex._util.array_types import Bytes
 from flowtex.app.server.page import Signal
 from flowtex.app.server.validation import mapping
-from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view_pixels
+from flowtex.app.streaming.painter import ViewPainter, view_pixels
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 
@@ -180,7 +180,7 @@ class FrameStream:
         """Send one picture in motion, no sooner than the last one allows."""
         self._wake.clear()
         started = time.perf_counter()
-        pixels = self.painter.quick(PLAYING_S if self.playing else MOVING_S)
+        pixels = self.painter.quick()
         await self._send(pixels, MOTION_QUALITY)
         self.moving = True
         # Events of the page arrive while this sleeps; without it they would wait for the picture.
@@ -198,7 +198,7 @@ class FrameStream:
         looked = time.perf_counter()
         canvas: Bytes | None = None
         if self.painter.complete:
-            canvas = self.painter.quick(float("inf"))
+            canvas = self.painter.quick()
         else:
             for canvas in self.painter.full():
                 await asyncio.sleep(0)

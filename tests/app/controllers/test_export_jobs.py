@@ -92,7 +92,7 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
 def test_a_saved_picture_is_that_of_a_script(
     tmp_path: Path, times: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.app.controllers.export_jobs.LARGEST_TILE_PX", 160)
+    monkeypatch.setattr("flowtex.app.controllers.export_jobs.TILE_PX", 160)
     field = flowtex.examples.double_gyre_field(shape=(21, 41))
     marked: dict[str, Any] = {"samples": 5, "critical_points": True, "separatrices": True}
     view = Viewport(field, **marked)

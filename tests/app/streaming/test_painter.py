@@ -9,7 +9,6 @@ pytest.importorskip("trame_rca")
 from small_pages import difference, picture
 
 from flowtex.app import FlowApp
-from flowtex.app.streaming.painter import COARSEST_DRAFT, Cost
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -24,26 +23,19 @@ def test_tiles_are_the_same_picture(kind: str, request: pytest.FixtureRequest) -
     assert difference(tile, whole[42:102, 100:180]) > 3.0
 
 
-def test_a_full_picture_is_the_whole_one(flat: FlowApp) -> None:
-    painter = flat.stream.painter.painters[0]
+def test_full_picture_replaces_draft(flat: FlowApp, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = "flowtex.app.streaming.painter"
+    monkeypatch.setattr(f"{module}.DRAFT_PIXELS", 2_000)
+    monkeypatch.setattr(f"{module}.TILE_PX", 64)
+    painter = flat.stream.painter
+    monkeypatch.setattr(painter, "slow", True)
     flat.area.settings.samples = 21
     painter.forget()
-    painter.cost.learn(5.0, 240 * 160, 9)
-    quick = painter.quick(0.01)
+    quick = painter.quick()
     assert flat.area.settings.samples == 21  # of which a draft has fewer
     flat.area.settings.samples = 9
-    assert not painter.complete and quick.shape[1] <= 240 * COARSEST_DRAFT + 1
+    assert not painter.complete and quick.shape[0] * quick.shape[1] < 2_100
     *_, full = painter.full()
     assert painter.complete and difference(full, picture(flat)) < 0.5
-    painter.cost = Cost()
-
-
-def test_the_cost_of_a_picture_is_learnt() -> None:
-    cost = Cost()
-    for _ in range(20):
-        cost.learn(0.006 + 1e-8 * 10**6 * (41 + 8), 10**6, 41)
-    assert cost.seconds(10**6, 41) == pytest.approx(0.496, rel=0.02)
-    assert cost.choose(10**6, 41, 1.0).scale == 1.0
-    draft = cost.choose(10**6, 41, 0.05)
-    assert draft.samples == 9 and 0.3 < draft.scale < 0.6
-    assert cost.seconds(10**6 * draft.scale**2, 9) == pytest.approx(0.05, rel=0.05)
+    monkeypatch.setattr(painter, "slow", False)
+    assert difference(painter.quick(), full) < 0.5 and painter.complete
