@@ -108,7 +108,6 @@ class Cluster(Threads):
         self._owns_client = isinstance(scheduler, str)
         self._client = distributed.Client(scheduler) if self._owns_client else scheduler
         self._as_completed = distributed.as_completed
-        self._check_memory()
 
     def run(
         self,
@@ -141,25 +140,6 @@ class Cluster(Threads):
         """Disconnect from a cluster that was connected by its address."""
         if self._owns_client:
             self._client.close()
-
-    def _check_memory(self) -> None:
-        """Warn of workers whose memory is so small that Dask may pause them."""
-        dask = import_extra("dask", "store")
-        share = dask.config.get("distributed.worker.memory.pause", 0.8) or 1.0
-        workers = self._client.scheduler_info(n_workers=-1)["workers"]
-        needs = {
-            name: (worker["memory_limit"], (OWN_BYTES + worker["nthreads"] * TILE_BYTES) / share)
-            for name, worker in workers.items()
-        }
-        short = {name: (limit, need) for name, (limit, need) in needs.items() if 0 < limit < need}
-        if short:
-            name, (limit, need) = next(iter(short.items()))
-            notify(
-                f"{len(short)} of {len(workers)} workers have too little memory: {name} has "
-                f"{_size_text(limit)}, but its threads may need {_size_text(need)}; give it more "
-                "memory, or fewer threads",
-                UserWarning,
-            )
 
 
 def _run_task(task: tuple[Any, ...], *, function: Callable[..., None], inputs: list[Any]) -> None:

@@ -95,20 +95,6 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     np.testing.assert_array_equal(tiles[0], tiles[1])
 
 
-def test_workers_with_little_memory_are_told() -> None:
-    class Client:
-        def scheduler_info(self, **_: int) -> dict[str, Any]:
-            workers = {
-                "tcp://a:1": {"memory_limit": 8_000_000_000, "nthreads": 2},
-                "tcp://b:2": {"memory_limit": 4_000_000_000, "nthreads": 2},
-                "tcp://c:3": {"memory_limit": 0, "nthreads": 2},
-            }
-            return {"workers": workers}
-
-    with pytest.warns(UserWarning, match=r"1 of 3 workers .* tcp://b:2 has 4 GB, .* need 4.38 GB"):
-        workers.Cluster(Client())
-
-
 def test_what_holds_its_data_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "MOST_SENT", 10_000)
     assert workers._packed(np.zeros(9_000, np.uint8)) is not None
