@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-#: Seconds after which the error is raised again where it was swallowed.
-REMINDER_S = 0.5
 #: Windows has no SIGHUP.
 SIGNALS = tuple(s for s in signal.Signals if s.name in ("SIGTERM", "SIGHUP"))
 
@@ -36,12 +34,11 @@ def announce_end(number: int) -> None:
 def ended_by_signals() -> Iterator[None]:
     """Raise :class:`Ended` on the first signal, as Ctrl-C raises KeyboardInterrupt.
 
-    So incomplete files and temporary folders are removed. If a callback of a library swallowed the
-    error, it is raised again, but not while it is handled: another signal does not interrupt the
-    end. A signal that the program ignores, as under nohup, is still ignored.
+    So incomplete files and temporary folders are removed. A later signal does not interrupt the
+    end. If a callback of a library swallowed the error, a later signal raises it again. A signal
+    that the program ignores, as under nohup, is still ignored.
     """
     received: list[int] = []
-    over, reminding = threading.Event(), threading.Lock()
     # Python tests the folder once with a file, which a signal in between would leave there.
     tempfile.gettempdir()
 
@@ -50,16 +47,9 @@ def ended_by_signals() -> Iterator[None]:
         if not received:
             received.append(number)
             announce_end(number)
-            threading.Thread(target=remind, args=(number,), daemon=True).start()
         elif _is_handled(Ended, sys.exception()):
             return
         raise Ended(received[0])
-
-    def remind(number: int) -> None:
-        while not over.wait(REMINDER_S):
-            with reminding:
-                if not over.is_set():
-                    signal.raise_signal(number)
 
     before = {s: signal.getsignal(s) for s in SIGNALS}
     if threading.current_thread() is not threading.main_thread():
@@ -74,8 +64,6 @@ def ended_by_signals() -> Iterator[None]:
             raise
         raise Ended(received[0]) from error  # such as a terminal that cannot be written to
     finally:
-        with reminding:  # afterwards a signal would end the process
-            over.set()
         for signum, handler in before.items():
             signal.signal(signum, handler)
 
