@@ -2,8 +2,8 @@
 
 A file's address is ``flowtex/<token>/<name>``, below the page. The token cannot be guessed and
 belongs to one session, so the address alone gives access. Content is looked up at each request.
-Downloads are in a temporary folder that only its owner can read; they are removed after a while,
-when they take too much room, and when the page closes.
+Downloads are in a temporary folder that only its owner can read; the oldest one is removed for
+another, and all when the page closes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import inspect
 import mimetypes
 import re
 import shutil
-import time
 from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from pathlib import Path
@@ -27,8 +26,8 @@ from flowtex.app.server.security import new_secret
 from flowtex.errors import FieldError
 from flowtex.sources.remote import prepare_readers
 
-#: Seconds that a download waits to be fetched, and bytes of all of them together, at most.
-LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
+#: Most downloads of a page; the oldest one is removed for another.
+MOST_DOWNLOADS = 4
 #: Bytes of an upload that are written at once.
 CHUNK_BYTES = 1 << 18
 #: Most bytes of a file's name, and of its ending: file systems allow 255, and an incomplete file
@@ -201,21 +200,13 @@ def add_route(application: web.Application, find: Callable[[str], Handler | None
 
 
 class Downloads:
-    """The files that one application offers to save.
+    """The files that one application offers to save, the latest ones."""
 
-    One that has not been requested is removed after a lifetime in seconds.
-    """
-
-    def __init__(
-        self,
-        routes: Routes,
-        lifetime: float = LIFETIME_S,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
+    def __init__(self, routes: Routes) -> None:
         self._folder = TemporaryFolder()
         self.folder = self._folder.path
-        self._routes, self._lifetime, self._clock = routes, lifetime, clock
-        self._files: dict[str, tuple[Path, float]] = {}
+        self._routes = routes
+        self._files: dict[str, Path] = {}
 
     def __len__(self) -> int:
         """Count the files that can be fetched."""
@@ -230,37 +221,15 @@ class Downloads:
         if not path.resolve().is_relative_to(self.folder.resolve()):
             msg = f"{path} is outside {self.folder}; expected a file from reserve()"
             raise FieldError(msg)
-        self.expire()
+        for oldest in list(self._files)[: 1 - MOST_DOWNLOADS]:
+            self.remove(oldest)
         token = new_secret()
-        self._files[token] = (path, self._clock())
+        self._files[token] = path
         return self._routes.give(token, partial(self._content, token))
-
-    def get(self, token: str) -> Path | None:
-        """Return the file of a token; ``None`` if it does not exist or has been removed."""
-        self.expire()
-        path, _ = self._files.get(token, (None, 0.0))
-        if path is None or not path.is_file():
-            return None
-        self._files[token] = (path, self._clock())
-        return path
-
-    def expire(self) -> None:
-        """Remove expired files, and the oldest ones if all take too much room."""
-        limit = self._clock() - self._lifetime
-        for token in [t for t, (_, requested) in self._files.items() if requested < limit]:
-            self.remove(token)
-        files = {token: path for token, (path, _) in self._files.items()}
-        sizes = {t: path.stat().st_size if path.is_file() else 0 for t, path in files.items()}
-        for token in sorted(sizes, key=lambda t: self._files[t][1])[:-1]:
-            if sum(sizes.values()) <= DOWNLOAD_BYTES:
-                break
-            self.remove(token)
-            del sizes[token]
 
     def remove(self, token: str) -> None:
         """Remove the file of a token, if it exists."""
-        path, _ = self._files.pop(token, (None, 0.0))
-        if path is not None:
+        if (path := self._files.pop(token, None)) is not None:
             shutil.rmtree(path.parent, ignore_errors=True)
 
     def close(self) -> None:
@@ -269,8 +238,8 @@ class Downloads:
         self._folder.close()
 
     def _content(self, token: str) -> Content:
-        path = self.get(token)
-        if path is None:
+        path = self._files.get(token)
+        if path is None or not path.is_file():
             raise web.HTTPGone(text=EXPIRED, headers={"Cache-Control": "no-store"})
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         return path, kind, path.name
