@@ -19,7 +19,7 @@ from flowtex.scene.options import Options
 from flowtex.textures import TextureSet
 from flowtex.textures.tiles import Pyramid
 from flowtex.web.view import web_views
-from flowtex.widget.feed import Worker, WorkerPool
+from flowtex.widget.feed import Worker
 from flowtex.widget.flow_widget import Views
 
 
@@ -229,28 +229,33 @@ def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong
     assert client.errors == []
 
 
-def test_a_worker_may_be_closed_by_a_collection_while_a_pool_chooses() -> None:
-    pool, done = WorkerPool("a test", 1), threading.Event()
-    other = Worker(pool, lambda error: None)
-
-    class Collecting(Worker):
-        """Whoever looks whether it is busy sets off the end of another worker."""
-
-        def __hash__(self) -> int:
-            other.close()
-            return id(self)
-
-    Collecting(pool, lambda error: None).do(done.set)
-    assert done.wait(PATIENCE_S)
+@pytest.mark.threads
+def test_worker_does_urgent_jobs_first_and_takes_turns() -> None:
+    turns, done, may = threading.Semaphore(1), list[str](), threading.Event()
+    first, other = (Worker(turns, "a test", lambda e: done.append(str(e))) for _ in range(2))
+    first.do(lambda: done.append(str(may.wait(PATIENCE_S))))
+    wait_until(lambda: turns._value == 0)
+    first.do(lambda: done.append("later"))
+    first.do(lambda: done.append("urgent"), urgency=1)
+    first.do(lambda: done.append(f"{1 / 0}"))
+    other.do(lambda: done.append("other"))
+    assert done == []
+    may.set()
+    wait_until(lambda: not first.busy and not other.busy)
+    assert [text for text in done if text != "other"] == [
+        *("True", "urgent", "later", "division by zero"),
+    ]
+    assert "other" in done
 
 
 @pytest.mark.threads
-def test_a_pool_that_is_busy_does_the_urgent_jobs_of_all_workers_first() -> None:
-    pool, done, may = WorkerPool("a test", 1), list[str](), threading.Event()
-    first, other = (Worker(pool, lambda error: done.append(str(error))) for _ in range(2))
-    first.do(lambda: done.append(str(may.wait(PATIENCE_S))))
-    first.do(lambda: done.append("first"))
-    other.do(lambda: done.append("other"), urgency=1)
+def test_closed_worker_begins_no_job() -> None:
+    done, may = list[str](), threading.Event()
+    worker = Worker(threading.Semaphore(1), "a test", lambda error: done.append(str(error)))
+    worker.do(lambda: done.append(str(may.wait(PATIENCE_S))))
+    worker.do(lambda: done.append("second"))
+    wait_until(lambda: len(worker._jobs) == 1)
+    worker.close()
     may.set()
-    wait_until(lambda: not first.busy and not other.busy)
-    assert done == ["True", "other", "first"]
+    wait_until(lambda: not worker.busy)
+    assert done == ["True"]
