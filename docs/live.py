@@ -39,8 +39,8 @@ import flowtex
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.web.assets import asset
-from flowtex.web.export import estimate, page_data
+from flowtex.web.assets import asset, client_script
+from flowtex.web.export import page_text
 from flowtex.web.view import WebView, web_views
 
 #: Folder of the site's own files, told to the kernels of notebooks as well.
@@ -136,7 +136,7 @@ def _fitting(field: FlowField, options: Options, steps: int | None) -> tuple[Web
     if steps is not None or len(field.times) == 1:
         return views
     one, all_of_them = (
-        estimate(page_data(some), client="")  # which all scenes of the site share
+        len(page_text(some)) - len(client_script())  # which all scenes of the site share
         for some in (web_views(field, options, steps=1), views)
     )
     step = (all_of_them - one) / (len(field.times) - 1)

@@ -189,15 +189,13 @@ def export(
         raise UsageError(msg)
     from flowtex.web.export import export as write_page
 
-    def announce(size: int, count: int) -> None:
-        selected = "" if count == len(field.times) else f", {count} of them"
-        say(f"{describe(field)}{selected}: about {size / 1e6:.1f} MB")
-
     with writing(output):
         options |= {"steps": steps, "title": title, "store": store, "basemap": basemap}
-        page = write_page(field, output, announce=announce, **options)
+        page = write_page(field, output, **options)
     seconds = time.perf_counter() - start
-    say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
+    selected = "" if page.steps == len(field.times) else f", {page.steps} of them"
+    size = f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s"
+    say((str(output), "bold"), f"  {describe(field)}{selected}  ", (size, "dim"))
     return 0
 
 

@@ -315,8 +315,9 @@ def building(place: str) -> Iterator[None]:
         except (OSError, NotImplementedError):  # not all storage has links or conditional writes
             if sync(store.get(BUILDING, kind)) is None:
                 sync(store.set(BUILDING, mark))
-        with suppress(ValueError, TypeError, AttributeError):
-            holder = {**json.loads(sync(store.get(BUILDING, kind)).to_bytes())}
+        with suppress(ValueError, TypeError):
+            data = sync(store.get(BUILDING, kind))
+            holder = {} if data is None else {**json.loads(data.to_bytes())}
         if holder and (holder.get("host") != host or _is_running(holder.get("process"))):
             break
         sync(store.delete(BUILDING))  # it was cut off, or its process has ended

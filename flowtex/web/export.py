@@ -17,7 +17,7 @@ import html
 import json
 import math
 import string
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
@@ -41,7 +41,6 @@ from flowtex.web.linked import (
     StoreLink,
     check_basemap,
     first_parts,
-    layer_script,
     linked_data,
     map_pieces,
     store_header,
@@ -50,8 +49,6 @@ from flowtex.web.view import TileSource, WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
-#: Bytes of the header with its shaders, and of the preview, about.
-HEADER_BYTES = 30_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
@@ -72,8 +69,6 @@ class Page:
         The file.
     nbytes
         Its size.
-    estimated
-        The size that was estimated before writing, in bytes.
     steps
         Number of time steps in it.
 
@@ -87,7 +82,6 @@ class Page:
 
     path: Path
     nbytes: int
-    estimated: int
     steps: int
 
 
@@ -100,7 +94,6 @@ def export(
     title: str | None = None,
     store: str | None = None,
     basemap: str | Mapping[str, object] | None = None,
-    announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
     """Write a flow as one file that needs neither a server nor a network.
@@ -136,8 +129,6 @@ def export(
         Style of a web map, of which the flow, in ``projection="mercator"``, is a layer: an address,
         such as ``"https://demotiles.maplibre.org/style.json"``, or a dictionary. Such a page loads
         MapLibre and the map from the network.
-    announce
-        Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
 
     Returns
@@ -166,7 +157,7 @@ def export(
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
         shown = {"camera": camera, "title": title, "axes": arguments.view.axes}
-        return write_page(views, path, store=store, basemap=basemap, announce=announce, **shown)
+        return write_page(views, path, store=store, basemap=basemap, **shown)
     finally:
         for view in views:
             view.close()
@@ -178,30 +169,25 @@ def write_page(
     *,
     store: str | None = None,
     basemap: str | Mapping[str, object] | None = None,
-    announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
     """Write a view, or two side by side, as a page.
 
-    ``store``, ``basemap`` and ``announce`` are those of :func:`export`, the options those of
-    :func:`page_pieces`.
+    ``store`` and ``basemap`` are those of :func:`export`, the options those of :func:`page_pieces`.
     """
     path, link = checked_target(path), None if store is None else StoreLink.of(store)
     if basemap is not None:
         check_basemap(basemap, path, views)
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
-    client, suffix = client_script(with_store=link is not None), path.suffix.lower()
+    suffix = path.suffix.lower()
     pieces: Any = module_pieces if suffix in MODULES else page_pieces
     if basemap is not None:
-        pieces, client = partial(_map_pieces, basemap), layer_script()
+        pieces = partial(_map_pieces, basemap)
     elif suffix == ".json":
-        pieces, client = scene_pieces, ""
-    estimated = estimate(scenes, linked=link is not None, client=client)
-    if announce is not None:
-        announce(estimated, scenes[0].steps)
+        pieces = scene_pieces
     with whole_file(path) as file:
         file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
-    return Page(path, path.stat().st_size, estimated, scenes[0].steps)
+    return Page(path, path.stat().st_size, scenes[0].steps)
 
 
 def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
@@ -250,24 +236,6 @@ def _arrays_bytes(scene: ClientData, steps: int) -> int:
 
 def _packed_bytes(parts: Parts) -> int:
     return sum(len(part_text(part)[1]) for part in parts.values())
-
-
-def estimate(scenes: Sequence[ClientData], *, client: str, linked: bool = False) -> int:
-    """Estimate the bytes of a page with a client; textures that views share count once.
-
-    Pages that are linked to a store have one moment.
-    """
-    size = HEADER_BYTES + len(client)
-    for n, scene in enumerate(scenes):
-        if n and scene.textures is scenes[0].textures:
-            break
-        steps = len(scene.moment(scene.times[0])) if linked else scene.steps
-        root = _arrays_bytes(scene, steps)
-        size += root
-        if (pyramid := scene.pyramid) is not None and not linked:
-            levels = range(scene.finest, pyramid.depth)
-            size += int(root * sum(_times_larger(pyramid, level) for level in levels))
-    return size
 
 
 def page_pieces(

@@ -419,7 +419,7 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
         "export", gyre, "-o", page, "--samples", 9, "--title", "two gyres", "--axes", "scale"
     )
     assert (code, err) == (0, "")
-    assert "about 1." in out or "about 0." in out
+    assert " MB, " in out
     assert f"{page.stat().st_size / 1e6:.2f} MB" in out
     read = Reader(page.read_text(encoding="utf-8"))
     assert (read.title, read.header()["axes"]) == ("two gyres", "scale")

@@ -200,7 +200,6 @@ def test_a_page_holds_the_tiles_that_fit(
 ) -> None:
     monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 60_000)
     made = export(field(), tmp_path / "page.html", zoom=10, focus=(0.6, 0.2), **LOOK)
-    assert made.nbytes == pytest.approx(made.estimated, rel=0.5)
     page.set_viewport_size({"width": 300, "height": 200})
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))

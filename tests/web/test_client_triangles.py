@@ -86,7 +86,6 @@ def canvas(page: Page) -> Bytes:
 def test_a_page_is_drawn_and_tells_points(browser: Browser, tmp_path: Path) -> None:
     look: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
     made = export(ball(), tmp_path / "page.html", background=GROUND, samples=11, **look)
-    assert made.nbytes == pytest.approx(made.estimated, rel=0.5)
     with opened_page(browser) as page:
         tells_points(page, made.path)
 

@@ -144,13 +144,6 @@ def test_a_page_of_some_steps_and_of_two_views(store: Path) -> None:
     assert "connect-src" not in page_text(web_views(str(store), Options.split(samples=5)))
 
 
-def test_the_size_is_told_beforehand(store: Path, tmp_path: Path) -> None:
-    told: list[Any] = []
-    made = export(str(store), tmp_path / "a.html", store=BUCKET, announce=lambda *n: told.append(n))
-    assert told == [(made.estimated, 3)]
-    assert made.estimated == pytest.approx(made.nbytes, rel=0.35)
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
