@@ -39,10 +39,8 @@ from flowtex.web.view import TileSource, WebView
 LARGE_NODES = 60_000
 #: Nodes of the coarse form of a steady field, and of one that varies, which takes longer to trace.
 COARSE_STEADY, COARSE_VARYING = 6_000, 2_500
-#: A field of more nodes than these, at all times together, is shown in a form between as well.
+#: A field that the client traces is sent whole if the moment shown has at most so many nodes.
 VERY_LARGE_NODES = 600_000
-#: Nodes of that form.
-BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 #: Bytes that go in one message together.
 MESSAGE_BYTES = 2_000_000
 #: Seconds after which data without an acknowledgement are sent again.
@@ -245,25 +243,17 @@ class Feed:
         return math.prod(self._view.shape) * len(self._view.field.times)
 
     def _refine(self) -> None:
-        """Replace a coarse scene by an intermediate one, if the whole takes long, and the whole."""
-        order, field = self._order, self._view.field
-        nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
+        """Replace a coarse scene by the whole one."""
+        order = self._order
 
         def complete() -> None:
-            self._refine_to(self._view.data, order)
+            shape = self.scene.textures.geometry.shape
+            if order == self._order and shape != self._view.shape:
+                self._replace(self._view.data(), order)
             if order == self._order:
                 self.settled.set()
 
-        if self._nodes >= VERY_LARGE_NODES:
-            between = partial(self._refine_to, partial(self._view.coarse_data, nodes), order)
-            self._builds.do(between, urgency=1)
         self._builds.do(complete)
-
-    def _refine_to(self, make: Callable[[], ClientData], order: int) -> None:
-        """Replace a scene if it is still coarse and current."""
-        shape = self.scene.textures.geometry.shape
-        if order == self._order and shape != self._view.shape:
-            self._replace(make(), order)
 
     def _replace(self, scene: ClientData, order: int | None = None) -> None:
         """Replace the current scene, unless ``order`` is no longer the latest.

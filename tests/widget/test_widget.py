@@ -255,19 +255,18 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
 
 
 @pytest.mark.threads
-def test_a_field_that_takes_long_has_a_form_between(
+def test_large_field_is_shown_coarse_first(
     make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
 ) -> None:
     for name, nodes in (("LARGE_NODES", 2000), ("VERY_LARGE_NODES", 3000)):
         monkeypatch.setattr(feed, name, nodes)
-    for name, nodes in (("COARSE_VARYING", 100), ("BETWEEN_VARYING", 400)):
-        monkeypatch.setattr(feed, name, nodes)
+    monkeypatch.setattr(feed, "COARSE_VARYING", 100)
     widget = make(gyre(2, nodes=60))
     shapes = [widget._header["geometry"]["shape"]]
     widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
     refine.set()
     assert widget._views.feeds[0].settled.wait(PATIENCE_S)
-    assert shapes == [[10, 10], [20, 20], [60, 60]]
+    assert shapes == [[10, 10], [60, 60]]
 
 
 def test_a_setting_sends_what_it_changes_and_no_more(
