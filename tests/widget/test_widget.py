@@ -194,13 +194,13 @@ def test_a_client_that_is_ready_gets_what_it_needs(
 @pytest.fixture
 def refine(monkeypatch: pytest.MonkeyPatch) -> Iterator[threading.Event]:
     """Yield what lets finer forms of a large field follow the coarse one."""
-    may, now = threading.Event(), feed.Feed._refine_to
+    may, now = threading.Event(), feed.Feed._refine
 
     def later(*arguments: Any) -> None:
         may.wait(PATIENCE_S)
         now(*arguments)
 
-    monkeypatch.setattr(feed.Feed, "_refine_to", later)
+    monkeypatch.setattr(feed.Feed, "_refine", later)
     yield may
     may.set()
 
