@@ -265,19 +265,19 @@ def structure() -> Picture:
 
 
 def patterns() -> Picture:
-    """Draw what the flow makes of spots, of a checkerboard and of a picture with dye."""
+    """Draw what the flow makes of a checkerboard and of a picture with dye."""
     field = flowtex.examples.double_gyre_field()
-    common: dict[str, Any] = {"size": (395, 215)}
+    common: dict[str, Any] = {"size": (595, 315)}
     plain: dict[str, Any] = {"scalars": False, "color": "#f4f4f4"}
     rows, columns = np.mgrid[0:200, 0:400]
     dye = np.zeros((200, 400, 4))
     for centre, colour in ((60, (0.85, 0.1, 0.2)), (200, (0.1, 0.45, 0.9)), (330, (1.0, 0.7, 0.1))):
         inside = np.hypot(rows - 100, columns - centre) < 34
         dye[inside] = (*colour, 1.0)
+    board = np.indices((8, 16)).sum(axis=0) % 2 * 1.0
     return _row(
         [
-            flowtex.render(field, **common, noise="spots", resolution=256),
-            flowtex.render(field, **common, noise="checkerboard", samples=25),
+            flowtex.render(field, **common, image=board, samples=25),
             flowtex.render(field, **common, image=dye, kernel="ramp", samples=120, **plain),
         ]
     )

@@ -230,14 +230,13 @@ class Settings:
         default=True,
     )
     noise: str = _row(
-        "Noise that is even in space, the paper's noise texture, or spots, squares or an image "
-        "instead.",
+        "Noise that is even in space, the paper's noise texture, or an image instead.",
         default="procedural",
         affects="shader",
-        choices=("procedural", "texture", "spots", "checkerboard", "image"),
+        choices=("procedural", "texture", "image"),
     )
     tiles: int = _row(
-        "Repeats of an image along each side; more make a checkerboard's squares smaller.",
+        "Repeats of an image along each side.",
         default=1,
         span=(1, 64),
     )

@@ -177,8 +177,6 @@ VIEWS: dict[str, View] = {
     "texture, curved": View(torus, ASIDE, TEXTURE),
     "texture, no lod": View(settings=TEXTURE | {"lod": False}),
     "texture in time": View(swinging, MIDDLE, TEXTURE, time=0.55),
-    "spots": View(settings=TEXTURE | {"noise": "spots"}),
-    "squares": View(camera=TILTED, settings=TEXTURE | {"noise": "checkerboard"}),
     "image": View(settings={"noise": "image", "tiles": 3, "strength": 1.0}),
     "image, mixed": View(camera=TILTED, settings={"noise": "image", "strength": 0.5}),
 }

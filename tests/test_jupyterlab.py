@@ -127,7 +127,7 @@ def test_a_cell_shows_a_flow_that_both_sides_can_change(notebook: Lab) -> None:
     with acted(page):
         assert lab.said("setattr(w, 'contrast', 1.0)") == "None"
     plain = picture(page).astype(float)
-    assert lab.said("w.set_trait('noise', 'checkerboard')") == "None"
+    assert lab.said("w.set_trait('noise', 'texture')") == "None"
     wait_until(lambda: np.abs(picture(page) - plain).mean() > 10)
     page.wait_for_function(DRAWN, arg=1)
 

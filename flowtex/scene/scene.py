@@ -53,9 +53,9 @@ Notice = Callable[[Change], None]
 
 #: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
 SETTINGS_IN_TEXTURES = {
-    "seed": ("texture", "spots"),
-    "tiles": ("checkerboard",),
-    "resolution": ("texture", "spots", "checkerboard", "image"),
+    "seed": ("texture",),
+    "tiles": (),
+    "resolution": ("texture", "image"),
 }
 
 #: Share of the larger end of a range, or of the range, below which a difference is rounding.

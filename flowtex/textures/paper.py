@@ -14,7 +14,6 @@ every level (section 4.1).
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -40,14 +39,6 @@ HALF_LEVELS = 32
 DEVIATION_POINTS = 16_384
 #: A level of fewer texels than this has too few to be judged by.
 FEWEST_TEXELS = 256
-#: Texels from one spot to the next, and the width of squares of noise that averages as spots do.
-SPOT, SPOT_GRAIN = 8, 7.2
-#: Radius of a spot, and width of its soft edge, as shares of the way to the next one.
-RADIUS, EDGE = 0.5, 0.2
-#: A spot takes this many texels, along their longer side, from it to the next one.
-COARSEST = 4
-#: Squares of a checkerboard along the longer side of the surface.
-SQUARES = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,16 +170,8 @@ def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict
     pattern, seed = settings.noise, settings.seed
     if pattern == "image" and image is not None:
         return {"noise": image, "picture": True}
-    if pattern == "checkerboard":
-        squares = checkerboard(texels, settings.tiles)
-        return {"noise": squares.astype(np.float32), "picture": True}
-    if pattern == "spots":
-        return {"noise": _unit(spots(texels, seed)), "grain": SPOT_GRAIN}
     if pattern != "texture":
-        msg = (
-            f"pattern is {pattern!r}; expected 'texture', 'spots' or 'checkerboard', or 'image' "
-            "with an image"
-        )
+        msg = f"pattern is {pattern!r}; expected 'texture', or 'image' with an image"
         raise FieldError(msg)
     if texels.corrected:
         return {"noise": _unit(even_noise(texels, seed))}
@@ -278,13 +261,6 @@ class TexelMap:
             axis=-1,
         )
 
-    @property
-    def positions(self) -> Floats:
-        """Middles of the texels relative to that of the surface, (H, W, 2), or 3 when curved."""
-        surface = self.field.surface
-        local = surface.at(self.index) - surface.center
-        return local if surface.frame is None else np.asarray(local @ surface.frame.T)
-
 
 def even_noise(texels: TexelMap, seed: int) -> Floats:
     """Return noise (H, W) from 0 to 1, at each texel as coarse as the texel is long.
@@ -300,88 +276,10 @@ def even_noise(texels: TexelMap, seed: int) -> Floats:
     return _hash(cell, octave, seed).astype(np.float64) / 2.0**64
 
 
-def spots(texels: TexelMap, seed: int) -> Floats:
-    """Return discs at random places and of random sign, (H, W), of van Wijk's *Spot Noise* (1991).
-
-    Every cell of a lattice holds one disc at a random place inside it. The lattice is that in
-    space, :data:`SPOT` texels wide, or as much wider by a power of two as a long texel needs;
-    without the correction it is that of the texels.
-    """
-    if texels.corrected:
-        place, octave = _places_in_space(texels)
-        wrap = None
-    else:
-        height, width = texels.shape
-        middles = (np.arange(width) + 0.5, np.arange(height) + 0.5)
-        place = np.stack(np.meshgrid(*middles), axis=-1) / SPOT
-        octave = np.zeros(texels.shape, np.int64)
-        wrap = np.array([max(width // SPOT, 1), max(height // SPOT, 1)])
-    base = np.floor(place).astype(np.int64)
-    total = np.zeros(texels.shape)
-    for offset in itertools.product((-1, 0, 1), repeat=place.shape[-1]):
-        cell = base + np.array(offset)
-        number = _hash(cell if wrap is None else np.mod(cell, wrap), octave, seed)
-        total += _disc(place - cell, number)
-    return total
-
-
-def _places_in_space(texels: TexelMap) -> tuple[Floats, Ints]:
-    """Return texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
-    long_ = texels.lengths.max(axis=-1)
-    width = SPOT * float(np.median(long_))
-    octave = np.ceil(np.log2(np.maximum(COARSEST * long_ / width, 1.0)) - 1e-9).astype(np.int64)
-    return texels.positions / (width * 2.0**octave)[..., None], octave
-
-
-def _disc(place: Floats, number: NDArray[np.uint64]) -> Floats:
-    """Return the value of a cell's disc, whose number holds its middle and sign, at a place."""
-    away = np.zeros(number.shape)
-    for axis in range(place.shape[-1]):
-        middle = (number >> np.uint64(16 * axis) & np.uint64(0xFFFF)) / 65536.0
-        away += (place[..., axis] - middle) ** 2
-    disc = np.clip((RADIUS - np.sqrt(away)) / EDGE + 0.5, 0.0, 1.0)
-    return np.where(number >> np.uint64(63), disc, -disc)
-
-
-def checkerboard(texels: TexelMap, tiles: int) -> Floats:
-    """Return black and white squares, (H, W) from 0 to 1, with edges as wide as a texel.
-
-    Squares lie in the plane of a flat surface when corrected, and on the parameters otherwise.
-    :data:`SQUARES` times ``tiles`` of them go along the longer side.
-    """
-    count = SQUARES * tiles
-    if texels.corrected and texels.field.surface.frame is not None:
-        nodes = texels.field.points[texels.field.valid] - texels.field.surface.center
-        local = nodes @ texels.field.surface.frame.T
-        start, span = local.min(axis=0), float(np.ptp(local, axis=0).max())
-        place = (texels.positions - start) * (count / span)
-        wide = np.broadcast_to(texels.lengths.max(axis=-1)[..., None] * (count / span), place.shape)
-    else:
-        counts = _counts(texels.field, count)
-        middles = [(np.arange(n) + 0.5) / n for n in texels.shape[::-1]]
-        place = np.stack(np.meshgrid(*middles), axis=-1) * counts
-        wide = np.broadcast_to(counts / np.array(texels.shape[::-1]), place.shape)
-    return np.asarray(0.5 + 0.5 * np.prod(_wave(place, wide), axis=-1))
-
-
 def side_lengths(field: FlowField) -> Floats:
     """Return lengths of a surface along i and along j, (2,)."""
     tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
     return np.array([t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)])
-
-
-def _counts(field: FlowField, count: int) -> Floats:
-    """Return squares along i and along j; whole pairs around an axis that closes on itself."""
-    lengths = side_lengths(field)
-    counts = np.asarray(count * lengths / lengths.max())
-    closed = np.array(field.periodic[::-1])
-    return np.where(closed, 2 * np.maximum(np.rint(counts / 2), 1), counts)
-
-
-def _wave(x: Floats, wide: Floats) -> Floats:
-    """Return the square wave of period 2, above zero in 0 ... 1, with steps of the given width."""
-    inside = 0.5 - np.abs(np.mod(x + 0.5, 2.0) - 1.0)  # distance to the nearest step, signed
-    return np.asarray(np.clip(inside * (2.0 / np.maximum(wide, 1e-9)), -1.0, 1.0))
 
 
 def _hash(cell: Ints, octave: Ints, seed: int) -> NDArray[np.uint64]:

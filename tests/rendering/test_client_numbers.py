@@ -79,7 +79,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "finer paper": (gyre, WHOLE, 2.0, {"noise": "texture", "resolution": 64}),
     "finer image": (gyre, WHOLE, 2.0, {"noise": "image", "tiles": 3}),
     "coarser": (gyre, WHOLE, 0.4, {"grain": 1.2}),
-    "coarser paper": (gyre, WHOLE, 0.5, {"noise": "spots", "resolution": 64}),
+    "coarser paper": (gyre, WHOLE, 0.5, {"noise": "texture", "resolution": 64}),
 }
 
 

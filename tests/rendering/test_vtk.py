@@ -142,7 +142,7 @@ def test_blanked_cells_are_not_drawn(opengl: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("noise", "kernel"), [("procedural", "hann"), ("texture", "box"), ("spots", "ramp")]
+    ("noise", "kernel"), [("procedural", "hann"), ("texture", "box"), ("texture", "ramp")]
 )
 def test_all_variants_together_compile_and_streak(opengl: Any, noise: str, kernel: str) -> None:
     y, x = np.mgrid[0:1:21j, 0:1:31j]

@@ -93,7 +93,6 @@ CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
         {"noise": "texture", "noise_correction": False, "two_sided": False, "kernel": "box"},
     ),
     "paper, lod off": (gyre, {"noise": "texture", "lod": False, "resolution": 256}),
-    "squares": (gyre, {"noise": "checkerboard", "resolution": 256}),
     "image": (gyre, {"noise": "image", "image": IMAGE, "tiles": 2, "resolution": 256}),
     "unsteady": (swinging, {}),
     "unsteady paper": (swinging, {"noise": "texture", "resolution": 256}),
@@ -234,7 +233,7 @@ def test_each_doubling_of_the_pixel_is_a_level() -> None:
     assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
 
 
-@pytest.mark.parametrize("noise", ["procedural", "texture", "checkerboard"])
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
 def test_a_fine_screen_shows_the_same(noise: str) -> None:
     view = view_of(wind(), samples=5, noise=noise, resolution=64)
     one = probe(view, (20.3, 30.4), pixel=0.1)

@@ -1,4 +1,4 @@
-"""Images in place of the noise: a user's picture, a checkerboard, and Spot Noise."""
+"""Images in place of the noise."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from measures import grey
 from PIL import Image
 from scipy.ndimage import map_coordinates, uniform_filter
 
@@ -21,7 +20,6 @@ from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
 from flowtex.textures.images import LARGEST, load_image
-from flowtex.textures.paper import SPOT_GRAIN, SQUARES
 from flowtex.trace import SliceStore
 
 SIZE = (240, 140)
@@ -186,18 +184,6 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path, rng: np.random.Gener
 # --- pictures along the flow ----------------------------------------------------------------
 
 
-def test_without_flow_the_checkerboard_is_the_checkerboard(opengl: Any) -> None:
-    x, y, inside = places()
-    board = draw(still(), noise="checkerboard", strength=1)
-    side = 2 / SQUARES
-    dark = (np.floor(x / side) + np.floor(y / side)) % 2 == 1
-    to_edge = np.minimum(*(np.abs(c / side - np.rint(c / side)) * side for c in (x, y)))
-    clear = inside & (to_edge > 1.5 * (x[0, 1] - x[0, 0]))
-    assert clear.mean() > 0.3
-    assert (board[clear & dark] < 3).all()
-    assert (board[clear & ~dark] > 252).all()
-
-
 @pytest.mark.parametrize("lod", [True, False])
 def test_without_flow_an_image_is_itself_with_its_top_up(
     opengl: Any, rng: np.random.Generator, lod: bool
@@ -344,79 +330,6 @@ def widths(noise: Floats) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def test_spots_are_round_and_even_on_a_stretched_grid() -> None:
-    field = stretched()
-    even, plain = (
-        in_space(pattern(field, "spots", noise_correction=c), field) for c in (True, False)
-    )
-    halves = (slice(0, 200), slice(200, 400))
-    for half in halves:
-        along, across = widths(even[:, half])
-        assert along / across == pytest.approx(1, abs=0.2)
-    sizes = [widths(even[:, half])[0] for half in halves]
-    assert sizes[1] / sizes[0] == pytest.approx(1, abs=0.2)
-    stretched_sizes = [widths(plain[:, half])[0] for half in halves]
-    assert stretched_sizes[1] > 1.7 * stretched_sizes[0]
-
-
-def test_spots_have_both_signs_and_a_seed() -> None:
-    one, other = (pattern(uniform(), "spots", seed=s).noise for s in (1, 2))
-    assert one.mean() == pytest.approx(0, abs=1e-5)
-    assert one.std() == pytest.approx(1, abs=1e-4)
-    assert np.quantile(one, 0.2) < -0.5 and np.quantile(one, 0.8) > 0.5
-    assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.1
-    with pytest.raises(ValueError, match=r"^pattern is 'image'; expected 'texture', 'spots'"):
-        pattern(uniform(), "image")
-
-
-def test_averaged_spots_lose_the_contrast_that_the_gain_gives_back() -> None:
-    noise = pattern(uniform(), "spots", resolution=1024).noise
-    for level in (1, 2, 4, 5):
-        width = 2**level
-        rows, columns = (n // width for n in noise.shape)
-        mean = noise.reshape(rows, width, columns, width).mean(axis=(1, 3))
-        gain = np.sqrt(1 + (width**2 - 1) / SPOT_GRAIN**2)
-        assert mean.std() * gain == pytest.approx(1, abs=0.12)
-
-
-def test_spots_keep_their_contrast_from_far_and_near(opengl: Any) -> None:
-    options: dict[str, Any] = {"noise": "spots", "scalars": False, "focus": (0.8, 0.4)}
-    inner = (slice(30, 110), slice(40, 200))
-    spread = [grey(draw(gyre(), zoom=z, **options))[inner].std() for z in (1, 16)]
-    assert min(spread) > 15
-    assert max(spread) / min(spread) < 1.5
-
-
-def test_squares_are_even_on_a_stretched_grid() -> None:
-    field = stretched()
-    x = field.points[0, :, 0]
-
-    def sides(made: PaperTextures) -> Floats:
-        row = made.noise[8]
-        assert set(np.unique(row)) >= {0.0, 1.0}
-        edges = np.flatnonzero((row[1:] > 0.5) != (row[:-1] > 0.5)) + 1
-        return np.diff(np.interp(edges / len(row), made.along_i, x))
-
-    even = sides(pattern(field, "checkerboard", resolution=1024))
-    assert len(even) == SQUARES - 2
-    np.testing.assert_allclose(even, 2 / SQUARES, atol=0.01)
-    plain = sides(pattern(field, "checkerboard", resolution=1024, noise_correction=False))
-    assert plain.max() > 5 * plain.min()
-
-
-def test_squares_close_around_a_ring_that_is_not_flat() -> None:
-    angle = np.linspace(0, 2 * np.pi, 65)
-    a, z = np.meshgrid(angle, np.linspace(0, 2, 17))
-    points = np.stack([np.cos(a), np.sin(a), z], axis=-1)
-    points[:, -1] = points[:, 0]
-    field = FlowField.from_arrays(points, np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1))
-    assert field.periodic == (False, True)
-    row = pattern(field, "checkerboard").noise[5] > 0.5
-    changes = np.count_nonzero(row != np.roll(row, 1))
-    assert changes == SQUARES
-    assert row[0] != row[-1]
-
-
 # --- live, and what cannot be ---------------------------------------------------------------
 
 
@@ -468,10 +381,9 @@ def test_an_image_that_came_later_stays_on_another_surface(
     ("noise", "name", "affects"),
     [
         ("image", "tiles", "uniform"),
-        ("checkerboard", "tiles", "textures"),
-        ("spots", "seed", "textures"),
-        ("checkerboard", "seed", "uniform"),
-        ("checkerboard", "resolution", "textures"),
+        ("texture", "seed", "textures"),
+        ("image", "seed", "uniform"),
+        ("texture", "resolution", "textures"),
         ("image", "resolution", "textures"),
     ],
 )
@@ -491,14 +403,14 @@ def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) ->
     with pytest.raises(SettingsError, match=r"^noise is 'texture', but an image is given; omit"):
         plotter.flowtex.add(uniform(), noise="texture", image=np.ones((2, 2)))
     assert len(plotter.flowtex) == 0
-    handle = plotter.flowtex.add(uniform(), noise="spots")
+    handle = plotter.flowtex.add(uniform(), noise="texture")
     first = plotter.screenshot(return_img=True)
     with pytest.raises(SettingsError, match=told):
         handle.settings.noise = "image"
-    assert handle.settings.noise == "spots"
+    assert handle.settings.noise == "texture"
     with pytest.raises(ImageError, match="expected"):
         handle.set_image(np.zeros((2, 2, 7)))
-    assert handle.settings.noise == "spots" and handle.scene.image is None
+    assert handle.settings.noise == "texture" and handle.scene.image is None
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
 
 
@@ -515,7 +427,7 @@ def test_an_image_is_a_flag_of_the_command_line(
     for more, told in (
         (["--image", str(tmp_path / "no.png")], "no.png: the file does not exist"),
         (["--noise", "image"], "no image is given; add --image FILE"),
-        (["--noise", "spots", "--image", picture], "omit one of them"),
+        (["--noise", "texture", "--image", picture], "omit one of them"),
     ):
         capsys.readouterr()
         assert main([*words, *more]) == 2

@@ -167,7 +167,7 @@ def test_a_drag_carries_the_picture_along(client: ClientPage) -> None:
 
 
 def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientPage) -> None:
-    squares = scene(gyre, straight(3, (0.8, 0.5)), noise="checkerboard", resolution=256, tiles=4)
+    squares = scene(gyre, straight(3, (0.8, 0.5)), noise="texture", resolution=256, tiles=4)
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
     view = "viewers[0]"

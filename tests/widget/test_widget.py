@@ -308,7 +308,7 @@ def test_an_error_while_tracing_is_told(
         raise MemoryError(msg)
 
     monkeypatch.setattr(widget._views.views[0], "data", fail)
-    widget.noise = "spots"
+    widget.noise = "texture"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
     told = [m["text"] for m in heard.messages if m["kind"] == "error"]
     assert told == ["MemoryError: out of memory"]
@@ -514,7 +514,7 @@ def test_many_views_of_one_mesh_share_what_is_made_of_it(
     assert first_scene.textures is other_scene.textures
     different = make(gyre(nodes=101))
     assert different.field is not first.field
-    assert make(gyre(nodes=100), noise="spots", resolution=32).scene.store is first.scene.store
+    assert make(gyre(nodes=100), noise="texture", resolution=32).scene.store is first.scene.store
     # What has gone to a page is offered to the next view, and sent to whoever lacks it.
     heard = Heard(other, monkeypatch)
     heard.say(kind="ready")
@@ -538,8 +538,8 @@ def test_what_is_shown_is_sent_before_anybody_asks(
 
 
 def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    widget = make(gyre(3), beside={"noise": "spots", "resolution": 32})
-    assert widget._header_beside["own"] == {"noise": "spots", "resolution": 32}
+    widget = make(gyre(3), beside={"noise": "texture", "resolution": 32})
+    assert widget._header_beside["own"] == {"noise": "texture", "resolution": 32}
     assert widget._header["differs"] == widget._header_beside["differs"] == ["noise", "resolution"]
     assert "FLOWTEX_PAPER" in widget._header_beside["variant"]
     heard = Heard(widget, monkeypatch)
@@ -549,8 +549,8 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
     second = widget._views.views[1].scene.settings
     widget.samples = 33
     assert second.samples == 33
-    widget.noise = "checkerboard"
-    assert second.noise == "spots"
+    widget.noise = "texture"
+    assert second.noise == "texture"
     with pytest.raises(ValueError, match=r"^beside has plane, which selects data; both views"):
         make(beside={"plane": "k=2"})
     text = widget.to_html()
@@ -578,7 +578,7 @@ def test_another_flow_takes_the_place_of_the_first(
     assert widget.time == widget.scene.time == 1.0  # the nearest that it has
     assert resent == [] and widget._header["shaders"] is None  # the text of 60 kB stays
     # Settings reach what is shown now.
-    widget.noise = "spots"
+    widget.noise = "texture"
     heard.wait(lambda: "noise" in heard.arrays)
 
 

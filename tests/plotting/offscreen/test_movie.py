@@ -220,7 +220,7 @@ def test_a_period_leaves_its_last_time_out() -> None:
     ("options", "said"),
     [
         ({"motion": "off"}, "motion is 'off'; expected 'speed' or 'uniform'"),
-        ({"noise": "spots"}, "noise is 'spots', which cannot move"),
+        ({"noise": "texture"}, "noise is 'texture', which cannot move"),
         ({"seconds": 0.0}, "seconds is 0.0; expected a number from 0.1 to 600"),
         ({"fps": 500.0}, "fps is 500.0; expected more than 0 and at most 120"),
         ({"fps": 100.0, "seconds": 600.0}, "60,000 frames; expected at most"),
@@ -318,7 +318,7 @@ def test_supersampling_shows_the_same_more_smoothly(opengl: object) -> None:
     assert np.corrcoef(plain[inside].ravel(), aliased[inside].ravel())[0, 1] < 0.5
 
 
-@pytest.mark.parametrize("noise", ["texture", "checkerboard"])
+@pytest.mark.parametrize("noise", ["texture"])
 def test_supersampling_keeps_the_size_of_textures_too(noise: str, opengl: object) -> None:
     plain, fine = (
         flowtex.render(
