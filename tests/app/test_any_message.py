@@ -34,7 +34,7 @@ def app() -> Iterator[FlowApp]:
 @given(junk(), junk(), links())
 def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link: str) -> None:
     controllers, element = app.controllers, app.area.element
-    names = ("theme", "background", "compare", "painter", "image_file")
+    names = ("theme", "background", "compare", "painter")
     before = {name: app.state.get(name) for name in names}
     look = app.area.scene.appearance
 
@@ -62,7 +62,6 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link
         app.state.set(**dict.fromkeys(names, one))
         for take in (
             controllers.appearance.take_background,
-            controllers.appearance.take_image,
             controllers.appearance.take_comparison,
             controllers.appearance.take_painter,
         ):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import io
 import logging
 import math
 import threading
@@ -13,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from PIL import Image
 from small_pages import Streamer, playing
 from waiting import PATIENCE_S, until
 
@@ -89,16 +87,13 @@ def app() -> Iterator[FlowApp]:
 # --- what a page may send ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", ["theme", "background", "compare", "file_beside", "image_file", "painter"]
-)
+@pytest.mark.parametrize("name", ["theme", "background", "compare", "file_beside", "painter"])
 def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> None:
     look = app.controllers.appearance
     handlers: dict[str, Callable[[], None]] = {
         **dict.fromkeys(("theme", "background"), look.take_background),
         "compare": look.take_comparison,
         "file_beside": app.controllers.beside.take_file,
-        "image_file": look.take_image,
         "painter": look.take_painter,
     }
     handler = handlers[name]
@@ -200,92 +195,6 @@ async def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
 
 
 # --- pictures, movies, messages ------------------------------------------------------------------
-
-
-def sent(picture: Image.Image, kind: str = "PNG") -> dict[str, Any]:
-    buffer = io.BytesIO()
-    picture.save(buffer, kind)
-    return {"name": "mine", "content": buffer.getvalue()}
-
-
-def laid(app: FlowApp, file: dict[str, Any]) -> str:
-    async def story() -> None:
-        app.state.set(image_file=file, problem="")
-        app.controllers.appearance.take_image()
-        if laying := app.controllers.appearance._image_task:
-            await laying
-
-    asyncio.run(story())
-    return str(app.state.get("problem"))
-
-
-def test_an_image_takes_no_more_room_than_it_may() -> None:
-    app = page(field())
-    bomb = sent(Image.new("1", (9_000, 9_000)))  # 81 million pixels in 10 kB
-    assert len(bomb["content"]) < 50_000 and "9000 x 9000 pixels" in laid(app, bomb)
-    assert "far too many pixels" in laid(app, sent(Image.new("1", (20_000, 20_000))))
-    # Pillow hands an EPS to another program.
-    assert "the picture cannot be read" in laid(app, sent(Image.new("RGB", (9, 9)), "EPS"))
-    assert "the picture cannot be read" in laid(
-        app, {"name": "x" * 9_000, "content": b"\x89PNG\r\n\x1a\n"}
-    )
-    assert app.area.settings.noise == "procedural" and app.viewport.handle.scene.image is None
-    for kind, mode in (("JPEG", "RGB"), ("PNG", "P")):
-        assert (
-            laid(app, sent(Image.new(mode, (3_000, 1_500), 200 if mode == "P" else 0), kind)) == ""
-        )
-        image = app.viewport.handle.scene.image
-        assert image is not None and image.shape == (750, 1500, 4)
-    app.close()
-
-
-async def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    app = page(field())
-    gate, decoded = threading.Event(), []
-
-    def slowly(content: bytes, name: str) -> Any:
-        assert threading.current_thread() is not threading.main_thread()
-        decoded.append(name)
-        assert gate.wait(PATIENCE_S)
-        return np.full((4, 4, 4), len(decoded), dtype=np.uint8)
-
-    monkeypatch.setattr("flowtex.app.controllers.appearance.decode_picture", slowly)
-    picture = sent(Image.new("RGB", (9, 9)))
-    async with playing(app):
-        for name in ("first", "second"):
-            app.state.set(image_file={**picture, "name": name})
-            app.controllers.appearance.take_image()
-            await until(lambda name=name: name in decoded)  # the loop continues
-        gate.set()
-        await until(lambda: app.area.settings.noise == "image")
-        app.state.set(image_file=picture)
-        app.controllers.appearance.take_image()
-        laying = app.controllers.appearance._image_task
-        app.close()
-        assert laying is not None
-        await until(laying.done)
-        assert laying.cancelled()
-
-
-@pytest.mark.parametrize("compared", ["Level of detail: off", "Noise: texture"])
-def test_an_image_is_laid_in_both_panes_where_noise_is_no_difference(compared: str) -> None:
-    app = page(field(), resolution=64)
-    app.state.set(compare=compared)
-    app.controllers.appearance.take_comparison()
-    assert laid(app, sent(Image.new("RGB", (8, 8), "red"))) == ""
-    first, second = (pane.handle.settings.noise for pane in app.viewport.panes)
-    assert first == "image" and second == ("image" if "detail" in compared else "texture")
-    # Another flow, and one pane, and two again, with the same image.
-    app.show(field(curved=True))
-    assert [pane.handle.settings.noise for pane in app.viewport.panes] == [first, second]
-    app.area.compare(None)
-    app.show(field(steps=2))
-    app.area.compare({"lod": False})
-    assert [pane.handle.settings.noise for pane in app.viewport.panes] == ["image", "image"]
-    assert app.area.settings.noise == "image" and np.ptp(picture(app)) > 0
-    app.close()
 
 
 @pytest.mark.parametrize("name", ["out_width", "out_seconds"])

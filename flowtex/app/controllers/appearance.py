@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import asyncio
 from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import FileBeside
-from flowtex.app.server.page import start_task
-from flowtex.app.server.validation import decode_picture, name_among, number, sent_picture
+from flowtex.app.server.validation import name_among, number
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.plotting.offscreen.annotations import time_text
 from flowtex.scene.options import Appearance as Look
-from flowtex.settings import SettingsError, named_values
+from flowtex.settings import named_values
 
 #: The choice of no colours.
 PLAIN = "none"
@@ -78,14 +76,12 @@ class Appearance(Controller):
         self.beside = beside
         #: The last valid choices of the page, which may send anything.
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
-        self._image_task: asyncio.Task[None] | None = None
         self.state.set(
             theme=self.theme,
             background=self.background,
             compare=self.compared,
             time_beside=0.0,
             moment_beside="",
-            image_file=None,
             painter="",
         )
         self.show_field()
@@ -93,7 +89,6 @@ class Appearance(Controller):
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
         on("time_beside")(self.take_time_beside)
-        on("image_file")(self.take_image)
         on("painter")(self.take_painter)
         context.field_changed.connect(self.show_field)
         self.area.element.painter_changed.connect(
@@ -168,39 +163,6 @@ class Appearance(Controller):
         """Show one pane again."""
         self.state.set(compare="nothing")
         self.take_comparison()
-
-    def take_image(self) -> None:
-        """Show an uploaded image on the surface."""
-        upload = self.state.get("image_file")
-        if upload is None:
-            return
-        self.state.set(image_file=None)
-        upload = upload[0] if isinstance(upload, list) and upload else upload
-        if not upload:  # the choice was cleared
-            return
-        try:
-            picture = sent_picture(upload)
-        except SettingsError as error:
-            self.context.complain(error)
-            return
-        self.close()  # the latest picture counts
-        self._image_task = start_task(
-            self._set_image(*picture), "an image could not be applied to the surface"
-        )
-
-    async def _set_image(self, content: bytes, name: str) -> None:
-        try:
-            self.viewport.lay_image(await asyncio.to_thread(decode_picture, content, name))
-        except SettingsError as error:
-            self.context.complain(error)
-            return
-        self.settings.update(noise="image", strength=1.0)
-        self.area.changed()
-
-    def close(self) -> None:
-        """Cancel the image that is being decoded."""
-        if self._image_task is not None:
-            self._image_task.cancel()
 
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""

@@ -25,7 +25,7 @@ from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
-from flowtex.scene.scene import Scene, follow, lay_image
+from flowtex.scene.scene import Scene, follow
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
@@ -233,13 +233,6 @@ class Viewport:
             self._stop_following = follow(lambda: left.scene, lambda: right.scene, self._beside)
             self.clock = self.handle.clock
         self.resize(*self._size)
-
-    def lay_image(self, image: Any) -> None:
-        """Lay an image on the surface in place of the noise, except where panes differ in noise.
-
-        Nothing is changed when it cannot be used.
-        """
-        lay_image([pane.handle.scene for pane in self.panes], image, self._beside)
 
     # --- colours -----------------------------------------------------------------------------
 

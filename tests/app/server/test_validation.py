@@ -14,15 +14,12 @@ pytest.importorskip("trame_rca")
 
 from flowtex.app.server.validation import (
     clipped,
-    decode_picture,
     mapping,
     name_among,
     number,
-    sent_picture,
     shortened,
 )
 from flowtex.rendering.camera import Camera, CameraError
-from flowtex.settings import SettingsError
 
 
 @property_test(100)
@@ -36,15 +33,6 @@ def test_anything_is_a_number_within_limits_or_none(value: Any) -> None:
     assert name_among(value, ("a", "b")) is (value in ("a", "b"))
     assert isinstance(dict(mapping(value)), dict)
     assert len(shortened(str(value), 50)) <= 50
-
-
-@property_test(60)
-@given(junk() | st.fixed_dictionaries({"content": junk()}, optional={"name": junk()}))
-@example({"name": [], "content": [b"\x89PNG\r\n\x1a\n"]})
-def test_anything_is_a_picture_or_is_refused(sent: Any) -> None:
-    with pytest.raises(SettingsError, match="expected") as refused:
-        decode_picture(*sent_picture(sent))
-    assert len(str(refused.value)) < 300
 
 
 @property_test(100)
