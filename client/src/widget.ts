@@ -34,39 +34,29 @@ export interface Model {
   send(content: unknown, callbacks?: unknown, buffers?: ArrayBuffer[]): void;
 }
 
-/**
- * A message of the kernel: `parts` come with it, an `offer` names those that may be there already, and a
- * request has been `loaded`.
- */
+/** A message of the kernel: `parts` come with it, or a request has been `loaded`. */
 interface Message extends Partial<Omit<Loaded, "kind">> {
-  kind: "parts" | "offer" | "loaded" | "error";
+  kind: "parts" | "loaded" | "error";
   view?: number;
   generation?: number;
   parts?: PartInfo[];
   text?: string;
 }
 
-/**
- * The parts of a message, which the page keeps until they are taken; what was only
- * offered, and is not there, is named in `lacking`.
- */
+/** The parts of a message, which the page keeps until they are taken. */
 interface Delivery {
   view: number;
   generation: number;
   parts: NamedPart[];
-  lacking: string[];
 }
 
 function opened(message: Message, buffers: ArrayBufferView[]): Delivery {
   const graphics = sharedGraphics();
   const { view = 0, generation = 0, parts: infos = [] } = message;
-  const delivery: Delivery = { view, generation, parts: [], lacking: [] };
+  const delivery: Delivery = { view, generation, parts: [] };
   infos.forEach((info, n) => {
-    const stock = graphics.stock.get(info.digest)?.part;
-    if (stock || message.kind !== "offer") {
-      const part = graphics.hold(stock ?? decoded(info, buffers[n]));
-      delivery.parts.push({ ...part, name: info.name });
-    } else delivery.lacking.push(info.name);
+    const part = graphics.hold(graphics.stock.get(info.digest)?.part ?? decoded(info, buffers[n]));
+    delivery.parts.push({ ...part, name: info.name });
   });
   return delivery;
 }
@@ -74,9 +64,6 @@ function opened(message: Message, buffers: ArrayBufferView[]): Delivery {
 function discard(deliveries: Delivery[]): void {
   for (const { parts } of deliveries) for (const part of parts) sharedGraphics().release(part);
 }
-
-const hasParts = (message: Message | null) =>
-  message?.kind === "parts" || message?.kind === "offer";
 
 /** Deliveries that came before there was a view, by the widget's key. */
 const mailbox = new Map<unknown, Delivery[]>();
@@ -89,7 +76,7 @@ export function initialize({ model }: { model: Model }): () => void {
   const key = model.get("_key");
   mailbox.set(key, []);
   const receive = (message: Message, buffers: ArrayBufferView[]) => {
-    if (hasParts(message)) mailbox.get(key)?.push(opened(message, buffers));
+    if (message?.kind === "parts") mailbox.get(key)?.push(opened(message, buffers));
   };
   model.on("msg:custom", receive);
   return () => {
@@ -233,7 +220,7 @@ class WidgetView {
   private connect(): void {
     const { viewers, first } = this;
     this.listen("msg:custom", (message: Message, buffers: ArrayBufferView[]) => {
-      if (hasParts(message)) this.take(opened(message, buffers));
+      if (message?.kind === "parts") this.take(opened(message, buffers));
       if (message?.kind === "loaded") this.sources[message.view ?? 0]?.end(message as Loaded);
       if (message?.kind === "error") {
         first.panel.fail("The kernel could not continue.", message.text ?? "");
@@ -291,10 +278,8 @@ class WidgetView {
     // Slices that the kernel has made again meanwhile are arriving.
     const isOld = (name: string) => delivery.generation !== generation && name.includes("/");
     for (const part of delivery.parts) if (!isOld(part.name)) viewer.setPart(part);
-    const names = delivery.lacking.filter((name) => !isOld(name));
     discard([delivery]);
     this.becomeLive();
-    if (names.length) this.model.send({ kind: "want", names, view: delivery.view });
   }
 
   dispose(): void {

@@ -2293,12 +2293,11 @@ let request=String(Math.random());return this.send({kind:"load",request,key,step
 set(request,error=>error?reject(new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),
 this.requests.delete(request)}};var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
 ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX2=480;function opened(message,buffers){
-let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
-return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.
-hold(stock??decoded(info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),
-delivery}function discard(deliveries){for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.
-kind==="parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(
-key,[]);let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.
+let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[]};return infos.
+forEach((info,n)=>{let part=graphics.hold(graphics.stock.get(info.digest)?.part??decoded(info,buffers[n]));delivery.parts.
+push({...part,name:info.name})}),delivery}function discard(deliveries){for(let{parts}of deliveries)for(let part of parts)
+sharedGraphics().release(part)}var mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(key,
+[]);let receive=(message,buffers)=>{message?.kind==="parts"&&mailbox.get(key)?.push(opened(message,buffers))};return model.
 on("msg:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
 model,el}){let view=new WidgetView(model,el);return()=>view.dispose()}function cameraOf(state){let camera=state;return camera&&
 Array.isArray(camera.position)?camera:null}var WidgetView=class{model;view=new FlowtexView;viewers;first;sent=new Map;handlers=[];early;sources=HEADERS.
@@ -2323,23 +2322,22 @@ failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(this.
 `${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still}) { display: none !important }`)}listen(event,call){
 this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){
 this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),
-this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&
-this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.kind===
-"error"&&first.panel.fail("The kernel could not continue.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`chang\
-e:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(
-value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.
-setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow(
-"playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown)),this.follow(
-"axes",kind=>viewers.forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.get("size")??[0,0],
-{style,parentElement}=this.view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.
-classList.toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;
-let rows=header.table??[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("\
-_shaders")[n],settings:Object.fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.
+this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{message?.kind===
+"parts"&&this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.
+kind==="error"&&first.panel.fail("The kernel could not continue.",message.text??"")}),viewers.forEach((_,n)=>this.listen(
+`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{
+let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
+forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
+clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
+!!shown)),this.follow("axes",kind=>viewers.forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.
+get("size")??[0,0],{style,parentElement}=this.view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}\
+px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.
+format)return;let rows=header.table??[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.
+get("_shaders")[n],settings:Object.fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.
 get("clock")??0,axes:model.get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.
 early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.
 followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
 header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
-generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
-lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
-view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.
-adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();
+generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);discard(
+[delivery]),this.becomeLive()}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),
+document.adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();

@@ -13,16 +13,14 @@ import html
 import sys
 import time
 import uuid
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections import Counter, defaultdict
 from typing import Any, Self
 
 import anywidget
 import ipywidgets
 
-#: Most seconds that cells wait for small pictures, and seconds of waiting regained per second.
-MAX_WAIT_S, WAIT_REGAINED = 6.0, 0.2
+#: Most seconds that a cell waits for small pictures, however many widgets it shows.
+MAX_WAIT_S = 6.0
 #: Stills of one cell: of more than fifty outputs JupyterLab hides the rest.
 MOST_STILLS = 20
 VIEW = "application/vnd.jupyter.widget-view+json"
@@ -33,25 +31,7 @@ STYLE = (
 )
 
 
-class WaitBudget:
-    """Total time to wait for pictures, however many widgets are shown at once."""
-
-    def __init__(self) -> None:
-        self._left, self._at = MAX_WAIT_S, time.monotonic()
-
-    @contextmanager
-    def spend(self) -> Iterator[float]:
-        """Yield the remaining seconds, and subtract those that pass meanwhile."""
-        started = time.monotonic()
-        self._left = min(MAX_WAIT_S, self._left + WAIT_REGAINED * (started - self._at))
-        try:
-            yield self._left
-        finally:
-            self._at = time.monotonic()
-            self._left = max(self._left - (self._at - started), 0.0)
-
-
-_wait_budget = WaitBudget()
+_waits_of_cells: defaultdict[int | None, float] = defaultdict(float)
 _stills_of_cells: Counter[int | None] = Counter()
 
 
@@ -72,8 +52,9 @@ class Displayed(anywidget.AnyWidget):
 
     def _encoded_picture(self) -> tuple[str, str] | None:
         """Return the format and the text of a picture, if there is time to make one."""
-        with _wait_budget.spend() as seconds:
-            picture = self._picture(seconds)
+        cell, started = _cell_number(), time.monotonic()
+        picture = self._picture(max(MAX_WAIT_S - _waits_of_cells[cell], 0.0))
+        _waits_of_cells[cell] += time.monotonic() - started
         if not picture or self.comm is None:
             return None
         kind = "image/jpeg" if picture.startswith(b"\xff\xd8") else "image/png"

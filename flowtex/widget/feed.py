@@ -3,9 +3,6 @@
 Two workers do the long work. One sends the parts of the current scene; the other makes the next
 scene, the whole one after a coarse one or that of new settings, and replaces the current one when
 the new one can be shown. The scene's source makes the parts that a client requests.
-
-An array that was sent to some page already is offered by its digest and not sent: a page that
-shows the same mesh many times holds it once, and asks for what it lacks.
 """
 
 from __future__ import annotations
@@ -13,11 +10,9 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
-import re
 import threading
 import time
 import traceback
-from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
@@ -28,7 +23,6 @@ from flowtex._util.progress import Stopped
 from flowtex._util.threads import has_threads, start
 from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene.scene import Change
 from flowtex.textures.tiles import TileKey
@@ -47,14 +41,6 @@ MESSAGE_BYTES = 2_000_000
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Seconds in which a client may request parts that are being sent, as the header comes first.
 COMING_S = 2.0
-#: Names of arrays of a time step, such as "slices/3" and "scalars/3/1".
-_OF_STEP = re.compile(r"[a-z]+/([0-9]{1,9})(/[0-9]+)?")
-#: Bytes from which an array is offered before it is sent again.
-LEAST_OFFERED_BYTES = 50_000
-#: Digests of arrays that were sent to any page, and how many of them are remembered.
-_sent_digests: OrderedDict[str, None] = OrderedDict()
-_sent_lock = threading.Lock()
-MOST_DIGESTS = 10_000
 #: Sends a message with its buffers.
 Send = Callable[[Header, list[memoryview]], None]
 Job = Callable[[], None]
@@ -162,7 +148,7 @@ class Feed:
         with self._lock:
             if scene is self.scene:
                 self._live = True
-                self._deliver(future.result(), again=True, offer=key is None)
+                self._deliver(future.result(), again=True)
             self._end(request)
 
     def _end(self, request: str, **result: str) -> None:
@@ -175,21 +161,14 @@ class Feed:
         return timer
 
     def _send_again(self, waits: tuple[float, ...]) -> None:
-        """Send again to a client that has not answered: it may not have been loaded yet.
-
-        Offered arrays are sent whole, as the page that holds them may be gone as well.
-        """
+        """Send again to a client that has not answered: it may not have been loaded yet."""
         if self.acknowledged or self._closed:
             return
         if self._live:
-            self.want(sorted(self._sent))
+            self._send_first(urgency=1)
         if waits:
             self._timer = self._resend_timer(waits)
             self._timer.start()
-
-    def want(self, names: list[str]) -> None:
-        """Send a client the offered arrays that it lacks."""
-        self._answers.do(lambda: self._send_named(names), urgency=1)
 
     def _scene_changed(self, affects: Change) -> None:
         """Make the textures again, and the traces if need be."""
@@ -311,46 +290,27 @@ class Feed:
                     self._deliver(parts, again=True)
                     return
 
-    def _send_named(self, names: list[str]) -> None:
-        scene = self.scene
-        parts = scene.surface()
-        # Tiles, and what is of no step, have other names.
-        matches = map(_OF_STEP.fullmatch, names)
-        kinds = set(MARK_PARTS.values())
-        of_steps = {(match[0].split("/")[0], int(match[1])) for match in matches if match}
-        for name, step in {(name if name in kinds else "", step) for name, step in of_steps}:
-            if step < scene.steps:
-                parts |= scene.mark(name, step) if name else scene.step(step)
-        with self._lock:
-            if scene is self.scene:  # the client no longer waits for arrays of another scene
-                self._deliver({n: parts[n] for n in names if n in parts}, again=True, offer=False)
-
-    def _deliver(self, parts: Parts, *, again: bool, offer: bool = True) -> None:
+    def _deliver(self, parts: Parts, *, again: bool) -> None:
         """Send arrays, the flow after its surface; those that a client has only when ``again``."""
-        offers: list[Header] = []
         batch: list[tuple[Header, AnyArray]] = []
         for name, array in sorted(parts.items(), key=lambda item: ("/" in item[0], item[1].nbytes)):
             info = part_info(name, array)
             if not again and "/" not in name and self._sent.get(name) == info["digest"]:
                 continue
             self._sent[name] = info["digest"]
-            if _was_sent(info["digest"]) and offer and array.nbytes >= LEAST_OFFERED_BYTES:
-                offers.append(info)
-                continue
             if batch and sum(a.nbytes for _, a in batch) + array.nbytes > MESSAGE_BYTES:
-                self._post("parts", batch)
+                self._post(batch)
                 batch = []
             batch.append((info, array))
-        self._post("parts", batch)
-        self._post("offer", [(info, None) for info in offers])
+        self._post(batch)
 
-    def _post(self, kind: str, parts: Sequence[tuple[Header, AnyArray | None]]) -> None:
-        """Send descriptions of parts with their arrays, or offer them without."""
+    def _post(self, parts: Sequence[tuple[Header, AnyArray]]) -> None:
+        """Send descriptions of parts with their arrays."""
         if self._closed or not parts:
             return
         infos = [info for info, _ in parts]
-        buffers = [part_buffer(array) for _, array in parts if array is not None]
-        self._send({"kind": kind, "generation": self._generation, "parts": infos}, buffers)
+        buffers = [part_buffer(array) for _, array in parts]
+        self._send({"kind": "parts", "generation": self._generation, "parts": infos}, buffers)
 
     def _draw(self, size: tuple[int, int], camera: CameraValues) -> None:
         """Draw the small picture; an error does no harm."""
@@ -370,17 +330,6 @@ class Feed:
 
 def _words(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}"
-
-
-def _was_sent(digest: str) -> bool:
-    """Return whether an array was sent to any page before, and remember it."""
-    with _sent_lock:
-        was_sent = digest in _sent_digests
-        _sent_digests[digest] = None
-        _sent_digests.move_to_end(digest)
-        while len(_sent_digests) > MOST_DIGESTS:
-            _sent_digests.popitem(last=False)
-        return was_sent
 
 
 class Worker:

@@ -424,11 +424,9 @@ class Views:
                 feed.ready()
         if not (isinstance(number, int) and 0 <= number < len(self.feeds)):
             return
-        names, request = message.get("names"), message.get("request")
+        request = message.get("request")
         if kind == "appearance" and isinstance(message.get("changes"), dict):
             self._take_appearance(message["changes"])
-        if kind == "want" and isinstance(names, list) and all(isinstance(n, str) for n in names):
-            self.feeds[number].want(names)
         if kind == "drop" and isinstance(request, str):
             self.feeds[number].drop(request)
         key, steps = message.get("key"), message.get("steps")

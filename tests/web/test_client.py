@@ -628,15 +628,6 @@ def test_a_widget_takes_traits_and_messages_as_they_come(client: ClientPage) -> 
         assert label.startswith("Pause" if playing else "Play")
     for name, value in (("camera", None), ("time", 0.5), ("clock", 1.5)):
         page.evaluate("(given) => model.set(...given)", [name, value])
-    # Parts that are missing are requested for existing views; parts of others are dropped.
-    offer = """(view) => {
-      log.length = 0;
-      const info = { name: "position", digest: "unknown", shape: [1], dtype: "float32", bytes: 4 };
-      model.fire("msg:custom", { kind: "offer", view, parts: [info] }, []);
-      return log.filter(([, content]) => content?.kind === "want").map(([, content]) => content);
-    }"""
-    assert page.evaluate(offer, 0) == [{"kind": "want", "names": ["position"], "view": 0}]
-    assert page.evaluate(offer, 5) == []
     number(client, "(model.fire('msg:custom', null, []), null)")
     number(client, "(model.fire('msg:custom', { kind: 'loaded', request: 'x' }, []), null)")
     assert number(client, "host.dataset.failed") is None

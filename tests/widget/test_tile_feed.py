@@ -6,7 +6,6 @@ import json
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -201,20 +200,6 @@ def test_errors_are_told_to_who_asked(
     client.load((7, 0, 0), 0)
     client.load(None, 9)
     assert [error.split(":")[0] for error in client.errors[1:]] == ["KeyError", "IndexError"]
-
-
-def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None:
-    """Of a name such as tile/LEVEL/ROW/COLUMN/slices/STEP the first number is the level."""
-    asked: list[int] = []
-
-    def step(number: int) -> dict[str, Any]:
-        asked.append(number)
-        return {}
-
-    feed: Any = make(swirl()).views.feeds[0]
-    feed.scene = SimpleNamespace(steps=3, surface=dict, step=step, moment=lambda _: [])
-    feed._send_named(["tile/1/0/0/slices/0", "a/b", "slices/2", "scalars/2/1", "slices/99"])
-    assert asked == [2]
 
 
 @pytest.mark.parametrize(

@@ -71,8 +71,6 @@ class Heard:
                     array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
                     self.arrays[info["name"]] = array
             self._came.notify_all()
-        if content["kind"] == "offer":
-            self.say(kind="want", names=names_of(content))
 
     def say(self, **message: Any) -> None:
         self.widget._handle_custom_msg(message, [])
@@ -505,9 +503,7 @@ def test_messages_of_any_thread_have_the_session_of_the_widget(
     assert any(thread != threading.current_thread().name for _, thread in sent)
 
 
-def test_many_views_of_one_mesh_share_what_is_made_of_it(
-    make: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_many_views_of_one_mesh_share_what_is_made_of_it(make: Make) -> None:
     first, other = make(gyre(nodes=100)), make(gyre(nodes=100), contrast=2.0)  # made twice
     assert first.field is other.field
     first_scene, other_scene = (w._views.feeds[0].scene for w in (first, other))
@@ -515,12 +511,6 @@ def test_many_views_of_one_mesh_share_what_is_made_of_it(
     different = make(gyre(nodes=101))
     assert different.field is not first.field
     assert make(gyre(nodes=100), noise="texture", resolution=32).scene.store is first.scene.store
-    # What has gone to a page is offered to the next view, and sent to whoever lacks it.
-    heard = Heard(other, monkeypatch)
-    heard.say(kind="ready")
-    heard.wait(lambda: "flow/0" in heard.arrays)
-    offers = [m for m in heard.messages if m["kind"] == "offer"]
-    assert "flow/0" in names_of(offers[0])
 
 
 def test_what_is_shown_is_sent_before_anybody_asks(
