@@ -18,7 +18,7 @@ from flowtex._util.array_types import AnyArray, Floats
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
 CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
-OCEAN, WEATHER = "ocean.npz", "weather.npz"
+OCEAN, WEATHER = "ocean.nc.gz", "weather.nc.gz"
 #: Names of the liquid-oxygen post's grid and solution.
 POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
@@ -87,8 +87,8 @@ def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
     return np.moveaxis(parts, 0, -1)
 
 
-def load(name: str) -> dict[str, AnyArray]:
-    """Return the arrays of a shipped file by name.
+def shipped(name: str) -> Path:
+    """Return the path of a shipped file.
 
     Raises a FileNotFoundError when the installation lacks the file.
     """
@@ -100,7 +100,12 @@ def load(name: str) -> dict[str, AnyArray]:
             "tools/example_data/build.py"
         )
         raise FileNotFoundError(message)
-    with np.load(path, allow_pickle=False) as file:
+    return path
+
+
+def load(name: str) -> dict[str, AnyArray]:
+    """Return the arrays of a shipped file by name."""
+    with np.load(shipped(name), allow_pickle=False) as file:
         return dict(file)
 
 
