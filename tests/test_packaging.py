@@ -106,7 +106,7 @@ HELD = re.compile(
     r"flowtex/(?:[\w/]+\.pyi?|py\.typed"
     r"|_shaders/(?:common|vtk|webgl2)/\w+\.glsl"
     r"|web/\w+\.(?:m?js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
-    r"|examples/data/\w+\.(?:npz|md)|field/earth/coastlines\.(?:npz|md))"
+    r"|examples/data/\w+\.(?:npz|nc\.gz)|field/earth/coastlines\.(?:npz|md))"
     r"|flowtex-[\d.]+\.dist-info/(?:METADATA|RECORD|WHEEL|entry_points\.txt|licenses/LICENSE)"
 )
 MOST_BYTES = 3_000_000

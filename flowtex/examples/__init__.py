@@ -20,28 +20,26 @@ computes them again.
 
 from __future__ import annotations
 
-from flowtex.examples._double_gyre import double_gyre_velocity
 from flowtex.examples._earth import ocean, weather
-from flowtex.examples._fields import (
+from flowtex.examples._exact import double_gyre_velocity
+from flowtex.examples._flows import (
     NAMES,
-    airfoil_field,
-    cylinder_field,
-    delta_wing_field,
-    double_gyre_field,
-    liquid_oxygen_post_field,
-    vortex_field,
-)
-from flowtex.examples._meshes import (
     airfoil,
+    airfoil_field,
     cylinder,
+    cylinder_field,
     cylinder_series,
     delta_wing,
+    delta_wing_field,
     double_gyre,
+    double_gyre_field,
     double_gyre_series,
     liquid_oxygen_post,
+    liquid_oxygen_post_field,
     to_grid,
     to_series,
     vortex,
+    vortex_field,
     vortex_series,
 )
 

@@ -1,25 +1,17 @@
-"""Data of the Earth as ocean and weather models write them, computed and not observed.
-
-The height of the sea and the winds are read from files that ``tools/example_data`` computes.
-"""
+"""Data of the Earth as ocean and weather models write them, computed and not observed."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flowtex._util.extras import import_extra
-from flowtex.examples._shipped import OCEAN, WEATHER, load, unpack
+from flowtex.examples._shipped import OCEAN, WEATHER, shipped
 from flowtex.field.earth import EARTH_RADIUS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-EAST, NORTH = {"units": "degrees_east"}, {"units": "degrees_north"}
-LONGITUDE = {"standard_name": "longitude", "long_name": "longitude", "axis": "X", **EAST}
-LATITUDE = {"standard_name": "latitude", "long_name": "latitude", "axis": "Y", **NORTH}
-SOURCE = "computed by flowtex.examples from formulas; neither observed nor forecast"
 
 #: Earth's turning in radians a second, gravity in m/s², metres of a degree.
 TURNING, GRAVITY, DEGREE = 7.2921e-5, 9.81, np.radians(EARTH_RADIUS)
@@ -42,36 +34,20 @@ def ocean() -> xr.Dataset:
     ------
     ModuleNotFoundError
         When xarray is missing.
-    FileNotFoundError
-        When the data file of the example is missing.
 
     Examples
     --------
     >>> flowtex.render(flowtex.examples.ocean(), cmap="viridis")  # doctest: +SKIP
     """
-    xarray = import_extra("xarray", "xarray")
-    file = load(OCEAN)
-    lon, lat, land = file["longitude"], file["latitude"], file["land"]
-    height = unpack(file["height"], float(file["step"]), axis=(0, 1, 2))
-    coriolis = 2 * TURNING * np.sin(np.radians(lat))[:, None]
-    north, east = np.gradient(height, lat * DEGREE, lon * DEGREE, axis=(1, 2))
-    east /= np.cos(np.radians(lat))[:, None]
-    data = {
-        "uo": (-GRAVITY / coriolis * north, "eastward_sea_water_velocity", "m s-1"),
-        "vo": (GRAVITY / coriolis * east, "northward_sea_water_velocity", "m s-1"),
-        "zos": (height, "sea_surface_height_above_geoid", "m"),
-    }
-    times = np.datetime64("2024-03-01", "ns") + np.arange(len(height)) * np.timedelta64(1, "D")
-    return _dataset(
-        xarray,
-        {name: (np.where(land, np.nan, values), *names) for name, (values, *names) in data.items()},
-        {
-            "time": ("time", times, {"standard_name": "time", "axis": "T"}),
-            "latitude": ("latitude", lat, LATITUDE),
-            "longitude": ("longitude", lon, LONGITUDE),
-        },
-        "Currents of the Northwest Atlantic, an example",
-    )
+    ds = _read(OCEAN)
+    lat = np.radians(ds.latitude)
+    turning = 2 * TURNING * np.sin(lat) * DEGREE / GRAVITY
+    # The file has attributes of the currents, and the height on land too.
+    u, v = -ds.zos.differentiate("latitude"), ds.zos.differentiate("longitude") / np.cos(lat)
+    for name, current in (("uo", u), ("vo", v)):
+        ds[name] = ds.zos.dims, (current / turning).values, ds[name].attrs
+    sea: xr.Dataset = ds[["uo", "vo", "zos"]].where(ds.land == 0)
+    return sea
 
 
 def weather() -> xr.Dataset:
@@ -88,43 +64,16 @@ def weather() -> xr.Dataset:
     ------
     ModuleNotFoundError
         When xarray is missing.
-    FileNotFoundError
-        When the data file of the example is missing.
 
     Examples
     --------
     >>> flowtex.render(flowtex.examples.weather(), level=250, globe=True)  # doctest: +SKIP
     """
+    return _read(WEATHER)
+
+
+def _read(name: str) -> xr.Dataset:
     xarray = import_extra("xarray", "xarray")
-    file = load(WEATHER)
-    winds = unpack(file["winds"], float(file["step"]), axis=(2, 3))
-    level = {"standard_name": "air_pressure", "units": "hPa", "positive": "down", "axis": "Z"}
-    return _dataset(
-        xarray,
-        {"u": (winds[0], "eastward_wind", "m s-1"), "v": (winds[1], "northward_wind", "m s-1")},
-        {
-            "time": ((), np.datetime64("2024-01-15T12", "ns"), {"standard_name": "time"}),
-            "level": ("level", file["level"], {"long_name": "pressure level", **level}),
-            "latitude": ("latitude", file["latitude"], LATITUDE),
-            "longitude": ("longitude", file["longitude"], LONGITUDE),
-        },
-        "Winds of the Earth, an example",
-    )
-
-
-def _dataset(
-    xarray: Any, data: dict[str, Any], coordinates: dict[str, Any], title: str
-) -> xr.Dataset:
-    """Put arrays, each with standard name and unit, on coordinates."""
-    dims = [name for name, (axes, *_) in coordinates.items() if axes]
-    variables = {
-        key: (
-            dims,
-            values,
-            {"standard_name": word, "long_name": word.replace("_", " "), "units": unit},
-        )
-        for key, (values, word, unit) in data.items()
-    }
-    attributes = {"Conventions": "CF-1.8", "title": title, "source": SOURCE}
-    dataset: xr.Dataset = xarray.Dataset(variables, coordinates, attributes)
-    return dataset
+    # Plain numbers, so that a copy that a user writes is as exact.
+    ds: xr.Dataset = xarray.load_dataset(shipped(name), engine="scipy").drop_encoding()
+    return ds

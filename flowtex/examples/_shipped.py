@@ -18,45 +18,28 @@ from flowtex._util.array_types import AnyArray, Floats
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
 CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
-OCEAN, WEATHER = "ocean.npz", "weather.npz"
+OCEAN, WEATHER = "ocean.nc.gz", "weather.nc.gz"
 #: Names of the liquid-oxygen post's grid and solution.
 POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
 
-def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
-    """Return points (65, 161, 2), velocity (31, 65, 161, 2), and times (31,)."""
+def cylinder_arrays() -> tuple[Floats, Floats, Floats, Floats]:
+    """Return points (65, 161, 2), velocity (31, 65, 161, 2), vorticity and times (31,)."""
     file = load(CYLINDER)
-    velocity = unpack(file["velocity"], float(file["step"]), axis=(0, 1, 2))
-    columns = velocity.shape[2]
-    theta = 2.0 * np.pi * np.arange(columns) / columns
+    velocity, vorticity = (
+        unpack(file[name], float(file[step]), axis=(0, 1, 2))
+        for name, step in (("velocity", "step"), ("vorticity", "vorticity_step"))
+    )
+    columns = np.arange(velocity.shape[2] + 1) % velocity.shape[2]
+    theta = 2.0 * np.pi * columns / velocity.shape[2]
     points = file["radii"][:, None, None] * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    closed = [np.concatenate([a, a[..., :1, :]], axis=-2) for a in (points, velocity)]
-    return closed[0], closed[1], file["times"]
-
-
-def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
-    """Return the vorticity (T, J, I) of a flow on circles around the origin.
-
-    The last column repeats the first one. The nodes (J, I, 2) are evenly spaced around.
-    Derivatives are spectral around, and by cubic splines outwards.
-    """
-    radii = np.hypot(points[:, 0, 0], points[:, 0, 1])
-    open_points, open_velocity = points[:, :-1], velocity[:, :, :-1]
-    cosine, sine = np.moveaxis(open_points / radii[:, None, None], -1, 0)
-    u, v = np.moveaxis(open_velocity, -1, 0)
-    outward, around = u * cosine + v * sine, v * cosine - u * sine
-    count = cosine.shape[1]
-    modes = scipy.fft.rfft(outward, axis=-1) * 1j * np.arange(count // 2 + 1)
-    slope = scipy.interpolate.CubicSpline(radii, radii[:, None] * around, axis=1)(radii, 1)
-    result = (slope - scipy.fft.irfft(modes, count, axis=-1)) / radii[:, None]
-    return np.concatenate([result, result[..., :1]], axis=-1)
+    return points, velocity[:, :, columns], vorticity[:, :, columns], file["times"]
 
 
 def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
-    """Return points, velocity, vorticity and times (31,).
+    """Return points (100, 100, 2), velocity, vorticity (31, 100, 100) and times.
 
-    Their shapes are (100, 100, 2), (31, 100, 100, 2) and (31, 100, 100). The last row and
-    column repeat the first, one box further on.
+    The last row and column repeat the first, one box further on.
     """
     file = load(VORTEX)
     vorticity = unpack(file["vorticity"], float(file["step"]), axis=(1, 2))
@@ -65,12 +48,8 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     axis = np.linspace(0.0, 1.0, size + 1)
     points = np.stack(np.meshgrid(axis, axis), axis=-1)
     wrapped = np.arange(size + 1) % size
-    return (
-        points,
-        velocity[:, wrapped][:, :, wrapped],
-        vorticity[:, wrapped][:, :, wrapped],
-        file["times"],
-    )
+    velocity, vorticity = (values[:, wrapped][:, :, wrapped] for values in (velocity, vorticity))
+    return points, velocity, vorticity, file["times"]
 
 
 def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
@@ -87,8 +66,8 @@ def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
     return np.moveaxis(parts, 0, -1)
 
 
-def load(name: str) -> dict[str, AnyArray]:
-    """Return the arrays of a shipped file by name.
+def shipped(name: str) -> Path:
+    """Return the path of a shipped file.
 
     Raises a FileNotFoundError when the installation lacks the file.
     """
@@ -100,7 +79,12 @@ def load(name: str) -> dict[str, AnyArray]:
             "tools/example_data/build.py"
         )
         raise FileNotFoundError(message)
-    with np.load(path, allow_pickle=False) as file:
+    return path
+
+
+def load(name: str) -> dict[str, AnyArray]:
+    """Return the arrays of a shipped file by name."""
+    with np.load(shipped(name), allow_pickle=False) as file:
         return dict(file)
 
 
@@ -118,31 +102,25 @@ def find_post(folder: str | Path | None = None) -> Path:
 
     Raises a FileNotFoundError when a file is missing or cannot be downloaded.
     """
-    if folder is None:
-        return _downloaded()
-    directory = Path(folder).expanduser()
-    missing = [name for name in (POST_GRID, POST_SOLUTION) if not (directory / name).is_file()]
-    if missing:
-        message = (
-            f"{directory} has no {' and no '.join(missing)}; give the folder that contains "
-            f"{POST_GRID} and {POST_SOLUTION}, or none to download them with PyVista"
-        )
-        raise FileNotFoundError(message)
-    return directory / POST_GRID
-
-
-def _downloaded() -> Path:
-    """Return the path of the grid; PyVista's collection names both files as VTK's test data do."""
+    names = POST_GRID, POST_SOLUTION
+    if folder is not None:
+        directory = Path(folder).expanduser()
+        if missing := [name for name in names if not (directory / name).is_file()]:
+            message = (
+                f"{directory} has no {' and no '.join(missing)}; give the folder that contains "
+                f"{POST_GRID} and {POST_SOLUTION}, or none to download them with PyVista"
+            )
+            raise FileNotFoundError(message)
+        return directory / POST_GRID
     from pyvista.examples import downloads
 
-    try:
-        paths = [Path(str(downloads.download_file(name))) for name in (POST_GRID, POST_SOLUTION)]
-    # What the network raises (requests) derives from OSError.
-    except OSError as error:
+    try:  # PyVista's collection has both under these names
+        grid, _ = (Path(str(downloads.download_file(name))) for name in names)
+    except OSError as error:  # as are the errors of the network
         message = (
             f"PyVista could not download {POST_GRID} and {POST_SOLUTION} "
             f"({type(error).__name__}); check the network, or give the folder that contains them, "
             "as in liquid_oxygen_post(folder=...)"
         )
         raise FileNotFoundError(message) from error
-    return paths[0]
+    return grid

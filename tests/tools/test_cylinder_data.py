@@ -118,7 +118,7 @@ def test_the_steady_wake_at_reynolds_number_40_is_the_published_one() -> None:
 
 def test_the_shipped_wake_is_resolved() -> None:
     """The shortest waves around carry next to nothing on any circle, so nothing wiggles."""
-    _, velocity, _ = _shipped.cylinder_arrays()
+    _, velocity, _, _ = _shipped.cylinder_arrays()
     waves = np.abs(fft.rfft(velocity[:, :, :-1], axis=2, norm="forward"))
     assert waves[:, :, 10].max() > 5e-3
     assert waves[:, :, 70:].max() < 1e-4
@@ -127,7 +127,7 @@ def test_the_shipped_wake_is_resolved() -> None:
 
 
 def test_the_code_still_makes_the_shipped_flow() -> None:
-    _, velocity, times = _shipped.cylinder_arrays()
+    _, velocity, _, times = _shipped.cylinder_arrays()
     flow = cylinder_run.restart()
     np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[0, :, :-1], atol=5e-5)
     for _ in range(cylinder_run.STEPS):
@@ -148,7 +148,7 @@ def test_forces_are_computed_again_as_shipped() -> None:
 
 def test_a_coarser_grid_makes_the_whole_period_as_well() -> None:
     """Half the nodes and steps: the full grid is compared over the first steps, above."""
-    _, velocity, times = _shipped.cylinder_arrays()
+    _, velocity, _, times = _shipped.cylinder_arrays()
     flow = cylinder_run.restart()
     half = replace(flow.setup, modes=48, intervals=144, step=2.0 * flow.setup.step)
     flow = cylinder_run.refine(flow, half)
@@ -170,9 +170,20 @@ def _analytic(signal: NDArray[np.float64]) -> NDArray[np.complex128]:
     return np.asarray(fft.ifft(modes))
 
 
+def test_vorticity_of_a_rigid_rotation_and_of_a_point_vortex() -> None:
+    points = _shipped.cylinder_arrays()[0][:, :-1]
+    turned = np.stack([-points[..., 1], points[..., 0]], axis=-1)
+    squared = np.sum(points**2, axis=-1, keepdims=True)
+    found = cylinder_run.polar_vorticity(np.stack([turned, turned / squared]))
+    np.testing.assert_allclose(found[0], 2.0, atol=1e-6)
+    np.testing.assert_allclose(found[1], 0.0, atol=1e-9)
+
+
 def test_vorticity_is_derived_as_the_solver_has_it() -> None:
-    points, velocity, _ = _shipped.cylinder_arrays()
-    derived = _shipped.polar_vorticity(points, velocity[:1])[0, :, :-1]
+    _, velocity, vorticity, _ = _shipped.cylinder_arrays()
+    derived = vorticity[0, :, :-1]
+    computed = cylinder_run.polar_vorticity(velocity[:, :, :-1])
+    np.testing.assert_allclose(vorticity[:, :, :-1], computed, atol=4e-4)
     flow = cylinder_run.restart()
     # The wall is a node of both grids; the solver's values there are between -22 and 22.
     wall = fft.irfft(flow.vorticity[:, 0], 160, norm="forward")
@@ -201,7 +212,7 @@ def test_a_whole_run_in_small_is_written_and_read(
     assert sum(told) == pytest.approx(24.0 + 2.0 * shedding.times[-1], abs=1e-6)
     cylinder_run.write(shedding, tmp_path)
     monkeypatch.setattr(_shipped, "DATA", tmp_path)
-    _, velocity, times = _shipped.cylinder_arrays()
+    _, velocity, _, times = _shipped.cylinder_arrays()
     step = np.abs(shedding.velocity).max() / packing.STEPS
     np.testing.assert_allclose(velocity[:, :, :-1], shedding.velocity, atol=0.51 * step)
     np.testing.assert_array_equal(times, shedding.times)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import delta_wing_run
 import numpy as np
 import ocean_run
@@ -9,28 +11,38 @@ import packing
 import pytest
 import weather_run
 
+from flowtex import examples
 from flowtex.examples import _shipped
 
 
 def test_the_file_of_the_sea_is_the_computation() -> None:
     pytest.importorskip("pyproj")
-    file = _shipped.load(_shipped.OCEAN)
     longitude, latitude, land, height = ocean_run.run()
-    stored = _shipped.unpack(file["height"], float(file["step"]), axis=(0, 1, 2))
-    assert np.abs(stored - height).max() <= file["step"] * 0.5001
-    np.testing.assert_array_equal(file["land"], land)
-    np.testing.assert_allclose(file["longitude"], longitude)
-    np.testing.assert_allclose(file["latitude"], latitude)
+    sea = examples.ocean()
+    stored = sea.zos.values
+    step = np.abs(height).max() / packing.STEPS
+    assert np.abs(stored - height)[:, ~land].max() <= step * 0.5001
+    np.testing.assert_array_equal(np.isnan(stored), land | np.zeros((8, 1, 1), bool))
+    np.testing.assert_allclose(sea.longitude, longitude)
+    np.testing.assert_allclose(sea.latitude, latitude)
 
 
 def test_the_file_of_the_winds_is_the_computation() -> None:
-    file = _shipped.load(_shipped.WEATHER)
+    file = examples.weather()
     longitude, latitude, winds = weather_run.run()
-    stored = _shipped.unpack(file["winds"], float(file["step"]), axis=(2, 3))
-    assert np.abs(stored - winds).max() <= file["step"] * 0.5001
-    np.testing.assert_allclose(file["longitude"], longitude)
-    np.testing.assert_allclose(file["latitude"], latitude)
-    assert file["level"].tolist() == list(weather_run.LEVELS)
+    for name, wind in zip("uv", winds, strict=True):
+        step = np.abs(wind).max() / packing.STEPS
+        assert np.abs(file[name].values - wind).max() <= step * 0.5001
+    np.testing.assert_allclose(file.longitude, longitude)
+    np.testing.assert_allclose(file.latitude, latitude)
+    assert file.level.values.tolist() == list(weather_run.LEVELS)
+
+
+def test_a_dataset_is_the_same_bytes_again(tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        weather_run.write(tmp_path / name)
+    first, second = ((tmp_path / n / _shipped.WEATHER).read_bytes() for n in ("first", "second"))
+    assert first == second
 
 
 def test_the_file_of_the_wing_is_the_computation() -> None:

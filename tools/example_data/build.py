@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as progress:
         for name in options.examples or BUILDERS:
             BUILDERS[name](progress, options.folder)
-    for path in sorted((options.folder or DATA).glob("*.npz")):
+    for path in sorted((options.folder or DATA).glob("*.*")):
         Console().print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
 
 

@@ -18,9 +18,9 @@ from cylinder_flow import RADIUS, CylinderFlow, CylinderSetup
 from numpy.typing import NDArray
 from packing import pack, save
 from scipy import fft
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import CubicSpline, make_interp_spline
 
-from flowtex.examples._shipped import CYLINDER, DATA
+from flowtex.examples._shipped import CYLINDER, DATA, unpack
 
 Real = NDArray[np.float64]
 
@@ -96,6 +96,21 @@ def node_velocity(flow: CylinderFlow) -> Real:
     )
     velocity[0] = 0.0
     return velocity
+
+
+def polar_vorticity(velocity: Real) -> Real:
+    """Vorticity (T, 65, 160) of velocities (T, 65, 160, 2) on the shipped grid.
+
+    Derivatives are spectral around, and by cubic splines outwards.
+    """
+    radii, count = node_radii(), velocity.shape[2]
+    theta = 2.0 * np.pi * np.arange(count) / count
+    u, v = np.moveaxis(velocity, -1, 0)
+    cosine, sine = np.cos(theta), np.sin(theta)
+    outward, around = u * cosine + v * sine, v * cosine - u * sine
+    modes = fft.rfft(outward, axis=-1) * 1j * np.arange(count // 2 + 1)
+    slope = CubicSpline(radii, radii[:, None] * around, axis=1)(radii, 1)
+    return np.asarray((slope - fft.irfft(modes, count, axis=-1)) / radii[:, None])
 
 
 def refine(flow: CylinderFlow, setup: CylinderSetup) -> CylinderFlow:
@@ -184,8 +199,12 @@ def run(
 def write(shedding: Shedding, folder: Path | None = None) -> None:
     """Write the example's file, and the state from which the run can be taken up."""
     packed, step = pack(shedding.velocity, axis=(0, 1, 2))
+    # Of the velocity as it is read.
+    vorticity = pack(polar_vorticity(unpack(packed, step, (0, 1, 2))), axis=(0, 1, 2))
     setup = shedding.setup
     facts = {
+        "vorticity": vorticity[0],
+        "vorticity_step": vorticity[1],
         "times": shedding.times,
         "radii": node_radii(),
         "forces": shedding.forces.astype(np.float32),

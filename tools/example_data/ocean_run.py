@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy
-from packing import pack, save
+from packing import LATITUDE, LONGITUDE, save_dataset
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.examples._earth import DEGREE, TURNING
@@ -116,6 +116,19 @@ def _stream(seconds: float, narrow: float) -> tuple[Floats, Floats]:
 def write(folder: Path | None = None) -> None:
     """Compute and write the file."""
     lon, lat, land, height = run()
-    packed, step = pack(height, axis=(0, 1, 2))
-    names = {"longitude": lon, "latitude": lat, "land": land}
-    save((folder or DATA) / FILE, {"height": packed, "step": step, **names})
+    dims = ("time", "latitude", "longitude")
+    times = np.datetime64("2024-03-01", "ns") + np.arange(DAYS) * np.timedelta64(1, "D")
+    data = {
+        # The package computes the currents from the height.
+        "uo": ((), np.int8(0), "eastward_sea_water_velocity", "m s-1"),
+        "vo": ((), np.int8(0), "northward_sea_water_velocity", "m s-1"),
+        "zos": (dims, height, "sea_surface_height_above_geoid", "m"),
+        "land": (dims[1:], land.astype(np.int8), "land_binary_mask", "1"),
+    }
+    coordinates = {
+        "time": ("time", times, {"standard_name": "time", "axis": "T"}),
+        "latitude": ("latitude", lat, LATITUDE),
+        "longitude": ("longitude", lon, LONGITUDE),
+    }
+    title = "Currents of the Northwest Atlantic, an example"
+    save_dataset((folder or DATA) / FILE, data, coordinates, title)

@@ -1,20 +1,27 @@
-"""Arrays in files of few bytes, as :func:`flowtex.examples._shipped.unpack` reads them.
+"""Arrays in files of few bytes, as :mod:`flowtex.examples._shipped` and xarray read them.
 
-Values become whole steps of 1/32000 of the largest one (16 bits), and of those only the
-differences from node to node are stored.
+Values become whole steps of 1/32000 of the largest one (16 bits). Of those an NPZ file has only the
+differences from node to node.
 """
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 #: Whole steps from zero to the largest value; leaves room in 16 bits.
 STEPS = 32000
+
+#: Attributes of the coordinates of datasets.
+EAST, NORTH = {"units": "degrees_east"}, {"units": "degrees_north"}
+LONGITUDE = {"standard_name": "longitude", "long_name": "longitude", "axis": "X", **EAST}
+LATITUDE = {"standard_name": "latitude", "long_name": "latitude", "axis": "Y", **NORTH}
 
 
 def pack(
@@ -50,3 +57,35 @@ def save(path: Path, arrays: Mapping[str, ArrayLike]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     plain: dict[str, Any] = {name: np.asarray(array) for name, array in arrays.items()}
     np.savez_compressed(path, **plain)
+
+
+def save_dataset(
+    path: Path, variables: dict[str, Any], coordinates: dict[str, Any], title: str
+) -> None:
+    """Write a dataset to a compressed netCDF file; the same data give the same bytes.
+
+    Each variable has dimensions, values, standard name and unit.
+    """
+    source = "computed by flowtex.examples from formulas; neither observed nor forecast"
+    attributes = {"Conventions": "CF-1.8", "title": title, "source": source}
+    named = {
+        name: (
+            dims,
+            values,
+            {"standard_name": word, "long_name": word.replace("_", " "), "units": unit},
+        )
+        for name, (dims, values, word, unit) in variables.items()
+    }
+    dataset = xr.Dataset(named, coordinates, attributes)
+    packed = {
+        name: {
+            "dtype": "int16",
+            "scale_factor": float(np.abs(array).max()) / STEPS,
+            "_FillValue": np.int16(-STEPS - 1),
+        }
+        for name, array in dataset.data_vars.items()
+        if array.dtype.kind == "f"
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    content = bytes(dataset.to_netcdf(engine="scipy", encoding=packed))
+    path.write_bytes(gzip.compress(content, 9, mtime=0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from packing import pack, save
+from packing import LATITUDE, LONGITUDE, save_dataset
 
 from flowtex._util.array_types import Floats
 from flowtex.examples._shipped import DATA, WEATHER
@@ -37,9 +37,19 @@ def run() -> tuple[Floats, Floats, Floats]:
 def write(folder: Path | None = None) -> None:
     """Compute and write the file."""
     lon, lat, winds = run()
-    packed, step = pack(winds, axis=(2, 3))
-    names = {"longitude": lon, "latitude": lat, "level": np.array(list(LEVELS))}
-    save((folder or DATA) / WEATHER, {"winds": packed, "step": step, **names})
+    dims = ("level", "latitude", "longitude")
+    level = {"standard_name": "air_pressure", "units": "hPa", "positive": "down", "axis": "Z"}
+    data = {
+        "u": (dims, winds[0], "eastward_wind", "m s-1"),
+        "v": (dims, winds[1], "northward_wind", "m s-1"),
+    }
+    coordinates = {
+        "time": ((), np.datetime64("2024-01-15T12", "ns"), {"standard_name": "time"}),
+        "level": ("level", list(LEVELS), {"long_name": "pressure level", **level}),
+        "latitude": ("latitude", lat, LATITUDE),
+        "longitude": ("longitude", lon, LONGITUDE),
+    }
+    save_dataset((folder or DATA) / WEATHER, data, coordinates, "Winds of the Earth, an example")
 
 
 def _winds(lon: Floats, lat: Floats, jet: float, trade: float, waves: float) -> Floats:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -58,143 +59,6 @@ class MovieError(FieldError):
     """
 
 
-class MP4Encoder:
-    """Writes H.264 with PyAV; the arguments are those of :class:`MovieWriter`."""
-
-    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
-        av = _pyav()
-        from av.video.reformatter import Interpolation
-
-        self._frame_of = av.VideoFrame.from_ndarray
-        self._exact = Interpolation.AREA | Interpolation.ACCURATE_RND
-        self._movie = av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"})
-        rate = Fraction(fps).limit_denominator(1001)
-        # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
-        factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
-        self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
-        self._stream.width, self._stream.height = size
-        self._stream.pix_fmt = "yuv420p"
-        codec = self._stream.codec_context
-        codec.colorspace, codec.color_primaries = BT709, BT709
-        codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
-
-    def add(self, picture: Bytes) -> None:
-        """Encode a picture."""
-        frame = self._frame_of(np.ascontiguousarray(picture), format="rgb24").reformat(
-            format="yuv420p",
-            src_color_range="JPEG",
-            dst_color_range="MPEG",
-            dst_colorspace="ITU709",
-            interpolation=self._exact,
-        )
-        self._movie.mux(self._stream.encode(frame))
-
-    def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Write the remaining packets."""
-        del cancelled
-        self._movie.mux(self._stream.encode(None))
-
-    def close(self) -> None:
-        """Close the file."""
-        self._movie.close()
-
-
-def _pyav() -> Any:
-    """Return PyAV; raise an error if it is missing or has no H.264."""
-    try:
-        import av
-    except ModuleNotFoundError as error:
-        msg = (
-            "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
-            f"{install_extra('movie')}"
-        )
-        raise ModuleNotFoundError(msg) from error
-    if "libx264" not in av.codecs_available:
-        msg = (
-            "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
-            "GIF"
-        )
-        raise MovieError(msg)
-    return av
-
-
-class PillowEncoder:
-    """Keeps pictures on the disk until Pillow writes them as a GIF or a WebP.
-
-    The pictures of a GIF share one palette, without dithering, so that nothing flickers.
-    """
-
-    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
-        self._new, self._size, self._fps, self._quality = new, size, fps, quality
-        self._format = new.part.suffix[1:].upper()
-        self._count = 0
-        self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
-
-    def add(self, picture: Bytes) -> None:
-        """Store a picture."""
-        if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
-            most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
-            msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
-            raise MovieError(msg)
-        self._spool.write(np.ascontiguousarray(picture).tobytes())
-        self._count += 1
-
-    def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Write all pictures."""
-        from PIL import Image
-
-        pictures = self._pictures(cancelled)
-        if self._format == "GIF":
-            palette, plain = self._palette(), Image.Dither.NONE
-            pictures = (p.quantize(palette=palette, dither=plain) for p in pictures)
-            self._save(pictures, unit=10, optimize=False, disposal=1)
-        else:
-            self._save(pictures, unit=1, quality=self._quality, method=2)
-
-    def close(self) -> None:
-        """Remove the temporary file."""
-        self._spool.close()
-
-    def _picture(self, number: int) -> Image.Image:
-        from PIL import Image
-
-        width, height = self._size
-        self._spool.seek(number * width * height * 3)
-        return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
-
-    def _pictures(self, cancelled: Callable[[], bool]) -> Iterator[Image.Image]:
-        for number in range(self._count):
-            if cancelled():
-                raise Stopped
-            yield self._picture(number)
-
-    def _save(self, pictures: Iterator[Image.Image], unit: int, **options: Any) -> None:
-        """Save pictures whose durations are whole units of this many milliseconds."""
-        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
-        durations = [after - before for before, after in pairwise(ends)]
-        next(pictures).save(
-            self._new.file,
-            self._format,
-            save_all=True,
-            append_images=pictures,
-            duration=durations if len(durations) > 1 else durations[0],
-            loop=0,
-            **options,
-        )
-
-    def _palette(self) -> Image.Image:
-        """Return an image with one palette for pictures from the whole movie."""
-        from PIL import Image
-
-        chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
-        step = max(min(self._size) // PALETTE_SIDE, 1)
-        samples = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
-        colours = max(round(256 * self._quality / 100), 2)
-        return Image.fromarray(np.vstack(samples)).quantize(
-            colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
-        )
-
-
 def default_fps(path: str | Path) -> float:
     """Return the default frames per second; a GIF counts in hundredths of a second."""
     return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
@@ -235,6 +99,25 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     raise MovieError(msg)
 
 
+def _pyav() -> Any:
+    """Return PyAV; raise an error if it is missing or has no H.264."""
+    try:
+        import av
+    except ModuleNotFoundError as error:
+        msg = (
+            "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
+            f"{install_extra('movie')}"
+        )
+        raise ModuleNotFoundError(msg) from error
+    if "libx264" not in av.codecs_available:
+        msg = (
+            "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
+            "GIF"
+        )
+        raise MovieError(msg)
+    return av
+
+
 class MovieWriter:
     """Writes pictures to a file, which exists completely or not at all.
 
@@ -248,7 +131,7 @@ class MovieWriter:
         check_movie(path, size, fps, quality)
         self._size = size
         self._file = WholeFile(Path(path))
-        kind = MP4Encoder if self._file.part.suffix.lower() == ".mp4" else PillowEncoder
+        kind = _MP4 if self._file.part.suffix.lower() == ".mp4" else _Pillow
         try:
             self._encoder = kind(self._file, size, fps, quality)
         except BaseException:
@@ -265,7 +148,7 @@ class MovieWriter:
             expected = f"{self._size[0]} x {self._size[1]}"
             msg = f"a picture is {width} x {height}; expected {expected}, the size of the movie"
             raise MovieError(msg)
-        self._encoder.add(picture)
+        self._encoder.add(np.ascontiguousarray(picture))
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
         """Complete the file, and put it in its place.
@@ -281,11 +164,117 @@ class MovieWriter:
     def abandon(self) -> None:
         """Remove an incomplete file; does nothing after :meth:`finish`."""
         try:
-            self._encoder.close()
-        except OSError:  # a full disk: it has failed before, and the file goes
-            pass
+            with suppress(OSError):  # a full disk: it has failed before, and the file goes
+                self._encoder.close()
         finally:
             self._file.drop()
+
+
+class _MP4:
+    """Writes H.264 with PyAV."""
+
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
+        av = _pyav()
+        from av.video.reformatter import Interpolation
+
+        self._frame_of = av.VideoFrame.from_ndarray
+        self._colours = {
+            "format": "yuv420p",
+            "src_color_range": "JPEG",
+            "dst_color_range": "MPEG",
+            "dst_colorspace": "ITU709",
+            "interpolation": Interpolation.AREA | Interpolation.ACCURATE_RND,
+        }
+        self._movie = av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"})
+        self.close = self._movie.close
+        # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
+        factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
+        rate = Fraction(fps).limit_denominator(1001)
+        self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt = "yuv420p"
+        codec = self._stream.codec_context
+        codec.colorspace, codec.color_primaries = BT709, BT709
+        codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
+
+    def add(self, picture: Bytes) -> None:
+        frame = self._frame_of(picture, format="rgb24").reformat(**self._colours)
+        self._movie.mux(self._stream.encode(frame))
+
+    def finish(self, _cancelled: Callable[[], bool]) -> None:
+        self._movie.mux(self._stream.encode(None))
+
+
+class _Pillow:
+    """Keeps pictures on the disk until Pillow writes them as a GIF or a WebP.
+
+    The pictures of a GIF share one palette, without dithering, so that nothing flickers.
+    """
+
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
+        self._file, self._size, self._fps, self._quality = new.file, size, fps, quality
+        self._format = new.part.suffix[1:].upper()
+        self._count = 0
+        self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
+        self.close = self._spool.close
+
+    def add(self, picture: Bytes) -> None:
+        self._count += 1
+        if self._count * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
+            most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
+            msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
+            raise MovieError(msg)
+        self._spool.write(picture.data)
+
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write all pictures."""
+        palette = self._palette() if self._format == "GIF" else None
+        # A GIF counts in hundredths of a second, a WebP in thousandths.
+        unit = 1 if palette is None else 10
+        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
+        durations = [after - before for before, after in pairwise(ends)]
+        options = {"quality": self._quality, "method": 2, "optimize": False, "disposal": 1}
+        pictures = self._pictures(palette, cancelled)
+        next(pictures).save(
+            self._file,
+            self._format,
+            save_all=True,
+            append_images=pictures,
+            duration=durations if len(durations) > 1 else durations[0],
+            loop=0,
+            **options,
+        )
+
+    def _pictures(
+        self, palette: Image.Image | None, cancelled: Callable[[], bool]
+    ) -> Iterator[Image.Image]:
+        from PIL import Image
+
+        plain = Image.Dither.NONE
+        for number in range(self._count):
+            if cancelled():
+                raise Stopped
+            picture = self._picture(number)
+            yield picture if palette is None else picture.quantize(palette=palette, dither=plain)
+
+    def _picture(self, number: int) -> Image.Image:
+        from PIL import Image
+
+        width, height = self._size
+        self._spool.seek(number * width * height * 3)
+        return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
+
+    def _palette(self) -> Image.Image:
+        """Return an image with one palette for pictures from the whole movie."""
+        from PIL import Image
+
+        chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
+        step = max(min(self._size) // PALETTE_SIDE, 1)
+        samples = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
+        colours = max(round(256 * self._quality / 100), 2)
+        return Image.fromarray(np.vstack(samples)).quantize(
+            colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
+        )
 
 
 def write_movie(
@@ -308,9 +297,7 @@ def write_movie(
         for picture in frames:
             if cancelled():
                 raise Stopped
-            if writer is None:
-                height, width = picture.shape[:2]
-                writer = MovieWriter(path, (width, height), fps, quality)
+            writer = writer or MovieWriter(path, picture.shape[1::-1], fps, quality)
             writer.add(picture)
         if writer is None:
             msg = f"{path}: the movie has no pictures; expected one or more"

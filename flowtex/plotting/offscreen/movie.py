@@ -127,18 +127,12 @@ class Movie:
 
     Attributes
     ----------
-    path
-        The file.
-    nbytes
-        Its size.
+    path, nbytes
+        The file, and its size.
     size
         Width and height in pixels.
-    frames
-        Number of frames.
-    fps
-        Frames per second.
-    seconds
-        Duration.
+    frames, fps, seconds
+        Number of frames, frames per second, and duration.
     closed
         Whether the first frame follows the last one without a seam.
 
@@ -230,17 +224,13 @@ def movie(
     """
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
-    field, chosen, shown = _prepare(mesh, Options.split(mesh=mesh, **options), fps, seconds)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
-    pictures = _draw(field, chosen, shown, **drawing)
-    try:
+    shown, drawn = _prepare(mesh, options, fps, seconds, **drawing)
+    with closing(drawn) as pictures:
         tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
         write_movie(path, tracked, fps, quality, cancelled=cancelled)
-    finally:
-        pictures.close()
-    path = Path(path)
-    nbytes = path.stat().st_size
-    return Movie(path, nbytes, size, len(shown), fps, len(shown) / fps, shown.closed)
+    path, count = Path(path), len(shown)
+    return Movie(path, path.stat().st_size, size, count, fps, count / fps, shown.closed)
 
 
 def frames(
@@ -265,29 +255,28 @@ def frames(
     >>> [picture.shape for picture in frames(field, size=(64, 48), fps=5, seconds=0.4, samples=5)]
     [(48, 64, 3), (48, 64, 3)]
     """
-    field, chosen, shown = _prepare(mesh, Options.split(mesh=mesh, **options), fps, seconds)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
-    return _draw(field, chosen, shown, **drawing)
+    return _prepare(mesh, options, fps, seconds, **drawing)[1]
 
 
 def _prepare(
-    mesh: Any, options: Options, fps: float, seconds: float | None
-) -> tuple[FlowField, Options, FrameTimes]:
-    """Return the field, the options with the motion, and the times of the frames."""
+    mesh: Any, words: dict[str, Any], fps: float, seconds: float | None, **drawing: Any
+) -> tuple[FrameTimes, Generator[Bytes, None, None]]:
+    """Return the times of the frames, and a generator that draws them."""
+    options = Options.split(mesh=mesh, **words)
     field = options.field.field(mesh)
     settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     values = dict(options.settings)
     if field.steady:
         values |= {"motion": settings.motion, "period": shown.seconds}
-    return field, replace(options, field=FieldOptions(), settings=values), shown
+    options = replace(options, field=FieldOptions(), settings=values)
 
+    def draw() -> Generator[Bytes, None, None]:
+        with closing(OffscreenPlotter(field, options, **drawing)) as plotter:
+            for time in shown.times:
+                yield plotter.picture(time=time)
+            for clock in shown.clocks:
+                yield plotter.picture(clock=clock)
 
-def _draw(
-    field: FlowField, options: Options, shown: FrameTimes, **arguments: Any
-) -> Generator[Bytes, None, None]:
-    with closing(OffscreenPlotter(field, options, **arguments)) as plotter:
-        for time in shown.times:
-            yield plotter.picture(time=time)
-        for clock in shown.clocks:
-            yield plotter.picture(clock=clock)
+    return shown, draw()

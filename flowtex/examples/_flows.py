@@ -1,16 +1,25 @@
-"""The examples as fields, from nothing but NumPy, SciPy, and the shipped files."""
+"""The examples as fields, from nothing but NumPy, SciPy, and the shipped files, and as meshes.
+
+A FileNotFoundError tells that a shipped file is missing.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Floats
-from flowtex.examples import _double_gyre, _shipped
-from flowtex.examples._airfoil import Joukowski
+from flowtex._util.extras import require_pyvista
+from flowtex.examples import _exact, _shipped
 from flowtex.field import FlowField
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 
 def cylinder_field() -> FlowField:
@@ -27,14 +36,9 @@ def cylinder_field() -> FlowField:
         so that the wake crosses the seam where the first and last column coincide). Lengths are in
         diameters, speeds in free-stream speeds; the scalar is ``vorticity``.
 
-    Raises
-    ------
-    FileNotFoundError
-        When the data file of the example is missing.
-
     Notes
     -----
-    Velocities are rounded to 16 bits, with an error of at most 3e-5 free-stream speeds.
+    Numbers are rounded to 16 bits, velocities with an error of at most 3e-5 free-stream speeds.
 
     Examples
     --------
@@ -42,13 +46,13 @@ def cylinder_field() -> FlowField:
     >>> len(flowtex.examples.cylinder_field().times)
     31
     """
-    points, velocity, times = _shipped.cylinder_arrays()
+    points, velocity, vorticity, times = _shipped.cylinder_arrays()
     return FlowField.from_arrays(
         points,
         velocity,
         times=times,
         periodic="i",
-        scalars={"vorticity": _shipped.polar_vorticity(points, velocity)},
+        scalars={"vorticity": vorticity},
         name="cylinder",
         length_unit="diameters",
         time_unit="diameters / free-stream speed",
@@ -59,20 +63,14 @@ def vortex_field() -> FlowField:
     """Return vortices of decaying two-dimensional turbulence in a periodic box.
 
     A solution of the Navier-Stokes equations by a dealiased pseudo-spectral method, with the shape
-    of the vortex dataset of Li and Shen: a Cartesian grid of 100 x 100 nodes and 31 time steps.
+    of the vortex dataset of Li and Shen.
 
     Returns
     -------
     FlowField
-        31 times, 0.04 apart, on [0, 1] x [0, 1], periodic along both axes: the last row and column
-        repeat the first. The root-mean-square speed was 1 before the vortices formed; a particle in
-        a vortex travels a twentieth of the box in one step. The scalar is ``vorticity``. All units
-        are arbitrary.
-
-    Raises
-    ------
-    FileNotFoundError
-        When the data file of the example is missing.
+        31 times, 0.04 apart, and 100 x 100 nodes on [0, 1] x [0, 1], periodic along both axes: the
+        last row and column repeat the first. The root-mean-square speed was 1 before the vortices
+        formed. The scalar is ``vorticity``. All units are arbitrary.
 
     Examples
     --------
@@ -118,19 +116,19 @@ def double_gyre_field(
     >>> gyre.velocity.shape
     (41, 21, 41, 3)
     """
-    points = _double_gyre.nodes(shape)
-    times = np.linspace(0.0, _double_gyre.PERIOD, 41) if time_varying else np.zeros(1)
-    return double_gyre_at(times, points, _double_gyre.EPSILON if time_varying else 0.0)
+    points = _exact.nodes(shape)
+    times = np.linspace(0.0, _exact.PERIOD, 41) if time_varying else np.zeros(1)
+    return double_gyre_at(times, points, _exact.EPSILON if time_varying else 0.0)
 
 
 def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:
     """Return the double gyre at times (T,) and points (J, I, 2)."""
     return FlowField.from_arrays(
         points,
-        [_double_gyre.double_gyre_velocity(points, t, epsilon=epsilon) for t in times],
+        [_exact.double_gyre_velocity(points, t, epsilon=epsilon) for t in times],
         times=times,
         periodic="",
-        scalars={"vorticity": [_double_gyre.vorticity(points, t, epsilon) for t in times]},
+        scalars={"vorticity": [_exact.vorticity(points, t, epsilon) for t in times]},
         name="double gyre",
     )
 
@@ -163,11 +161,9 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
     >>> flowtex.examples.airfoil_field(shape=(33, 97)).size_text
     '97 x 33 nodes (I x J)'
     """
-    airfoil = Joukowski()
-    nodes = airfoil.grid(*shape, extent)
-    velocity = airfoil.velocity(nodes)
+    points, velocity = _exact.airfoil_arrays(shape, extent)
     return FlowField.from_arrays(
-        airfoil.place(nodes),
+        points,
         velocity,
         periodic="i",
         scalars={"pressure": 1.0 - np.sum(velocity**2, axis=-1)},
@@ -189,11 +185,6 @@ def delta_wing_field() -> FlowField:
         52 nodes across (j, from the left edge to the right) and 62 from nose to tail (i). Lengths
         are in body lengths, with x along the body and z upward, and speeds in free-stream speeds;
         the angle of attack is 12 degrees. The scalar is ``height``.
-
-    Raises
-    ------
-    FileNotFoundError
-        When the data file of the example is missing.
 
     Notes
     -----
@@ -262,3 +253,215 @@ NAMES: dict[str, Callable[[], FlowField]] = {
     "delta_wing": delta_wing_field,
     "liquid_oxygen_post": liquid_oxygen_post_field,
 }
+
+
+def cylinder() -> pv.StructuredGrid:
+    """Return the last time of :func:`~flowtex.examples.cylinder_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        161 x 65 x 1 nodes with arrays ``velocity`` and ``vorticity``, and ``TimeValue``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.cylinder().point_data.keys()
+    ['velocity', 'vorticity']
+    """
+    return to_grid(cylinder_field())
+
+
+def cylinder_series() -> list[pv.StructuredGrid]:
+    """Return the 31 times of :func:`~flowtex.examples.cylinder_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> meshes = flowtex.examples.cylinder_series()
+    >>> flowtex.FlowField.from_pyvista(meshes).steady
+    False
+    """
+    return to_series(cylinder_field())
+
+
+def vortex() -> pv.StructuredGrid:
+    """Return the last time of :func:`~flowtex.examples.vortex_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        100 x 100 x 1 nodes with arrays ``velocity`` and ``vorticity``, and ``TimeValue``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.vortex().dimensions
+    (100, 100, 1)
+    """
+    return to_grid(vortex_field())
+
+
+def vortex_series() -> list[pv.StructuredGrid]:
+    """Return the 31 times of :func:`~flowtex.examples.vortex_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> len(flowtex.examples.vortex_series())
+    31
+    """
+    return to_series(vortex_field())
+
+
+def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
+    """Return the double gyre at one time of its period of 10.
+
+    Parameters
+    ----------
+    time : float, default: 0.0
+        Any time; at 0 the two gyres have the same size, as in the steady flow.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        201 x 101 x 1 nodes on [0, 2] x [0, 1] with arrays ``velocity`` and ``vorticity``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.double_gyre(time=2.5)["velocity"].shape
+    (20301, 3)
+    """
+    most = sys.float_info.max
+    time = checked_number("time", time, -most, most, expected="a finite number such as 2.5")
+    return to_grid(double_gyre_at(np.array([time]), _exact.nodes((101, 201)), _exact.EPSILON))
+
+
+def double_gyre_series() -> list[pv.StructuredGrid]:
+    """Return one period of :func:`~flowtex.examples.double_gyre`, 41 times from 0 to 10.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> float(flowtex.examples.double_gyre_series()[-1].field_data["TimeValue"][0])
+    10.0
+    """
+    return to_series(double_gyre_field(time_varying=True))
+
+
+def airfoil() -> pv.StructuredGrid:
+    """Return :func:`~flowtex.examples.airfoil_field` as a mesh.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        193 x 65 x 1 nodes with arrays ``velocity`` and ``pressure``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.airfoil().dimensions
+    (193, 65, 1)
+    """
+    return to_grid(airfoil_field())
+
+
+def delta_wing() -> pv.StructuredGrid:
+    """Return :func:`~flowtex.examples.delta_wing_field` as a mesh.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        62 x 52 x 1 nodes with arrays ``velocity`` and ``height``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.delta_wing().n_points
+    3224
+    """
+    return to_grid(delta_wing_field())
+
+
+def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
+    """Return :func:`~flowtex.examples.liquid_oxygen_post_field` as a mesh.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        The nodes of the plane, with the array ``velocity`` and the scalars of the file.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.liquid_oxygen_post("~/data", plane="j=10")  # doctest: +SKIP
+    """
+    return to_grid(liquid_oxygen_post_field(folder, plane))
+
+
+def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
+    """Return one time step of a field as a mesh.
+
+    Parameters
+    ----------
+    field : FlowField
+        Surface and velocity.
+    step : int, default: -1
+        Index of the time step; the last by default.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        I x J x 1 nodes with the point array ``velocity``, the field's scalars, and the field
+        data ``TimeValue`` if the field is time-varying. Nodes without data are hidden.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.cylinder_field()
+    >>> flowtex.examples.to_grid(field, step=0).save("first.vts")
+    """
+    require_pyvista("a mesh")
+    import pyvista as pv
+
+    rows, columns = field.shape
+    grid = pv.StructuredGrid()
+    grid.points = field.points.reshape(-1, 3)
+    grid.dimensions = (columns, rows, 1)
+    grid.point_data["velocity"] = field.velocity[step].reshape(-1, 3)
+    for name, values in field.scalars.items():
+        grid.point_data[name] = values[step if len(values) > 1 else 0].ravel()
+    if not field.steady:
+        grid.field_data["TimeValue"] = np.array([field.times[step]])
+    if not field.valid.all():
+        grid.hide_points((~field.valid).ravel().tolist())
+    return grid
+
+
+def to_series(field: FlowField) -> list[pv.StructuredGrid]:
+    """Return every time step of a field, each as from :func:`~flowtex.examples.to_grid`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> len(flowtex.examples.to_series(flowtex.examples.cylinder_field()))
+    31
+    """
+    return [to_grid(field, step) for step in range(len(field.times))]
