@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import html
 import io
 import sys
 import threading
@@ -245,20 +244,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             return page_text(self._views.views, title=title, picture=picture, **shown)
         write_page(self._views.views, path, title=title, picture=picture, **shown)
         return None
-
-    def as_html(self) -> str:
-        """Return the current view as an HTML frame, which works without a Jupyter kernel.
-
-        The frame contains the page of :meth:`to_html`, so saved notebooks and reports that keep
-        HTML keep the view: ``IPython.display.HTML(widget.as_html())``.
-        """
-        width, height = self.size
-        style = f"width: {f'{width}px' if width else '100%'}; height: {height}px; border: 0"
-        page, name = self.to_html(), self.field.name or "flow"
-        return (
-            f'<iframe srcdoc="{html.escape(str(page))}" title="{html.escape(name)}" '
-            f'style="{style}" allow="fullscreen"></iframe>'
-        )
 
     def close(self) -> None:
         """Remove the widget from the page and free its memory."""

@@ -44,8 +44,10 @@ def Page():
     widget = solara.use_memo(flow, [])
     solara.Column(children=[widget])
 """
-PANEL = """import panel
-panel.pane.HTML(flow().as_html()).servable()
+PANEL = """import html, panel
+page = html.escape(flow().to_html())
+frame = f'<iframe srcdoc="{page}" style="width: 100%; height: 400px; border: 0"></iframe>'
+panel.pane.HTML(frame).servable()
 """
 HOLOVIEWS = """import holoviews, panel
 holoviews.extension("bokeh")
