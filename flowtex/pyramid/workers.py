@@ -13,7 +13,6 @@ from itertools import islice
 from typing import Any
 
 from flowtex._util.extras import import_extra
-from flowtex._util.notices import notify
 from flowtex._util.threads import pool
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
@@ -41,13 +40,6 @@ class Threads:
             except (ValueError, TypeError, AttributeError) as error:
                 msg = f"memory is {memory!r}; expected a number of bytes, or a text such as '2GB'"
                 raise FieldError(msg) from error
-            if self._memory < OWN_BYTES + TILE_BYTES:
-                notify(
-                    f"memory is {_size_text(self._memory)}, but a task may need "
-                    f"{_size_text(TILE_BYTES)} in addition to {_size_text(OWN_BYTES)} for all "
-                    "tasks; tasks run one at a time, and may exceed the limit",
-                    UserWarning,
-                )
 
     def count(self, need: int) -> int:
         """Return how many tasks run at once that need this many bytes each."""
@@ -178,7 +170,3 @@ def _unpacked(data: bytes) -> Any:
     import pickle
 
     return pickle.loads(data)
-
-
-def _size_text(size: float) -> str:
-    return f"{size / 1e9:.3g} GB"

@@ -335,8 +335,7 @@ def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Threads(5_000_000_000).count(PART_BYTES) == 8
     with pytest.raises(FieldError, match="memory is 'lots'; expected a number of bytes"):
         Threads("lots")
-    with pytest.warns(UserWarning, match="memory is 1 GB, but a task may need 1.5 GB"):
-        assert Threads("1GB").count(TILE_BYTES) == 1
+    assert Threads("1GB").count(TILE_BYTES) == 1
 
 
 def test_a_build_holds_as_many_parts_as_its_memory_allows(
