@@ -34,7 +34,7 @@ from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import WebView, browser_options, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.feed import Feed, Send
-from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError, make_panel
+from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
 
 #: Traits of the widget with the headers of the views, from left to right.
 HEADERS = ("_header", "_header_beside")
@@ -220,12 +220,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
         self._views.set_image(load_image(image))
-
-    def controls(self) -> Any:
-        """Return a panel of ipywidgets with a control for each setting."""
-        panel, close = make_panel(self)
-        self._ends.append(close)
-        return panel
 
     def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
         """Write the current view as a page that needs no server, as :func:`flowtex.export` does.

@@ -312,21 +312,6 @@ def test_an_error_while_tracing_is_told(
     assert "out of memory" in capsys.readouterr().err
 
 
-def test_a_panel_has_every_setting_and_follows(make: Make) -> None:
-    widget = make()
-    panel = widget.controls()
-    controls = dict(zip(TABLE, panel.children, strict=True))
-    controls["samples"].value = 33
-    assert widget.settings.samples == 33
-    widget.settings.lod = False
-    assert controls["lod"].value is False
-    controls["noise"].value = "image"  # there is none
-    assert controls["noise"].value == widget.noise == "procedural"
-    widget.close()
-    controls["samples"].value = 5
-    assert widget.settings.samples == 33
-
-
 @pytest.mark.threads
 def test_a_notebook_that_is_read_elsewhere_has_a_picture(
     make: Make, monkeypatch: pytest.MonkeyPatch
@@ -363,7 +348,6 @@ def test_nothing_is_left_after_closing(make: Make) -> None:
     before = set(threading.enumerate())
     widget = make(gyre(3))
     settings = widget.settings
-    widget.controls()
     widget.close()
     widget.close()
     assert settings._observers == []
