@@ -161,8 +161,6 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 
 
 def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
-    import numpy as np
-
     from flowtex.field.dates import expected_times
     from flowtex.field.derived import DERIVED
     from flowtex.textures.tiles import has_pyramid
@@ -194,16 +192,9 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     table.add_row(
         "surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip() + " across"
     )
-    sizes = field.surface.cell_size[field.valid]
-    sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
-    if sizes.size:
-        table.add_row(
-            "cells", f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest"
-        )
     table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
     for step in () if has_reading else field.reading:
         table.add_row(step.step, step.text)
-    table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table
 
 
@@ -215,14 +206,3 @@ def _lines(field: FlowField) -> str:
     return (
         f"{chosen_lines(field)} (within a streak, the flow changes by half at {share} of the nodes)"
     )
-
-
-def _megabytes(field: FlowField) -> float:
-    """Return the size of the slices of one time, in single precision, for both sides."""
-    from flowtex.trace import chosen_lines
-    from flowtex.trace.lags import choose_lags
-
-    by_length = field.steady or chosen_lines(field) == "streamlines"
-    lags = len(choose_lags(field, "arclength" if by_length else "time"))
-    numbers = 2 if field.triangles is None else 3
-    return field.valid.size * lags * numbers * 2 * 4 / 1e6

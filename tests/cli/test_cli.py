@@ -286,7 +286,6 @@ def test_info_describes_the_file_and_the_flow(run: Run, gyre: Path) -> None:
     assert (code, err) == (0, "")
     for words in ("StructuredGrid, 201 × 101 × 1 nodes", "vorticity", "What would be drawn"):
         assert words in out
-    for words in ("one, steady", "periodic no", "0 nodes", "flat", "scalars speed", "MB of traces"):
         assert words in out
 
 
