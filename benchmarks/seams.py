@@ -28,7 +28,7 @@ def seams() -> dict[str, Seam]:
     folder = Path(os.environ.get("FLOWTEX_DATA", ""))
     if not (folder / "postxyz.bin").is_file():
         return {}
-    post = flowtex.FlowField.from_pyvista(flowtex.examples.liquid_oxygen_post(folder, plane="k=20"))
+    post = flowtex.FlowField.from_file(folder / "postxyz.bin", plane="k=20")
     joined = post.points[0]  # the first line of nodes, and the last
     at = {
         f"zoom {z}": {"zoom": float(z), "focus": tuple(joined[row])}

@@ -1,4 +1,4 @@
-"""Example flows: computed by this package, or loaded from well-known files.
+"""Example flows.
 
 Each has up to three functions: ``name()`` returns a ``pyvista.StructuredGrid`` with the point array
 ``velocity``, ``name_series()`` a list of them, one for each time of a time-varying flow, and
@@ -9,7 +9,6 @@ Each has up to three functions: ``name()`` returns a ``pyvista.StructuredGrid`` 
     double_gyre  either         Cartesian       exact at any point and time
     airfoil      steady         O-grid          exact, cells of very different sizes
     delta_wing   steady         curved surface  a winged body, 52 x 62 nodes
-    liquid_oxygen_post  steady  plane of a 3D grid   a file of NASA's, not shipped
 
 Two xarray datasets resemble the output of models, and need the extra ``xarray``: ``ocean()`` has
 eight days of currents with a coast, ``weather()`` global winds.
@@ -34,8 +33,6 @@ from flowtex.examples._flows import (
     double_gyre,
     double_gyre_field,
     double_gyre_series,
-    liquid_oxygen_post,
-    liquid_oxygen_post_field,
     to_grid,
     to_series,
     vortex,
@@ -56,8 +53,6 @@ __all__ = [
     "double_gyre_field",
     "double_gyre_series",
     "double_gyre_velocity",
-    "liquid_oxygen_post",
-    "liquid_oxygen_post_field",
     "ocean",
     "to_grid",
     "to_series",

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -212,38 +211,6 @@ def delta_wing_field() -> FlowField:
     )
 
 
-def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=20") -> FlowField:
-    """Return the flow around NASA's liquid-oxygen post on one plane of a curvilinear grid.
-
-    Parameters
-    ----------
-    folder : str or Path, optional
-        Folder with ``postxyz.bin`` and ``postq.bin``. By default PyVista downloads them once into
-        its cache.
-    plane : str, default: "k=20"
-        Plane of the 38 x 76 x 38 nodes. On k-planes i runs outwards and j around the post, and the
-        first and last nodes coincide; k = 0 is a wall, where the velocity is zero.
-
-    Returns
-    -------
-    FlowField
-        The field in the units of the file, with its scalars.
-
-    Raises
-    ------
-    FileNotFoundError
-        When a file is missing in the folder, or cannot be downloaded.
-    FieldError
-        When the plane does not exist, or its velocity is zero everywhere.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.liquid_oxygen_post_field("~/data", plane="k=20")  # doctest: +SKIP
-    """
-    return FlowField.from_file(_shipped.find_post(folder), plane=plane)
-
-
 #: Names under which the examples are offered, each with the function that makes its field.
 NAMES: dict[str, Callable[[], FlowField]] = {
     "cylinder": cylinder_field,
@@ -251,7 +218,6 @@ NAMES: dict[str, Callable[[], FlowField]] = {
     "double_gyre": double_gyre_field,
     "airfoil": airfoil_field,
     "delta_wing": delta_wing_field,
-    "liquid_oxygen_post": liquid_oxygen_post_field,
 }
 
 
@@ -394,22 +360,6 @@ def delta_wing() -> pv.StructuredGrid:
     3224
     """
     return to_grid(delta_wing_field())
-
-
-def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
-    """Return :func:`~flowtex.examples.liquid_oxygen_post_field` as a mesh.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        The nodes of the plane, with the array ``velocity`` and the scalars of the file.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.liquid_oxygen_post("~/data", plane="j=10")  # doctest: +SKIP
-    """
-    return to_grid(liquid_oxygen_post_field(folder, plane))
 
 
 def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:

@@ -1,6 +1,6 @@
-"""Examples that are read from files: those that come with the package, and NASA's post.
+"""Examples that are read from files which come with the package.
 
-The shipped flows were computed by the scripts in ``tools/example_data``. Values were rounded to
+The flows were computed by the scripts in ``tools/example_data``. Values were rounded to
 16 bits, and the differences from node to node stored: smooth fields have small differences, which
 compress well, and whole numbers add up again without error; so do those from time to time.
 """
@@ -19,8 +19,6 @@ from flowtex._util.array_types import AnyArray, Floats
 DATA = Path(__file__).parent / "data"
 CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
 OCEAN, WEATHER = "ocean.nc.gz", "weather.nc.gz"
-#: Names of the liquid-oxygen post's grid and solution.
-POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
 
 def cylinder_arrays() -> tuple[Floats, Floats, Floats, Floats]:
@@ -95,32 +93,3 @@ def unpack(differences: NDArray[np.int16], step: float, axis: int | tuple[int, .
     for each in np.atleast_1d(axis):
         whole = np.cumsum(whole, axis=each, dtype=np.uint16)
     return whole.view(np.int16).astype(np.float64) * step
-
-
-def find_post(folder: str | Path | None = None) -> Path:
-    """Return the path of the grid, beside which the solution lies; PyVista fetches both by default.
-
-    Raises a FileNotFoundError when a file is missing or cannot be downloaded.
-    """
-    names = POST_GRID, POST_SOLUTION
-    if folder is not None:
-        directory = Path(folder).expanduser()
-        if missing := [name for name in names if not (directory / name).is_file()]:
-            message = (
-                f"{directory} has no {' and no '.join(missing)}; give the folder that contains "
-                f"{POST_GRID} and {POST_SOLUTION}, or none to download them with PyVista"
-            )
-            raise FileNotFoundError(message)
-        return directory / POST_GRID
-    from pyvista.examples import downloads
-
-    try:  # PyVista's collection has both under these names
-        grid, _ = (Path(str(downloads.download_file(name))) for name in names)
-    except OSError as error:  # as are the errors of the network
-        message = (
-            f"PyVista could not download {POST_GRID} and {POST_SOLUTION} "
-            f"({type(error).__name__}); check the network, or give the folder that contains them, "
-            "as in liquid_oxygen_post(folder=...)"
-        )
-        raise FileNotFoundError(message) from error
-    return grid

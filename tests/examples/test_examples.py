@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 Real = NDArray[np.float64]
-SHIPPED = [name for name in examples.NAMES if name != "liquid_oxygen_post"]
+SHIPPED = list(examples.NAMES)
 
 
 @pytest.fixture(scope="module")
@@ -249,71 +248,10 @@ def test_cells_of_the_airfoil_differ_greatly_and_none_is_turned_over() -> None:
     assert area.max() / area.min() > 1e5
 
 
-def test_the_post_is_read_from_its_files(data_dir: Path) -> None:
-    mesh = examples.liquid_oxygen_post(data_dir)
-    assert mesh.dimensions == (38, 76, 1)
-    assert np.ptp(mesh.points[:, 2]) == 0.0
-    field = examples.liquid_oxygen_post_field(data_dir)
-    assert field.shape == (76, 38)
-    assert field.periodic == (True, False)
-    assert np.abs(field.velocity).max() > 0.5
-    np.testing.assert_allclose(mesh["velocity"].reshape(76, 38, 3), field.velocity[0], atol=1e-7)
-    ring = field.points[:, 0, :2]
-    np.testing.assert_allclose(np.linalg.norm(ring, axis=-1), 0.5, atol=1e-4)
-
-
-def test_another_plane_of_the_post_can_be_chosen(data_dir: Path) -> None:
-    low = examples.liquid_oxygen_post_field(data_dir, plane="k=1")
-    high = examples.liquid_oxygen_post_field(data_dir, plane="k=30")
-    assert low.points[0, 0, 2] < high.points[0, 0, 2]
-    with pytest.raises(ValueError, match="k=99"):
-        examples.liquid_oxygen_post_field(data_dir, plane="k=99")
-
-
-def test_without_a_folder_pyvista_fetches_the_post(data_dir: Path, tmp_path: Path) -> None:
-    """PyVista's own machinery, told to take its collection from a local folder."""
-    collection = tmp_path / "Data"
-    collection.mkdir()
-    for name in (_shipped.POST_GRID, _shipped.POST_SOLUTION):
-        (collection / name).symlink_to(data_dir / name)
-    code = (
-        "from flowtex import examples; field = examples.liquid_oxygen_post_field(); "
-        "print(field.shape)"
-    )
-    environment = {
-        **os.environ,
-        "PYVISTA_DATA": str(collection),
-        "PYVISTA_USERDATA_PATH": str(tmp_path / "cache"),
-    }
-    (tmp_path / "cache").mkdir()
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
-    )
-    assert done.stdout.strip() == "(76, 38)", done.stderr
-
-
-def test_a_download_that_fails_tells_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pyvista.examples import downloads
-
-    def fail(name: str) -> str:
-        message = f"no route to {name}"
-        raise ConnectionError(message)
-
-    monkeypatch.setattr(downloads, "download_file", fail)
-    with pytest.raises(FileNotFoundError, match=r"could not download postxyz\.bin.*folder="):
-        examples.liquid_oxygen_post()
-
-
-def test_a_folder_without_the_post_is_named(tmp_path: Path) -> None:
-    (tmp_path / "postq.bin").touch()
-    with pytest.raises(FileNotFoundError, match=r"has no postxyz\.bin; give the folder"):
-        examples.liquid_oxygen_post(tmp_path)
-
-
 def test_fields_need_no_pyvista() -> None:
     code = (
         "import sys; from flowtex import examples; "
-        "[make() for name, make in examples.NAMES.items() if name != 'liquid_oxygen_post']; "
+        "[make() for make in examples.NAMES.values()]; "
         "print(sorted({'vtk', 'vtkmodules', 'pyvista', 'matplotlib'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
