@@ -235,11 +235,7 @@ class Settings:
         affects="shader",
         choices=("procedural", "texture", "image"),
     )
-    tiles: int = _row(
-        "Repeats of an image along each side.",
-        default=1,
-        span=(1, 64),
-    )
+    tiles: int = _row("Repeats of an image along each side.", default=1, span=(1, 64))
     noise_correction: bool = _row(
         "Spread the noise texture evenly over the surface, not over its cells (figure 6 of the "
         "paper).",

@@ -52,11 +52,7 @@ Change = Affects | Literal["appearance"]
 Notice = Callable[[Change], None]
 
 #: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
-SETTINGS_IN_TEXTURES = {
-    "seed": ("texture",),
-    "tiles": (),
-    "resolution": ("texture", "image"),
-}
+SETTINGS_IN_TEXTURES = {"seed": ("texture",), "tiles": (), "resolution": ("texture", "image")}
 
 #: Share of the larger end of a range, or of the range, below which a difference is rounding.
 ZERO_SHARE = 1e-5

@@ -84,13 +84,7 @@ class ServeError(FieldError):
 class Site:
     """Pages on one port, behind a secret; hosts are those of :func:`guard`."""
 
-    def __init__(
-        self,
-        sessions: Sessions,
-        secret: str,
-        *,
-        hosts: Container[str] = LOCAL,
-    ) -> None:
+    def __init__(self, sessions: Sessions, secret: str, *, hosts: Container[str] = LOCAL) -> None:
         self.sessions = sessions
         self.port = 0
         self._secret = secret
