@@ -46,8 +46,6 @@ T = TypeVar("T")
 MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
 #: Pixels that may be drawn, along a side, for one of the result, and how fine a picture may be.
 MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
-#: Seconds between two checks whether the view has come to rest.
-BUSY_INTERVAL_S = 0.05
 
 
 class ExportError(FieldError):
@@ -116,8 +114,8 @@ class Job:
 
     ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
     and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
-    many pixels, for high-resolution screens and print. While ``busy`` returns True, nothing is
-    drawn. Raises an ExportError or a MovieError for invalid arguments.
+    many pixels, for high-resolution screens and print. Raises an ExportError or a MovieError for
+    invalid arguments.
     """
 
     def __init__(
@@ -129,12 +127,11 @@ class Job:
         supersampling: int = 1,
         density: float = 1.0,
         annotations: bool = False,
-        busy: Callable[[], bool] = lambda: False,
     ) -> None:
         _check(size, supersampling, density)
         #: The file, how much is done, 0 to 1, and whether it has ended, in whatever way.
         self.path, self.progress, self.done = Path(path), 0.0, False
-        self._viewport, self._size, self._busy = viewport, size, busy
+        self._viewport, self._size = viewport, size
         self._supersampling, self._density = supersampling, density
         self._annotations = annotations
         self.cancelled = False  #: Whether it was cancelled before it was done.
@@ -172,8 +169,6 @@ class Job:
             picture, self.progress = canvas, before + share * drawn
             # Other tasks of the event loop have their turn.
             await asyncio.sleep(0)
-            while self._busy() and not self.cancelled:
-                await asyncio.sleep(BUSY_INTERVAL_S)
             if self.cancelled:
                 raise Stopped
         if picture is None:

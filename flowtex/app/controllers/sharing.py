@@ -106,8 +106,6 @@ class Sharing(Controller):
             "supersampling": 2 if self.state.get("out_smooth") else 1,
             "density": self._number("out_density"),
             "annotations": bool(self.state.get("out_annotations")),
-            # The view has priority while it is being drawn.
-            "busy": lambda: self.stream.moving and not self.stream.paused,
         }
         if kind == "PNG":
             return PictureJob(self.viewport, path, size, **options)

@@ -374,11 +374,8 @@ def some_parts(scene: ClientData, place: str) -> Parts:
         return parts
     nodes = scene.textures.geometry.position.reshape(-1, 3)
     nodes = nodes[np.isfinite(nodes).all(axis=1)]
-    turns = np.arange(DIRECTIONS) * np.pi * (3 - 5**0.5)
-    z = 1 - (2 * np.arange(DIRECTIONS) + 1) / DIRECTIONS
-    r = np.sqrt(1 - z * z)
-    sphere = np.stack([r * np.cos(turns), r * np.sin(turns), z], axis=1)
-    directions = np.concatenate([sphere, np.eye(3), -np.eye(3)])
+    directions = np.random.default_rng(0).normal(size=(DIRECTIONS, 3))
+    directions = np.concatenate([directions, np.eye(3), -np.eye(3)])
     farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
     return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
 

@@ -3,11 +3,6 @@
 One task draws. It sleeps until a picture is requested, draws quick ones for as long as they are
 requested, and the full one once nothing has moved for a moment. Requests are not queued: the next
 picture shows the latest state. Pictures are sent by a remote controlled area (trame-rca).
-
-The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
-OpenGL). It takes the still picture in one piece, where this one is cancelled between two tiles:
-messages of the page waited for 0.4 to 2.6 s (here 0.05 to 0.3 s). Where the network is slow it
-drops the last, sharp picture as well, and its JPEGs at rest have colours at half the resolution.
 """
 
 from __future__ import annotations
@@ -53,9 +48,8 @@ class FrameStream:
     def __init__(self, name: str, viewport: Viewport) -> None:
         self.area_name = name
         self.streamer: Any = None
-        #: Whether the animation runs, whether the browser draws, so that no picture is needed, and
-        #: whether the last picture was in motion.
-        self.playing = self.paused = self.moving = False
+        #: Whether the animation runs, and whether the browser draws, so that no picture is needed.
+        self.playing = self.paused = False
         #: Whether the surface is fitted to another size of the view, which a page does itself.
         self.fits = True
         #: Returns whether a page is connected; otherwise nothing is drawn.
@@ -182,7 +176,6 @@ class FrameStream:
         started = time.perf_counter()
         pixels = self.painter.quick()
         await self._send(pixels, MOTION_QUALITY)
-        self.moving = True
         # Events of the page arrive while this sleeps; without it they would wait for the picture.
         await asyncio.sleep(max(1 / MOST_RATE_HZ - (time.perf_counter() - started), 0.004))
 
@@ -209,8 +202,6 @@ class FrameStream:
                     looked = time.perf_counter()
         if canvas is not None:
             await self._send(canvas, REST_QUALITY, sharp=True)
-            if not self._wake.is_set():
-                self.moving = False
 
     async def _send(self, pixels: Bytes, quality: int, *, sharp: bool = False) -> None:
         height, width = pixels.shape[:2]

@@ -139,19 +139,6 @@ def test_the_page_goes_on_between_tiles(plain: Viewport, tmp_path: Path) -> None
     assert pixels(job.path).shape == (1200, 1800, 3)
 
 
-def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> None:
-    drawn: list[float] = []
-
-    def busy() -> bool:
-        drawn.append(job.progress)
-        return len(drawn) < 4
-
-    job = PictureJob(plain, tmp_path / "a.png", (600, 40), busy=busy)
-    run(job)
-    # Nothing was drawn between the first time that it was busy, and when it was not any more.
-    assert len(drawn) > 4 and len(set(drawn[:4])) == 1 and drawn[4] > drawn[3]
-
-
 @pytest.mark.parametrize("kind", ["gif", "mp4"])
 def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, kind: str) -> None:
     path = tmp_path / f"flow.{kind}"
