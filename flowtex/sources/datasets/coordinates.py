@@ -259,13 +259,6 @@ def _at_nodes(
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
-        if a.dims == b.dims:
-            msg = (
-                f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are on an "
-                "unstructured mesh with unknown faces, or at stations. Open the file of the "
-                "mesh, with the nodes of each face, together with this one"
-            )
-            raise FieldError(msg)
         if a.dims != (dims[1],) or b.dims != (dims[0],):
             return None, None
         return _numbers(a)[None], _numbers(b)[:, None]

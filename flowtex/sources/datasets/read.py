@@ -8,7 +8,7 @@ step of a series are read here; other steps are read when they are drawn.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,9 +25,8 @@ from flowtex.field.earth import GLOBE
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIME, Choice, axis_kind, axis_values, horizontal_dims
+from flowtex.sources.datasets.axes import TIME, axis_kind, axis_values, horizontal_dims
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
-from flowtex.sources.datasets.ensembles import mean_and_spread
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
 from flowtex.sources.datasets.regions import Regions, Words, region_lines
@@ -40,8 +39,8 @@ from flowtex.sources.datasets.select import (
 )
 from flowtex.sources.datasets.values import read_step
 from flowtex.sources.datasets.vertical import is_section, read_section
-from flowtex.sources.maps.grid_map import Nodes, PlaneNodes, on_map
-from flowtex.sources.maps.mesh_map import mesh_on_map
+from flowtex.sources.maps.grid_map import MapNodes, PlaneNodes, on_map
+from flowtex.sources.maps.mesh_map import MeshMap, mesh_on_map
 from flowtex.sources.opening.series import Datasets, as_datasets
 from flowtex.sources.record import Record
 
@@ -57,6 +56,8 @@ OF_GRIDS = re.compile(
     re.I,
 )
 
+#: Reads the components u and v at the nodes of a step.
+Step = Callable[[int], tuple[Floats, Floats]]
 #: Steps whose components are kept, as velocity and speed use the same.
 MOST_READ = 4
 
@@ -109,7 +110,7 @@ def read_datasets(
                 "longitude and latitude; omit projection"
             )
             raise FieldError(msg)
-        scalars = _scalars(flow, Choice(dict(sel), dict(isel or {})))
+        scalars = _scalars(flow)
         caption = ", ".join(filter(None, (name, record.reading.caption)))
         words: dict[str, Any] = {"name": caption, **_scalar_texts(scalars)}
         arrays: GridArrays | TriangleArrays | Regions | None = None
@@ -132,6 +133,7 @@ def _whole(
 ) -> GridArrays | TriangleArrays:
     """Build the surface of all nodes, whose steps are read when they are drawn."""
     count, record = flow.drawn.steps, flow.record
+    nodes: MapNodes | MeshMap | PlaneNodes
     nodes, arguments = (
         _on_grid(flow, projection) if flow.mesh is None else _on_mesh(flow, projection)
     )
@@ -232,7 +234,7 @@ def _averaged(
     return replace(members[0], **changes), spread
 
 
-def _on_grid(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
+def _on_grid(flow: Flow, projection: str | None) -> tuple[MapNodes | PlaneNodes, dict[str, Any]]:
     """Return drawn nodes of rows and columns, and further arguments of a field."""
     places = flow.places
     if places.is_earth:
@@ -241,7 +243,7 @@ def _on_grid(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]
     return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
 
 
-def _on_mesh(flow: Flow, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
+def _on_mesh(flow: Flow, projection: str | None) -> tuple[MeshMap | PlaneNodes, dict[str, Any]]:
     """Return drawn nodes of a mesh, and further arguments of a field."""
     mesh: Any = flow.mesh
     if not mesh.is_earth:
@@ -334,9 +336,8 @@ class _Scalar(NamedTuple):
     read: Callable[[int], Floats]
 
 
-def _scalars(flow: Flow, choice: Choice) -> dict[str, _Scalar]:
+def _scalars(flow: Flow) -> dict[str, _Scalar]:
     """Return the other variables that lie at the nodes, by name."""
-    del choice
     scalars: dict[str, _Scalar] = {}
     used = (flow.pair.u.name, flow.pair.v.name)
     # Dimensions of the same name do not distinguish the sides of cells from their centres.
@@ -386,3 +387,33 @@ def recognised(data: Any) -> dict[str, str]:
         listed = ", ".join(words[:MOST_VALUES]) + (", ..." if len(words) > MOST_VALUES else "")
         rows[name] = f"{len(words)}: {listed}"
     return rows
+
+
+def mean_and_spread(members: Sequence[Step]) -> tuple[Step, Callable[[int], Floats]]:
+    """Return functions that read the mean velocity of members, and their spread from 0 to 1.
+
+    The spread is the standard deviation of the velocity, of both components together, over the
+    length of its mean; it is 1 where that is more.
+    """
+
+    @lru_cache(MOST_READ)
+    def sums(number: int) -> Floats:
+        total = np.zeros(())
+        for read in members:
+            u, v = (np.asarray(part, dtype=float) for part in read(number))
+            total = total + np.stack([u, v, u * u + v * v])
+        return total / len(members)
+
+    def mean(number: int) -> tuple[Floats, Floats]:
+        u, v, _ = sums(number)
+        return u, v
+
+    def spread(number: int) -> Floats:
+        u, v, square = sums(number)
+        length = u * u + v * v
+        with np.errstate(invalid="ignore", divide="ignore"):
+            # Nodes at rest in all members have no spread.
+            share = np.where(square > 0, np.sqrt(np.maximum(square / length - 1, 0)), 0.0)
+        return np.where(np.isnan(square), np.nan, np.minimum(share, 1.0))
+
+    return mean, spread

@@ -316,14 +316,7 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
                         return str(error)
     names = ", ".join(str(a.name) for a in arrays)
     if not names:
-        msg = "no variable has two axes; expected the two components of a velocity on a surface"
-        lines = [(n, a.dims[-1]) for ds in datasets for n, a in ds.data_vars.items() if a.ndim]
-        if lines:
-            msg += (
-                f". If {lines[0][1]} is the axis of an unstructured grid ({lines[0][0]} has it "
-                "alone), open the file with its cells together with this one"
-            )
-        return msg
+        return "no variable has two axes; expected the two components of a velocity on a surface"
     return (
         "no two variables are recognised as the components of a velocity; the variables are "
         f"{names}. Name the components, as in u=..., v=..."

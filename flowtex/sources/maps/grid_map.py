@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -50,22 +50,6 @@ BESIDE = 0.02
 COARSE_NODES = 20_000
 #: Degrees beside the edge of a map where it is looked for, and latitudes there.
 STEP, EDGE_LATITUDES = 0.02, np.linspace(-75.0, 75.0, 31)
-
-
-class Nodes(Protocol):
-    """Positions where nodes are drawn, (..., 3), and data and vectors there."""
-
-    points: Floats
-
-    @property
-    def projection(self) -> Projection | None:
-        """The map; ``None`` in a plane."""
-
-    def at(self, values: Floats) -> Floats:
-        """Return values at the nodes."""
-
-    def vectors(self, east: Floats, north: Floats) -> Floats:
-        """Return vectors (..., 3) of components at the nodes in m/s."""
 
 
 @dataclass(eq=False)

@@ -216,7 +216,7 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
             "lon increases and decreases.*drop_duplicates",
         ),
         (_nameless, "Name the components, as in u="),
-        (_unplaced, "no variable has two axes.*If cell is the axis"),
+        (_unplaced, "no variable has two axes; expected the two components"),
     ],
     ids=[
         "one component",
