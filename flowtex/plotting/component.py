@@ -365,10 +365,7 @@ def _edges(polygons: Cells) -> Cells:
 def _body(
     mesh: pv.PolyData, corners: tuple[Indices, ...], colour: Any = None, **look: float
 ) -> Body:
-    """Return triangles or pieces of lines, given by their corners and their cells.
-
-    With colours of cells, each has its own vertices.
-    """
+    """Return triangles or pieces of lines by corners and cells, apart if cells have colours."""
     ends, owners = corners[:-1], corners[-1]
     cells, points = np.stack(ends, axis=1), np.asarray(mesh.points, dtype=float)
     normals = mesh.point_data.active_normals

@@ -301,10 +301,7 @@ class FlowHandle(AppearanceAttributes):
         self._surface.write_scalars()
 
     def _show_appearance(self, *anew: str) -> None:
-        """Follow the appearance; direct changes of the actor stay.
-
-        Names in ``anew`` are updated even if they have not changed, as for another field.
-        """
+        """Follow the appearance where it, or a name in ``anew``, changes; the actor's stays."""
         old, new = self._shown, self.scene.appearance
         self._shown = new
 

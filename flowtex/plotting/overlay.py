@@ -125,10 +125,7 @@ class Overlay:
         *,
         above: int | None = None,
     ) -> None:
-        """Add lines of a width in pixels, as meshes by the distances of their points.
-
-        Lines ``above`` this many others hide them; without a number they are translucent.
-        """
+        """Add lines of a width in pixels; those with ``above`` hide the ones below it."""
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
         variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})
         actor = self._add(forms[-1][1], nearer, LINE_REPLACEMENTS, variant)
@@ -251,10 +248,7 @@ class MapOverlay(Overlay):
                 self._add_lines(forms, stroke.width, stroke.color, stroke.opacity)
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
-        """Return the lines of an option, from coarse to fine; all are made once, together.
-
-        A field far from any coast has none.
-        """
+        """Return the lines of an option, coarse to fine, made once; none far from a coast."""
         has_globe = self._radius is not None
         if (option, has_globe) not in self._lines:
             for name, lines in map_lines(self._field, has_globe=has_globe).items():

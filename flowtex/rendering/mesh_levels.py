@@ -262,10 +262,7 @@ def mesh_limits() -> dict[str, float]:
 
 
 def _directions(points: Floats) -> Floats:
-    """Return unit normals at the nodes, and the directions of their lines along i and j.
-
-    The shape is (3, J, I, 3), and they are zero where it is missing.
-    """
+    """Return normals and directions of lines at nodes, (3, J, I, 3), zero where missing."""
     if min(points.shape[:2]) < 2:
         return np.zeros((3, *points.shape))
     # Only directions count, so no number is too large to be squared.

@@ -344,10 +344,7 @@ def _noise_origin(even: Ints, finest: float, anchor: Floats) -> Values:
 
 
 def _paper(paper: PaperTextures, settings: Settings, density: float) -> Values:
-    """Return the sizes of the noise texture, or of the picture in its place.
-
-    Sizes grow with the density of pixels, so that the mip level stays the same.
-    """
+    """Return sizes of the noise texture or picture, which grow with the density of pixels."""
     height, width = (n * density for n in paper.step.shape)
     rows, columns = (n * density for n in paper.noise.shape[:2])
     tiles = settings.tiles if settings.noise == "image" else 1

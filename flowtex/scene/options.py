@@ -69,10 +69,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
-    """Return a field with its explanation for users.
-
-    ``form`` is how its values are written in a shell or a link; ``None`` if they cannot be.
-    """
+    """Return a field with its explanation; ``form`` writes it in a shell or a link."""
     return field(default=default, metadata={"text": text, "form": form})
 
 

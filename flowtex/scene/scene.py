@@ -476,10 +476,7 @@ class Scene:
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:
-    """Return the appearance of a scene beside a first one.
-
-    Another scalar gets its own range, and a scalar that the field lacks becomes the speed.
-    """
+    """Return the appearance of a scene beside a first one, with a range of its own."""
     if "scalars" not in changes and first.scalar_name not in (None, SPEED, *field.scalars):
         changes = {**changes, "scalars": SPEED}
     if "scalars" in changes:

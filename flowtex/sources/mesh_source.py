@@ -252,10 +252,7 @@ class FlowSource(Source):
         return tuple(dict.fromkeys([*preferred, *names]))
 
     def _first(self, mesh: Any) -> Any:
-        """Return the mesh of the first step, or the first of several blocks.
-
-        Series and blocks stay in memory where they fit.
-        """
+        """Return the mesh of the first step or block; series that fit stay in memory."""
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
         if self._block is None and (blocks := _choices(first, series=series)):

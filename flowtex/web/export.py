@@ -382,10 +382,7 @@ def different(header: Header, first: Header) -> Header:
 
 
 def _policy(script: str, link: StoreLink | None) -> str:
-    """Return the policy: the script with its digest, inline styles, and nothing from outside.
-
-    With a store the page may connect to the store's server alone.
-    """
+    """Return the policy: one script by digest, inline styles, and at most a store's server."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "

@@ -235,10 +235,7 @@ class Feed:
         self._builds.do(complete)
 
     def _replace(self, scene: ClientData, order: int | None = None) -> None:
-        """Replace the current scene, unless ``order`` is no longer the latest.
-
-        Without ``order`` it is always shown: the flow may change faster than a scene is made.
-        """
+        """Replace the scene; with ``order`` only if that is still the latest."""
         parts = self._first_parts(scene)
         with self._lock:
             if order not in (None, self._order) or self._closed:

@@ -175,10 +175,7 @@ class Site:
 
 
 def _secret_and_token(body: bytes) -> tuple[str, str | None]:
-    """Return the secret and the token that a door sends.
-
-    Raises a ValueError when they are missing or not valid texts.
-    """
+    """Return the secret and token that a door sends; a ValueError without valid texts."""
     try:
         request = json.loads(body)
     except RecursionError:

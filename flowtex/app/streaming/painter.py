@@ -136,9 +136,6 @@ def _resized(pixels: Bytes, width: int, height: int) -> Bytes:
 
 
 def _cuts(length: int, side: int) -> list[int]:
-    """Return the ends of parts of about equal length, even numbers except the last.
-
-    Derivatives are taken in blocks of 2 x 2 pixels.
-    """
+    """Return the ends of about equal parts, even, as derivatives need 2 x 2 pixels."""
     count = math.ceil(length / side)
     return [2 * round(length * n / count / 2) for n in range(count)] + [length]

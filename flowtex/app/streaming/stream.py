@@ -152,10 +152,7 @@ class FrameStream:
 
     @contextmanager
     def _log_faults(self) -> Iterator[None]:
-        """Log the error of a picture, so that drawing continues.
-
-        Errors of the data are sent to the page.
-        """
+        """Log the error of a picture, and draw on; the page gets those of the data."""
         try:
             yield
         except Exception as error:

@@ -172,10 +172,7 @@ def _grid_lines(
 
 
 def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats | None) -> MapLines:
-    """Project lines, in short pieces cut where the map is torn, and keep those in a box.
-
-    ``joined`` is whether each point but the last is joined to the next one.
-    """
+    """Project lines, cut where the map is torn, in a box; ``joined`` marks joined points."""
     first, last, place = _pieces(lonlat, joined)
     torn, *sides = tears(projection, first, last)
     ends = first[torn], last[torn]

@@ -327,10 +327,7 @@ def _number_text(value: float, digits: int) -> str:
 
 
 def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
-    """Return three or more round values in a range, if possible, and their shares of it.
-
-    They are the ends of the range if fewer than two are in it.
-    """
+    """Return three or more round values in a range, or its ends, and their shares of it."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
     scaled = np.log10 if log_scale else np.asarray

@@ -382,10 +382,7 @@ class FlowImage(AxesImage):
         return self._picture, float(left), float(bottom), None
 
     def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
-        """Draw the rectangle between two corners, (2, 2), row 0 at the bottom.
-
-        It is opaque, except on axes without a background colour.
-        """
+        """Draw the rectangle between two corners, (2, 2), row 0 at the bottom, opaque."""
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)

@@ -101,10 +101,7 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
 def _prepare(
     flat: Floats, triangles: Indices, size: tuple[int, int]
 ) -> tuple[Indices, Floats, Floats, Indices]:
-    """Return the triangles that may be seen, their edges, determinants and first and last rows.
-
-    The edges are the rows of M^-1 times the determinant's absolute value, (M, 3, 3).
-    """
+    """Return visible triangles, edges |det| M^-1 (M, 3, 3), determinants and their rows."""
     rows, seen = _rows(flat, triangles, size)
     triangles, rows = triangles[seen], rows[seen]
     a, b, c = (flat[triangles[:, k]] for k in range(3))

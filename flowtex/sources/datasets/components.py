@@ -48,6 +48,10 @@ class Orientation(NamedTuple):
         return f"{DIRECTIONS[self.along]} ({self.why})"
 
 
+#: Directions before the names and the grid are known.
+EASTWARD = Orientation("earth", "")
+
+
 def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float]]:
     """Return the unit of a velocity, and the factors of its variables to it.
 

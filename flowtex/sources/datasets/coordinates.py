@@ -276,13 +276,7 @@ def _at_nodes(
 
 
 def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr.DataArray | None:
-    """Return a coordinate where the drawn values lie; ``None`` where it has other axes.
-
-    Raises
-    ------
-    FieldError
-        When the positions of a series move.
-    """
+    """Return a coordinate of what is drawn; ``None`` with other axes; an error if it moves."""
     for dim in [str(d) for d in c.dims if d not in dims]:
         kind = axis_kind(c, dim)
         axis = next((axis for axis in drawn.axes if dim == axis.dim or kind == axis.kind), None)

@@ -21,7 +21,13 @@ from flowtex.sources.datasets.axes import (
     coordinate_of,
     horizontal_dims,
 )
-from flowtex.sources.datasets.components import UNKNOWN, Orientation, component_units, orientation
+from flowtex.sources.datasets.components import (
+    EASTWARD,
+    UNKNOWN,
+    Orientation,
+    component_units,
+    orientation,
+)
 from flowtex.sources.datasets.coordinates import Places, ordered
 from flowtex.sources.datasets.masks import (
     Mask,
@@ -60,11 +66,11 @@ class Flow:
     grid: str  #: The kind of grid, as text.
     places: Places  #: Nodes in the middle of cells.
     values: Values
-    unit: str  #: Unit of the components; empty where unknown.
-    orientation: Orientation
     cells: tuple[str, ...]  #: Dimensions of the nodes.
     datasets: Datasets
     record: Record
+    unit: str = ""  #: Unit of the components; empty where unknown.
+    orientation: Orientation = EASTWARD
     ahead: tuple[int, int] = (1, 1)  #: Directions of rows and columns, 1 or -1.
     trimmed: tuple[slice, ...] = ()  #: Rows and columns that repeat no others.
     mesh: Mesh | None = None
@@ -214,8 +220,6 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
             rows=grid.rows,
             columns=grid.columns,
         ),
-        unit="",
-        orientation=Orientation("earth", ""),
         cells=(rows, columns),
         datasets=datasets,
         record=record,
@@ -245,8 +249,6 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
         grid=f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}",
         places=places,
         values=Values(bare, pair.kind, axes=1),
-        unit="",
-        orientation=Orientation("earth", ""),
         cells=(dim,),
         datasets=datasets,
         record=record,

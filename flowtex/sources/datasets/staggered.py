@@ -207,10 +207,7 @@ def _cell_places(
 def _by_positions(
     u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, record: Record
 ) -> Grid | None:
-    """Return the grid of components with positions of their own; ``None`` where these do not tell.
-
-    Components at the same places are brought into the order of the first one.
-    """
+    """Return the grid of components by their own positions; ``None`` if these do not tell."""
     dims = horizontal_dims(u), horizontal_dims(v)
     if at_u.is_line and at_v.is_line:
         return _by_lines(u, v, at_u, at_v, record)

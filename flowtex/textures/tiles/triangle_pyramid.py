@@ -241,10 +241,7 @@ def _most(values: Floats) -> float:
 
 
 def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
-    """Return lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
-
-    Cells of very different sizes may lie in one tile; their paths have the same length.
-    """
+    """Return lags (M,) up to the greatest length, and their one unit at nodes (1, N)."""
     unit = float(np.percentile(size[nodes], 5))
     count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
     lags = longest / unit * 2.0 ** np.arange(-count, 1)

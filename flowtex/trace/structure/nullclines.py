@@ -47,10 +47,7 @@ def _rate(formula: Formula, time: float, component: int, points: Floats) -> Floa
 
 
 def _vanishes(rate: Callable[[Floats], Floats], sides: Floats) -> Bools:
-    """Return whether a rate goes to zero between both ends of sides (S, 2, 3), and does not jump.
-
-    It has different signs at the ends, or is zero at the second one.
-    """
+    """Return whether a rate changes sign along sides (S, 2, 3), or ends at 0, without a jump."""
     ends = [sides[:, 0], sides[:, 1]]
     values = [rate(end) for end in ends]
     first = np.maximum(*np.abs(values))
@@ -65,10 +62,7 @@ def _vanishes(rate: Callable[[Floats], Floats], sides: Floats) -> Bools:
 
 
 def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the pieces in triangles (M, 3, 3) along which values (M, 3) are zero, (S, 2, 3).
-
-    Also returns the two sides of the triangle on which a piece ends, (S, 2, 2, 3).
-    """
+    """Return pieces (S, 2, 3) where values (M, 3) are zero, and their sides (S, 2, 2, 3)."""
     least = ROUNDING * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
     differs = np.abs(values) > least
     # A side along which the component is zero is a piece, perhaps a wall with one triangle.

@@ -242,10 +242,7 @@ class _Rays:
     def _returns(
         self, index: Floats, ray: Indices, *, forward: bool, lines: list[Floats] | None = None
     ) -> Floats:
-        """Return where lines from indices (N, 2) return to the rays after a turn, (N,), or NaN.
-
-        The points of a turn are appended to ``lines``.
-        """
+        """Return where lines from indices (N, 2) meet rays again; ``lines`` gets the points."""
         result = np.full(len(index), np.nan)
         going, side, begin = np.arange(len(index)), np.zeros(len(index)), index
         most = int(min(TURN_EXTENTS * self._field.surface.extent / self.spacing, MOST_POINTS))

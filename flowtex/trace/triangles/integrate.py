@@ -244,10 +244,7 @@ class _Run:
     def _limited(
         self, now: Derivatives, square: Floats, h: Floats, edge: Indices
     ) -> tuple[Floats, Floats]:
-        """Return lags (N,) after steps that are short enough, and these steps, (N,).
-
-        ``edge`` becomes -1 for steps that end before it.
-        """
+        """Return lags (N,) after short enough steps, and these; ``edge`` is -1 before it."""
         error = dot(now.metric, now.third, now.third)
         bend = turn = dot(now.metric, now.bend, now.bend)
         if now.bend is not now.second:
