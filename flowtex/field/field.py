@@ -29,7 +29,14 @@ from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
 from flowtex.field.metric import IndexVelocity
-from flowtex.field.steps import LazySteps, Steps, moves_later, scaled_steps, typical_steps
+from flowtex.field.steps import (
+    LazySteps,
+    Steps,
+    map_steps,
+    moves_later,
+    scaled_steps,
+    typical_steps,
+)
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
@@ -424,14 +431,22 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     @property
     def speed(self) -> Steps:
-        """Speed along the surface, (T, J, I), in :attr:`speed_unit`."""
-        return scaled_steps(self.index_velocity.speed, self.speed_scale)
+        """Speed along the surface, on flat maps that on the Earth, (T, J, I)."""
+        if not self._on_flat_map:
+            return scaled_steps(self.index_velocity.speed, self.speed_scale)
+        steps = map_steps(self.scalars["speed"], np.nan_to_num)
+        return steps if isinstance(self.velocity, LazySteps) else np.asarray(steps)
+
+    @property
+    def _on_flat_map(self) -> bool:
+        """Whether the speed is a scalar, as a flat map distorts that along the surface."""
+        flat = self.projection is not None and not self.projection.is_globe
+        return flat and "speed" in self.scalars and "speed" in self.units
 
     @property
     def speed_unit(self) -> str:
         """Unit of the velocity of the data; empty if unknown."""
-        flat = self.projection is not None and not self.projection.is_globe
-        if flat and "speed" in self.scalars and "speed" in self.units:
+        if self._on_flat_map:
             return self.units["speed"]
         return self.velocity_unit or speed_unit(self.length_unit, self.time_unit)
 

@@ -225,10 +225,7 @@ class FlowSurface:
         self._arrows.look(layers, pyramid, view, self._place)
 
     def _cull(self) -> None:
-        """Leave out the far side of a whole globe, which is hidden but would be shaded as well.
-
-        A user's own choice of the faces that are drawn stays.
-        """
+        """Leave out the hidden far side of a whole globe; a user's choice of faces stays."""
         prop, eye, surface = self._actor.prop, self.view.eye, self._base.textures.geometry.whole
         culling = "none"
         if (

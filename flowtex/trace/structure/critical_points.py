@@ -206,7 +206,8 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     """Find the critical points of one step on a structured surface."""
     u, valid = field.index_velocity.components[0], field.valid
     rows, columns = field.shape
-    rest = field.speed[0] <= REST_SHARE * field.speed[0].max(initial=0)
+    speed = field.index_velocity.speed[0]
+    rest = speed <= REST_SHARE * speed.max(initial=0)
     corners = [(slice(a, rows - 1 + a), slice(b, columns - 1 + b)) for a in (0, 1) for b in (0, 1)]
     usable = np.logical_and.reduce([valid[c] for c in corners])
     # A single node at rest may be a critical point; several are a wall or a region at rest.
@@ -404,7 +405,7 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     ``nodes`` are nodes beside the points, counted row by row, and ``signs`` their Poincare indices.
     Where several have one partner, the steepest remain.
     """
-    speed, valid = field.speed[0].ravel(), field.valid.ravel()
+    speed, valid = field.index_velocity.speed[0].ravel(), field.valid.ravel()
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
     if len(nodes) < 2:
         return result

@@ -242,10 +242,7 @@ def _lines(
 def _followed(
     field: FlowField, points: CriticalPoints, begin: Floats, lags: Floats, *, forward: bool
 ) -> tuple[Floats, Floats]:
-    """Follow paths from positions (N, 2); return positions (M, N, 2), and how far they lead, (N,).
-
-    Once away from their saddles they end beside critical points, where steps become ever shorter.
-    """
+    """Follow paths from (N, 2); return positions (M, N, 2), and how far they lead, (N,)."""
     follow = partial(paths, field, parameter="arclength", forward=forward)
     first = follow(begin, lags[:FIRST_POINTS])
     positions, reach = np.repeat(first.positions[-1:], len(lags), axis=0), first.reach.copy()

@@ -417,10 +417,7 @@ def _speeds(now: Derivatives, h: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _fraction(mean: Floats, begin: Floats, middle: Floats, end: Floats) -> Floats:
-    """Return the fraction of a step, 0 to 1, in which the length is ``mean`` times its time.
-
-    The speed is a quadratic through three values, (N,) each.
-    """
+    """Return the fraction of a step, 0 to 1, where its length is ``mean`` times its time."""
     one, two = 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle
     fraction = 6 * mean / _sum_of_speeds(begin, middle, end)
     for _ in range(NEWTON_ROUNDS):

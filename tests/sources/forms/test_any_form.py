@@ -258,7 +258,7 @@ def in_files(parts: list[xr.Dataset], form: Form) -> list[xr.Dataset]:
     """Return one dataset, one for each component, or some for each component and time."""
     one, other = parts
     same = all(one[d].equals(other[d]) and one[d].dtype == other[d].dtype for d in DIMS)
-    found = [one.merge(other)] if form.together and same else parts
+    found = [one.merge(other, join="outer")] if form.together and same else parts
     if 0 < form.cut < form.count[0]:
         halves = slice(form.cut), slice(form.cut, None)
         found = [ds.isel(time=half) for ds in found for half in halves]
