@@ -334,10 +334,7 @@ def _earth_locator(field: Any) -> Locator:
 def _in_parallelogram(
     field: Any, first: int, at: tuple[float, float], tolerance: float
 ) -> tuple[float, float] | None:
-    """Return (j, i) of a place in the cell that begins at a node, or in one beside it.
-
-    Raises numpy's LinAlgError where cells are no parallelograms in longitude and latitude.
-    """
+    """Return (j, i) of a place in a cell from a node on; LinAlgError if no parallelogram."""
     surface, counts = field.surface, np.array(field.shape) - 1
     cell = np.array(divmod(first, field.shape[1]))
     for _ in range(MOST_CELLS):

@@ -206,10 +206,7 @@ class _MP4:
 
 
 class _Pillow:
-    """Keeps pictures on the disk until Pillow writes them as a GIF or a WebP.
-
-    The pictures of a GIF share one palette, without dithering, so that nothing flickers.
-    """
+    """Keeps pictures on the disk until Pillow writes them, those of a GIF by one palette."""
 
     def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
         self._file, self._size, self._fps, self._quality = new.file, size, fps, quality

@@ -135,10 +135,7 @@ def _packed(lines: MapLines, shares: Floats) -> AnyArray:
 
 @lru_cache(maxsize=8)
 def _lonlat(projection: Projection, box: bytes) -> Floats32:
-    """Return the directions of places of a map from the Earth's centre, unit vectors (M, N, 3).
-
-    The places are spread evenly over the box. Beside the map the places around it are continued.
-    """
+    """Return unit vectors (M, N, 3) to places spread over a map's box, continued beside it."""
     low, high = np.frombuffer(box).reshape(2, 3)[:, :2]
     spacing = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
     counts = np.maximum(np.rint((high - low) / spacing).astype(int) + 1, FEWEST_PLACES)

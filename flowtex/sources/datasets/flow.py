@@ -34,12 +34,16 @@ from flowtex.sources.datasets.masks import (
     find_masks,
     is_constant,
     moves_over_land,
-    valid_range,
 )
 from flowtex.sources.datasets.select import POLAR, Pair, choose_pair
 from flowtex.sources.datasets.staggered import Grid, find_grid, unrepeated
-from flowtex.sources.datasets.values import Component, Values, read_step
-from flowtex.sources.fill import undeclared_fill
+from flowtex.sources.datasets.values import (
+    Component,
+    Values,
+    checked_component,
+    examined,
+    read_step,
+)
 from flowtex.sources.models.conventions import find_mesh
 from flowtex.sources.models.mesh import POINTS, Mesh
 from flowtex.sources.models.scattered import join_faces
@@ -53,8 +57,6 @@ if TYPE_CHECKING:
 NOTABLE_TURN = 0.02
 #: Share of nodes at rest from which on those of a staggered grid count as land.
 LAND_SHARE = 0.01
-#: Values of a step that are examined, and lines of each of the nine parts of larger ones.
-MOST_EXAMINED, PART_LINES = 4_000_000, 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,30 +261,11 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     """Return a velocity with what is no data: valid ranges, fill values and masks."""
     record, axes = flow.record, flow.values.axes
-    parts: list[Component] = []
-    for array, factor in zip((flow.pair.u, flow.pair.v), factors, strict=True):
-        valid = valid_range(array)
-        part = Component(array.variable, factor, valid)
-        sample = [read_step(part.variable, 0, at, axes=axes) for at in _examined(array, axes)]
-        flat = np.concatenate([values.ravel() for values in sample])
-        if unknown := np.isnan(flat).mean():
-            record("mask", f"{unknown:.0%} of {array.name} is missing")
-        if valid is not None:
-            outside = (flat < valid[0]) | (flat > valid[1])
-            if outside.any():
-                ends = f"{valid[0]:.6g} to {valid[1]:.6g}"
-                record("mask", f"{outside.mean():.0%} of {array.name} masked: outside {ends}")
-            flat = flat[~outside]
-        fill = None if wanted is False else undeclared_fill(flat)
-        if fill is not None:
-            record(
-                "mask",
-                f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from "
-                f"all other values, is taken as missing; mask=False draws it",
-                notable=True,
-            )
-        parts.append(replace(part, fill=fill))
-    flow = replace(flow, values=replace(flow.values, components=(parts[0], parts[1])))
+    one, two = (
+        checked_component(array, factor, axes, wanted, record)
+        for array, factor in zip((flow.pair.u, flow.pair.v), factors, strict=True)
+    )
+    flow = replace(flow, values=replace(flow.values, components=(one, two)))
     masks = []
     for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
         part_of = flow.beside(mask.array)
@@ -304,7 +287,7 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
     """Return whether a mask marks missing data, and record it."""
     axes, variable = flow.values.axes, part.variable
     marks, land = [], []
-    for at in _examined(part, axes):
+    for at in examined(part, axes):
         bad = ~mask.is_data(read_step(variable, 0, at, axes=axes))
         marks.append(bad.ravel())
         if mask.is_land and not flow.staggered:
@@ -323,18 +306,6 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
         text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
         flow.record("mask", text, notable=mask.is_flag)
     return True
-
-
-def _examined(array: xr.DataArray, axes: int) -> list[Any]:
-    """Return rows and columns of a step to examine: all, or nine parts of a large one."""
-    shape = array.shape[-axes:]
-    if axes == 1 or np.prod(shape, dtype=float) <= MOST_EXAMINED:
-        return [None]
-    lines = [
-        [np.arange(n)[max(first, 0) :][:PART_LINES] for first in (0, n // 2, n - PART_LINES)]
-        for n in shape
-    ]
-    return [(rows, columns) for rows in lines[0] for columns in lines[1]]
 
 
 def _without_land(flow: Flow) -> Flow:

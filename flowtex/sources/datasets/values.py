@@ -5,24 +5,28 @@ All choices are made before, so that any process reads any step and region by it
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
-from flowtex.sources.datasets.masks import Mask
+from flowtex.sources.datasets.masks import Mask, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
+from flowtex.sources.fill import undeclared_fill
 from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: Numbers of rows and columns; ``None`` for all.
 Lines: TypeAlias = tuple[Indices, Indices] | None
+#: Values of a step that are examined, and lines of each of the nine parts of larger ones.
+MOST_EXAMINED, PART_LINES = 4_000_000, 200
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
 
@@ -70,6 +74,44 @@ class Component:
             if self.valid is not None:
                 values[(values < self.valid[0]) | (values > self.valid[1])] = np.nan
         return values * self.factor
+
+
+def checked_component(
+    array: xr.DataArray, factor: float, axes: int, wanted: Any, record: Record
+) -> Component:
+    """Return a component without values that are no data, as its first step and attributes tell."""
+    part = Component(array.variable, factor, valid_range(array))
+    sample = [read_step(part.variable, 0, at, axes=axes) for at in examined(array, axes)]
+    flat = np.concatenate([values.ravel() for values in sample])
+    if unknown := np.isnan(flat).mean():
+        record("mask", f"{unknown:.0%} of {array.name} is missing")
+    if part.valid is not None:
+        outside = (flat < part.valid[0]) | (flat > part.valid[1])
+        if outside.any():
+            ends = f"{part.valid[0]:.6g} to {part.valid[1]:.6g}"
+            record("mask", f"{outside.mean():.0%} of {array.name} masked: outside {ends}")
+        flat = flat[~outside]
+    fill = None if wanted is False else undeclared_fill(flat)
+    if fill is not None:
+        record(
+            "mask",
+            f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from all "
+            "other values, is taken as missing; mask=False draws it",
+            notable=True,
+        )
+    return replace(part, fill=fill)
+
+
+def examined(array: xr.DataArray, axes: int) -> list[Any]:
+    """Return rows and columns of a step to examine: all, or nine parts of a large one."""
+    shape = array.shape[-axes:]
+    if axes == 1 or np.prod(shape, dtype=float) <= MOST_EXAMINED:
+        return [None]
+    lines = [
+        [np.arange(n)[max(first, 0) :][:PART_LINES] for first in (0, n // 2, n - PART_LINES)]
+        for n in shape
+    ]
+    return [(rows, columns) for rows in lines[0] for columns in lines[1]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ from flowtex.sources.datasets.axes import (
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import variable, velocity_unit
-from flowtex.sources.datasets.values import numbers_in, read_step
+from flowtex.sources.datasets.values import checked_component, numbers_in
 from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
@@ -90,20 +90,22 @@ def read_section(
     first, second = align(flat[0], flat[1], choice, record)
     drawn = choose(first, choice, record)
     parts = drawn.of(first), drawn.of(second)
-    record.notify()
     unit = velocity_unit(one)
     metres = (units.factor(unit, "m/s") if unit else None) or 1.0
     x, x_factor, x_text = _horizontal(across, parts[0])
     y, y_factor, y_text = _vertical(up, two)
     count = drawn.steps
 
+    read = [checked_component(part, 1.0, 2, None, record) for part in parts]
+
     def component(number: int) -> Callable[[int], Floats]:
-        return lambda step: read_step(parts[number].variable, step)
+        return lambda step: read[number].read(step, None, axes=2)
 
     def velocity(step: int) -> Floats:
         a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
         return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
+    record.notify()
     velocities = LazySteps(count, velocity)
     scalars = {
         # The axes have different units, so a speed along both has none.

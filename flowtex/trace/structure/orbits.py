@@ -139,10 +139,7 @@ def _is_spiral(eigenvalue: complex) -> bool:
 
 
 class _Rays:
-    """Rays from critical points, and where lines return to them.
-
-    Starts on rays are (N,) each: the distance from the middle, and the number of the ray.
-    """
+    """Rays from critical points; starts on them are distances and numbers of rays, (N,)."""
 
     def __init__(self, field: FlowField, points: CriticalPoints, around: CriticalPoints) -> None:
         self._field, surface = field, field.surface

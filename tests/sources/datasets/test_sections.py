@@ -129,3 +129,11 @@ def test_axes_have_the_top_above_and_names(opengl: Any) -> None:
     assert frame is not None and isinstance(scales.field(series, frame).velocity, LazySteps)
     with pytest.warns(DatasetNotice, match=r"vertical section, .* draw it with flowtex\.axes"):
         flowtex.render(ds, u="v", v="w", size=(30, 20), samples=3)
+
+
+def test_fill_values_of_a_section_are_blank() -> None:
+    ds = section(OMEGA, HPA)
+    ds["w"] = ds["w"].where(ds["lat"] < 30.0, -999.0).assign_attrs(OMEGA)
+    with pytest.warns(DatasetNotice, match="31% of w masked: -999"):
+        field = FlowField.from_xarray(ds, "v", "w")
+    np.testing.assert_array_equal(field.valid, np.broadcast_to(LAT < 30.0, field.shape))
