@@ -138,7 +138,7 @@ def find_grid(
             _own_places(array, pair, source, drawn)
             for array, pair, source in zip((u, v), dims, own, strict=True)
         ]
-        # Axes of other names in one dataset are told apart by positions on the Earth alone.
+        # In one dataset, only positions on the Earth distinguish axes of other names.
         known = [p for p in at if p is not None and (p.is_earth or apart)]
         if len(known) == 2 and known[0].is_earth == known[1].is_earth:
             grid = _by_positions(u, v, known[0], known[1], record)
