@@ -98,8 +98,8 @@ def common(
     if not len(found.one):
         msg = (
             f"{u.name} and {v.name} have no {dim} in common: {u.name} has {labels.text(one)}, and "
-            f"{v.name} {labels.text(other)}. Give both at the same {dim}, as with "
-            f"ds.interp({dim}=...)"
+            f"{v.name} {labels.text(other)}. Give both at the same {dim}, as "
+            "xarray's interp does"
         )
         raise FieldError(msg)
     for array, line in ((u, one), (v, other)):
