@@ -10,6 +10,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
+from flowtex.field.steps import typical_steps
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
@@ -299,7 +300,9 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
     if is_wind and not (land and is_constant(np.concatenate(land))):
         flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
         return False
-    if share == 1.0 and wanted is None and part.ndim == axes:  # not only in the first step
+    steps = typical_steps(part.shape[0] if part.ndim > axes else 1)
+    read = (read_step(variable, step, axes=axes) for step in steps)
+    if share == 1.0 and wanted is None and not any(mask.is_data(step).any() for step in read):
         flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used")
         return False
     if share:

@@ -36,7 +36,7 @@ LAND_WORDS = re.compile(r"land|continent|dry", re.I)
 SEA_WORDS = re.compile(r"sea|ocean|water|wet", re.I)
 BAD_WORDS = re.compile(r"bad|fail|missing|invalid|reject|error|interference|no_data", re.I)
 #: Names of air that moves over land as well.
-OVER_LAND = re.compile(r"wind|air|atmos|^[uv]a?s?$|^[uv]_?10|10_?m|^[uv]a$|^[uv]100", re.I)
+OVER_LAND = re.compile(r"wind|air|atmos|^[uv]a?s?$|^[uv]_?10|10_?m|^uu$|^[uv]100", re.I)
 #: Share of the values on land that are the same, from which on these are no data.
 SAME_ON_LAND = 0.95
 

@@ -179,10 +179,7 @@ def _at_true_cells(
     datasets: Sequence[xr.Dataset],
     drawn: Drawn,
 ) -> Grid:
-    """Return a staggered grid at the positions of its cells, if these are known in two dimensions.
-
-    The lines of a model's axes may be nominal, as those of MOM6 beside the poles of its grid.
-    """
+    """Return a grid at the 2-D positions of its cells, if known; lines may be nominal (MOM6)."""
     if grid.rows is None or grid.columns is None or {*dims[0]} & {*dims[1]}:
         return grid
     try:

@@ -107,3 +107,15 @@ def test_an_orthographic_map_is_half_of_the_earth() -> None:
     ds = winds(np.arange(-180.0, 180.0, 4.0), np.arange(-88.0, 88.1, 4.0))
     field = FlowField.from_xarray(ds, projection="+proj=ortho +lat_0=30")
     assert 0.35 < field.valid.mean() < 0.65
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+def test_mask_that_hides_everything_is_not_used(steps: int) -> None:
+    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
+    for name, way in (("u", "eastward"), ("v", "northward")):
+        ds[name].attrs["standard_name"] = f"{way}_sea_water_velocity"
+    times = np.datetime64("2024-01-01", "ns") + np.arange(steps) * np.timedelta64(1, "h")
+    series = xr.concat([ds] * steps, "time").assign_coords(time=times)
+    land = (("time", "lat", "lon"), np.ones((steps, 20, 30)))
+    field = FlowField.from_xarray(series.assign(LANDMASK=land))
+    assert field.valid.all() and "LANDMASK is not used" in str(field.reading)
