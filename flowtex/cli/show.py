@@ -159,11 +159,7 @@ def _show_page(
 
 
 def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
-    """Return a library of data of the Earth, whose map and level the page can change.
-
-    Map and level are moved to the choice of the page. The result is ``None`` for other data, and if
-    the flags choose more than the page can.
-    """
+    """Return a library of data of the Earth, or ``None`` where the page cannot have one."""
     from flowtex.app import Library
     from flowtex.field.earth import GLOBE, NAMES
     from flowtex.sources.opening.dataset_files import dataset_paths

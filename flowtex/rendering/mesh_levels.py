@@ -198,11 +198,7 @@ class MeshLevels:
     def _size(
         self, error: Floats, directions: Floats | None, *, border: int | None = None
     ) -> Floats:
-        """Return the weighted sizes of errors (J, I, C) and of the outline, (2, J, I).
-
-        Those along the surface have less weight. ``border`` is the axis whose first and last nodes
-        are on the outline. Without directions the outline is not separate, (1, J, I).
-        """
+        """Return the weighted sizes of errors (J, I, C) and of the outline, (2 or 1, J, I)."""
         size = norm(error)
         if directions is None or not size.size:
             return size[None]

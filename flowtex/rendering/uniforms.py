@@ -292,11 +292,7 @@ def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: 
 
 
 def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
-    """Return the sides of the paths, and the kernel.
-
-    A sign-free field has no forward: it has both sides, and no kernel that falls towards one.
-    Streaklets have the kernel that makes a head and a tail.
-    """
+    """Return the sides of the paths, and a kernel: symmetric where the field has no sign."""
     if is_sparse(textures, settings):
         return textures.sides, "hann" if textures.geometry.field.sign_free else "ramp"
     if textures.geometry.field.sign_free:

@@ -210,11 +210,7 @@ def _by_length(components: Floats, field: FlowField) -> Floats:
 
 
 def _deviations(noise: Floats32) -> list[float]:
-    """Return the deviation of a noise (H, W) as it is looked up at level n / 2, n = 0, 1, ...
-
-    Between the texels of a level and between two levels the look-up is linear, and the noise
-    goes around. Levels too coarse to be judged lose half from one to the next, as white noise.
-    """
+    """Return the deviation of a noise (H, W) as it is looked up at level n / 2, n = 0, 1, ..."""
     points = np.random.default_rng(0).random((2, DEVIATION_POINTS))
     level = noise.astype(np.float64)
     values, result = _bilinear(level, points), []

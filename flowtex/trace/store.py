@@ -33,7 +33,7 @@ HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 72, 8
 STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
 #: Most nodes where it changes by more, as a share, for pathlines.
 MOST_CHANGING = 0.05
-#: Most nodes along each axis, and pairs of steps, by which a field is judged.
+#: Most nodes along each axis, and pairs of steps, that are sampled.
 MOST_JUDGED = 100
 
 
@@ -195,8 +195,8 @@ def chosen_lines(field: FlowField, lines: str = "auto") -> str:
 def changing_share(field: FlowField) -> float:
     """Return the share of nodes and times where the flow changes by half within a streak, 0 to 1.
 
-    A streak lasts until a particle has moved by a twentieth of the surface. Of a large field some
-    of the lines of nodes, and of the steps, are judged.
+    A streak lasts until a particle has moved by a twentieth of the surface. Large fields are
+    sampled at some rows, columns and steps.
     """
     if field.steady:
         return 0.0
@@ -217,7 +217,7 @@ def changing_share(field: FlowField) -> float:
 
 
 def judged_lines(shape: tuple[int, int]) -> tuple[Indices, Indices]:
-    """Return the rows and columns of a field with nodes (J, I) by which it is judged."""
+    """Return the rows and columns at which a field with nodes (J, I) is sampled."""
     rows, columns = shape
     # Nodes of triangles are one row.
     return _sample(rows, MOST_JUDGED), _sample(columns, MOST_JUDGED if rows > 1 else MOST_JUDGED**2)

@@ -92,8 +92,12 @@ def read_datasets(
     sel, record = {**(sel or {}), **selection}, Record()
     datasets = as_datasets(data, record)
     with record.explain():
-        if is_section(datasets, u, v):
-            return read_section(datasets, u, v, name=name, sel=sel, isel=isel or {})
+        if u is not None and v is not None and is_section(datasets, v):
+            chosen: dict[str, Any] = {"name": name, "sel": sel, "isel": isel or {}}
+            section = read_section(datasets, u, v, record, datasets.close, **chosen)
+            record.notify()
+            datasets.close()
+            return section
         options: dict[str, Any] = {"mask": mask, "components": components}
         options |= {"sel": sel, "isel": isel}
         spread: Callable[[int], Floats] | None = None
@@ -147,15 +151,12 @@ def _whole(
 
     extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
     flat = nodes.projection is not None and not nodes.projection.is_globe
-    factor = 1.0
-    if nodes.projection is not None:
-        factor = 1.0 if not flow.unit else units.factor(flow.unit, "m/s") or np.nan
     if flat:
         extra["speed"] = later(lambda step: np.hypot(*map(nodes.at, read(step))))
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
     elif flow.unit:
         arguments["velocity_unit"] = units.symbol(flow.unit)
-    scale = factor if flat else 1.0
+    scale = (units.factor(flow.unit, "m/s") or 1.0) if flat and flow.unit else 1.0
 
     def vectors(step: int) -> Floats:
         return nodes.vectors(*map(nodes.at, read(step))) * scale

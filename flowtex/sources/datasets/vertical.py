@@ -19,7 +19,7 @@ from flowtex.field import units
 from flowtex.field.arrays import GridArrays, SectionAxes
 from flowtex.field.earth import DEGREE
 from flowtex.field.steps import LazySteps
-from flowtex.sources.datasets.align import align
+from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.axes import (
     LEVEL,
     SECTION,
@@ -28,6 +28,7 @@ from flowtex.sources.datasets.axes import (
     axis_kind,
     choose,
     is_pressure,
+    line_of,
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import variable, velocity_unit
@@ -48,12 +49,12 @@ def is_vertical(array: xr.DataArray) -> bool:
     return bool(WORDS.search(words) or (not words and NAMES.match(str(array.name))))
 
 
-def is_section(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> bool:
+def is_section(datasets: Sequence[xr.Dataset], v: str) -> bool:
     """Return whether the components that are named lie in a vertical section.
 
     Axes of one kind without units, as in a laboratory, are those of a plane.
     """
-    if u is None or v is None or not is_vertical(array := variable(datasets, v)):
+    if not is_vertical(array := variable(datasets, v)):
         return False
     named = [c for c in array.coords.values() if c.dims and c.attrs.get("units")]
     return bool(named) or "standard_name" in array.attrs
@@ -61,15 +62,16 @@ def is_section(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> 
 
 def read_section(
     datasets: Sequence[xr.Dataset],
-    u: str | None,
-    v: str | None,
+    u: str,
+    v: str,
+    record: Record,
+    close: Callable[[], None],
     *,
     name: str,
     sel: Mapping[str, Any],
     isel: Mapping[str, Any],
 ) -> GridArrays:
     """Read a vertical section, from the names of a component along it and a vertical one."""
-    u, v, record = str(u), str(v), Record()
     one, two = variable(datasets, u), variable(datasets, v)
     if set(one.dims) != set(two.dims):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
@@ -79,6 +81,11 @@ def read_section(
         )
         raise FieldError(msg)
     level, along = _axes(one, {*sel, *isel})
+    for dim in (level, along):
+        lines = line_of(one, dim), line_of(two, dim)
+        if lines[0] is not None and lines[1] is not None:
+            found = common(one, two, dim, lines[0], lines[1], record)
+            one, two = one.isel({dim: found.one}), two.isel({dim: found.other})
     across, up = _coordinate(one, along), _coordinate(one, level)
     choice = Choice(dict(sel), dict(isel))
     flat = [
@@ -99,13 +106,17 @@ def read_section(
     read = [checked_component(part, 1.0, 2, None, record) for part in parts]
 
     def component(number: int) -> Callable[[int], Floats]:
-        return lambda step: read[number].read(step, None, axes=2)
+        def values(step: int) -> Floats:
+            result = read[number].read(step, None, axes=2)
+            close()
+            return result
+
+        return values
 
     def velocity(step: int) -> Floats:
         a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
         return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
-    record.notify()
     velocities = LazySteps(count, velocity)
     scalars = {
         # The axes have different units, so a speed along both has none.

@@ -97,18 +97,26 @@ def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
         try:
             return [joined(group, record)]
         except FieldError:  # such as domains of different sizes
-            return group
+            return _apart(group, record)
     xarray = import_extra("xarray", "xarray")
     lines = [{d: ds.indexes[d] for d in ds.dims if d in ds.indexes} for ds in group]
     axes = [d for d in lines[0] if any(not lines[0][d].equals(o.get(d, [])) for o in lines[1:])]
     if not axes or any(lines[0].keys() != other.keys() for other in lines[1:]):
-        return group
+        return _apart(group, record)
     try:
         whole = xarray.combine_by_coords(_chunked([ds.sortby(axes) for ds in group]))
     except (ValueError, KeyError):  # such as regions that overlap
-        return group
+        return _apart(group, record)
     record("select", f"{len(group)} regions joined along {' and '.join(map(str, axes))}")
     return [whole]
+
+
+def _apart(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
+    """Return datasets that cannot be joined, of whose velocities the first is drawn."""
+    if find_pairs(group[:1]):
+        text = f"{len(group)} datasets of one velocity cannot be joined; the first one is drawn"
+        record("select", text, notable=True)
+    return group
 
 
 def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:

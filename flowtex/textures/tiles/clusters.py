@@ -117,10 +117,7 @@ class Clusters:
         return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
 
     def _compact(self, cluster: Indices) -> Indices:
-        """Return clusters (n,) in which each node belongs to the nearest one beside it.
-
-        Separate parts in one bin then join their neighbours, and hardly any triangle is inverted.
-        """
+        """Return clusters (n,) in which each node belongs to the nearest one beside it."""
         points, count = self.field.points[0], int(cluster.max()) + 1
         center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
         normal = _sums(self.normals, cluster, count)
@@ -221,10 +218,7 @@ def _once(corners: Indices) -> Indices:
 
 
 def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
-    """Move nodes of inverted triangles to the middle of their neighbours.
-
-    Triangles that remain inverted, as at a border, are left out: others cover their area.
-    """
+    """Move nodes of inverted triangles to the middle of their neighbours; leave out the rest."""
     turned = _turned(points, triangles, normals)
     for _ in range(UNTANGLING):
         moved = np.zeros(len(points), dtype=bool)

@@ -213,10 +213,7 @@ class _Rays:
     def _put(
         self, places: Floats, number: Indices, ray: Indices | None = None
     ) -> tuple[Floats, Indices, Floats]:
-        """Return the places (N,) that are on the surface, their numbers, and indices (N, 2).
-
-        The number is that of the ray, or of an entry of ``ray``.
-        """
+        """Return places (N,) on the surface, numbers of rays or of ``ray``, and indices (N, 2)."""
         rays = number if ray is None else ray[number]
         if not len(places):
             return places, number, np.empty((0, 2))

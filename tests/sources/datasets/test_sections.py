@@ -137,3 +137,14 @@ def test_fill_values_of_a_section_are_blank() -> None:
     with pytest.warns(DatasetNotice, match="31% of w masked: -999"):
         field = FlowField.from_xarray(ds, "v", "w")
     np.testing.assert_array_equal(field.valid, np.broadcast_to(LAT < 30.0, field.shape))
+
+
+def test_components_of_a_section_are_paired_by_labels() -> None:
+    ds = section(OMEGA, HPA)
+    ds["w"] = (ds["w"] + ds["lat"] + ds["level"]).assign_attrs(OMEGA)
+    turned = ds[["w"]].isel(level=slice(None, None, -1), lat=slice(None, None, -1))
+    field = FlowField.from_xarray([ds[["v"]], turned], "v", "w")
+    np.testing.assert_array_equal(field.scalars["w"][0], ds["w"].values)
+    assert "w: lat reversed to match v" in str(field.reading)
+    with pytest.raises(FieldError, match="v and w have no level in common"):
+        FlowField.from_xarray([ds[["v"]], turned.assign_coords(level=LEVELS + 10)], "v", "w")
