@@ -73,7 +73,6 @@ export function uniforms(
     u_bySpeed: settings.arrow_length === "speed",
     u_arrowSides: slices.sides,
     u_pieces: constants.arrows.pieces,
-    u_whole: false, // as the view may come nearer at any time
     ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
   };
 }

@@ -190,7 +190,6 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_bySpeed": settings.arrow_length == "speed",
         "u_arrowSides": textures.sides,
         "u_pieces": ARROW_PIECES,
-        "u_whole": view.still,
     }
     if textures.paper is not None:
         values |= _paper(textures.paper, settings, view.density)

@@ -684,17 +684,17 @@ header,settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:
 kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
 show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,
 u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length===
-"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,u_whole:!1,...header.paper&&noiseShape?paperUniforms(
-header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="o\
-ff"&&!isSignFree(header);return!header.paper&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){
-return!header.paper&&settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>
-0&&!isSignFree(header)&&!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(
-Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,
-gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(
-view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(
-s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={
-FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.
-entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
+"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&!isSignFree(
+header);return!header.paper&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.paper&&
+settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(header)&&
+!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),constants.
+arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(
+...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.
+eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(s.samples/
+2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={FLOWTEX_CELLS:isClose,
+FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(chosen).flatMap(
+([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
 (view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
 geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,

@@ -289,19 +289,19 @@ lags.length,u_sides:o.two_sided||c||m?s.sides:1,u_unit:s.unit,u_rateLayer:s.coun
 2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
 contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...yi(a,o,
 t),...vi(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:vr(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
-d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,u_whole:!1,...a.paper&&r?xi(a.paper,o,r,t.density):{}}}function at(a,e,t=!1){
-let r=e.motion!=="off"&&!fe(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function Cn(a,e){return!a.paper&&e.texture==="s\
-treaklets"}function Le(a,e){return Number(e.arrows)>0&&!fe(a)&&!a.paper}function vr({constants:a},{arrows:e}){return a.arrows.
-least*Math.max(Number(e),a.arrows.mostDense)}function it(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(
-...S(t.eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...S(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.
-density:r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function Un(a,e,t,r){let n={
-FLOWTEX_CELLS:t,FLOWTEX_MOVING:at(a,e,r),FLOWTEX_SPARSE:Cn(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}var Fn=(a,e)=>a-
-e*Math.floor(a/e);function yi(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=n.steps>1,o=!i&&e.speed_in==="pixels",c=i?
-Fn((t.time-n.times[0])/(r.extent/n.pace),s.mostTurns):Fn(t.clock/e.period,1),l=i?r.extent:e.speed*e.period,h=Math.floor(
-c/s.clockStep)*s.clockStep;return{u_clock:[h,c-h],u_travel:l*(o?t.density:1),u_travelInPixels:o,u_travelBySpeed:i||e.motion===
-"speed",u_wave:s.wavePixels*t.density}}function vi(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.
-geometry,o=F(s,S(e.focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(
-p=>Math.floor(p/l)*l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.
+d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?xi(a.paper,o,r,t.density):{}}}function at(a,e,t=!1){let r=e.
+motion!=="off"&&!fe(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function Cn(a,e){return!a.paper&&e.texture==="streaklet\
+s"}function Le(a,e){return Number(e.arrows)>0&&!fe(a)&&!a.paper}function vr({constants:a},{arrows:e}){return a.arrows.least*
+Math.max(Number(e),a.arrows.mostDense)}function it(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...S(t.
+eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...S(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:
+r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function Un(a,e,t,r){let n={FLOWTEX_CELLS:t,
+FLOWTEX_MOVING:at(a,e,r),FLOWTEX_SPARSE:Cn(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}var Fn=(a,e)=>a-e*Math.
+floor(a/e);function yi(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=n.steps>1,o=!i&&e.speed_in==="pixels",c=i?Fn((t.time-
+n.times[0])/(r.extent/n.pace),s.mostTurns):Fn(t.clock/e.period,1),l=i?r.extent:e.speed*e.period,h=Math.floor(c/s.clockStep)*
+s.clockStep;return{u_clock:[h,c-h],u_travel:l*(o?t.density:1),u_travelInPixels:o,u_travelBySpeed:i||e.motion==="speed",u_wave:s.
+wavePixels*t.density}}function vi(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,
+o=F(s,S(e.focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math.
+floor(p/l)*l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.
 map((p,f)=>p-m[f])}}function xi(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),
 u_noiseGrain:a.grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[
 Number(a.repeat[1]),Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function xr(a,e){if(a.length<2)return[0,0,

@@ -14,14 +14,12 @@ uniform float u_apart;       // pixels from a seed to the next, at least
 uniform bool u_bySpeed;      // longer where the flow is faster
 uniform int u_arrowSides;    // those of the slices
 uniform int u_pieces;        // of a whole arrow
-uniform bool u_whole;        // no arrow fades in: it is drawn or not
 
 struct FlowtexStroke
 {
   vec4 position; // in clip space
   vec2 place;    // pixels from the tail along the path, and across it
   float size;    // pixels from the tail to the tip
-  float share;   // of the opacity
 };
 
 vec3 flowtexTrail[3]; // the last points, the newest at the end
@@ -78,38 +76,35 @@ vec2 flowtexPixels(vec4 point, vec4 way)
 // A vertex of the arrow of a seed: at the end of a piece, 0 being the tail, on one side, -1 or 1.
 FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordinate, float radius, int piece, float side)
 {
-  FlowtexStroke stroke = FlowtexStroke(vec4(2.0, 2.0, 2.0, 1.0), vec2(0.0), 0.0, 0.0); // outside
+  FlowtexStroke stroke = FlowtexStroke(vec4(2.0, 2.0, 2.0, 1.0), vec2(0.0), 0.0); // outside
   vec4 base = flowtexLayer(coordinate, 0, 0.0);
   float speed = length(base.xyz);
   vec4 seed = matrix * vec4(position, 1.0);
   if (speed < FLOWTEX_LEAST_SPEED || seed.w <= 0.0)
     return stroke;
   vec3 tangent = base.xyz / speed;
-  vec2 along = flowtexPixels(seed, matrix * vec4(tangent, 0.0));
-  vec2 aside = flowtexPixels(seed, matrix * vec4(cross(normal, tangent), 0.0));
-  float area = along.x * aside.y - along.y * aside.x;
-  vec2 pixels = flowtexFootprint(dot(along, along), dot(aside, aside), area); // in a length
-  float apart = radius * mix(pixels.x, pixels.y, FLOWTEX_ARROW_FORESHORTENED) / u_apart;
-  stroke.share = smoothstep(1.0, FLOWTEX_ARROW_GROWN, apart)
-    * smoothstep(FLOWTEX_ARROW_EDGE, 2.0 * FLOWTEX_ARROW_EDGE, pixels.y / pixels.x);
-  if (u_whole)
-    stroke.share = step(0.5, stroke.share);
-#ifdef FLOWTEX_UNCERTAIN
-  stroke.share *= flowtexKnown(coordinate, 0.0);
-#endif
-  if (stroke.share <= 0.0)
+  // In a radius: in a length they may be too few or too many for single precision.
+  vec2 along = radius * flowtexPixels(seed, matrix * vec4(tangent, 0.0));
+  vec2 aside = radius * flowtexPixels(seed, matrix * vec4(cross(normal, tangent), 0.0));
+  vec2 pixels = flowtexFootprint(vec3(along, 0.0), vec3(aside, 0.0));
+  float apart = mix(pixels.x, pixels.y, FLOWTEX_ARROW_FORESHORTENED) / u_apart;
+  // An arrow is opaque or absent: one that fades in is grey in a still.
+  if (apart < FLOWTEX_ARROW_APART || pixels.y < FLOWTEX_ARROW_EDGE * pixels.x)
     return stroke;
+#ifdef FLOWTEX_UNCERTAIN
+  if (flowtexKnown(coordinate, 0.0) < FLOWTEX_ARROW_KNOWN)
+    return stroke;
+#endif
   float pace = u_bySpeed ? clamp(flowtexLayer(coordinate, 2, 0.0).w, FLOWTEX_ARROW_SLOWEST, FLOWTEX_ARROW_FASTEST) : 1.0;
   float step_ = FLOWTEX_ARROW_LENGTH * pace * u_apart / float(u_pieces); // in pixels
-  float spacing = step_ / max(length(along), FLOWTEX_ARROW_SHORTEST * pixels.x);
+  float spacing = radius * step_ / max(length(along), FLOWTEX_ARROW_SHORTEST * pixels.x);
   bool inCell = flowtexEnterCell(coordinate, spacing * float(u_pieces));
   // The seed is in the middle if the path continues on both sides.
   float straight = 1.0;
   int before = flowtexPieces(coordinate, base, -1, spacing, inCell, straight);
   int beyond = flowtexPieces(coordinate, base, 1, spacing, inCell, straight);
-  // None that winds around itself.
-  float unwound = smoothstep(FLOWTEX_ARROW_WOUND, 1.5 * FLOWTEX_ARROW_WOUND, straight);
-  stroke.share *= u_whole ? step(0.5, unwound) : unwound;
+  if (straight < FLOWTEX_ARROW_WOUND)
+    return stroke;
   int behind = min(before, u_pieces / 2);
   int ahead = min(beyond, u_pieces - behind);
   behind = min(before, u_pieces - ahead);
@@ -118,7 +113,7 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
     return stroke;
   int at = min(piece, count) - behind;
   vec3 here = vec3(0.0);
-  vec3 way = tangent;
+  vec3 way = radius * tangent;
   if (at != 0)
   {
     flowtexWalk(coordinate, base, at < 0 ? -1 : 1, spacing, abs(at) + 1, inCell);
@@ -140,7 +135,7 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   stroke.position.xy += corner / (0.5 * u_picture) * point.w;
   // As deep as what is nearer to the eye by a little more than the ribbon is wide.
   vec3 toEye = normalize(u_eye.xyz - u_eye.w * position);
-  vec4 nearer = matrix * vec4(position + here + toEye * (FLOWTEX_ARROW_LIFT * reach / pixels.x), 1.0);
+  vec4 nearer = matrix * vec4(position + here + toEye * (FLOWTEX_ARROW_LIFT * reach * radius / pixels.x), 1.0);
   stroke.position.z = max(nearer.z / nearer.w, -FLOWTEX_ARROW_NEAREST) * point.w;
   return stroke;
 }

@@ -2,9 +2,10 @@
 
 const float FLOWTEX_ARROW_LENGTH = 1.05;       // over the least distance of seeds
 const float FLOWTEX_ARROW_FORESHORTENED = 0.75; // how far the shorter side of a footprint decides on it
-const float FLOWTEX_ARROW_GROWN = 1.05;        // distance over the least one at which one is opaque
-const float FLOWTEX_ARROW_EDGE = 0.1;          // shorter over longer side of a footprint, below which none is drawn
-const float FLOWTEX_ARROW_WOUND = 0.3;         // distance of two points of a path over its length, likewise
+const float FLOWTEX_ARROW_APART = 1.025;       // distance over the least one, below which none is drawn
+const float FLOWTEX_ARROW_EDGE = 0.15;         // shorter over longer side of a footprint, likewise
+const float FLOWTEX_ARROW_WOUND = 0.375;       // distance of two points of a path over its length, likewise
+const float FLOWTEX_ARROW_KNOWN = 0.5;         // how far the direction is known, likewise
 const float FLOWTEX_ARROW_FREE = 3.0;          // reach of a path over its length beyond which it is whole
 const float FLOWTEX_ARROW_SLOWEST = 0.4;       // length over the typical one, by speed
 const float FLOWTEX_ARROW_FASTEST = 1.5;

@@ -16,7 +16,7 @@ float flowtexArrowDistance(vec2 place, float size)
 }
 
 // A dark arrow with a light edge, or with `tint` one of its colour with a dark edge.
-vec4 flowtexArrow(vec2 place, float size, float share, vec4 tint)
+vec4 flowtexArrow(vec2 place, float size, vec4 tint)
 {
   float away = flowtexArrowDistance(place, size);
   float core = clamp(0.5 - away, 0.0, 1.0);
@@ -24,5 +24,5 @@ vec4 flowtexArrow(vec2 place, float size, float share, vec4 tint)
   float halo = whole * FLOWTEX_ARROW_OUTLINE_OPACITY;
   vec3 inside = mix(FLOWTEX_ARROW_DARK, tint.rgb, tint.a);
   vec3 edge = mix(FLOWTEX_ARROW_LIGHT, FLOWTEX_ARROW_DARK, tint.a);
-  return vec4(mix(edge, inside, core), mix(halo, 1.0, core) * share);
+  return vec4(mix(edge, inside, core), mix(halo, 1.0, core));
 }

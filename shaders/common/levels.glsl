@@ -23,10 +23,7 @@ float flowtexSliceLevel(vec2 dx, vec2 dy)
 #else
   if (!u_lod)
     return 0.0;
-  vec2 sx = dx * u_slicesSize;
-  vec2 sy = dy * u_slicesSize;
-  float determinant = sx.x * sy.y - sx.y * sy.x;
-  vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
+  vec2 footprint = flowtexFootprint(vec3(dx * u_slicesSize, 0.0), vec3(dy * u_slicesSize, 0.0));
   return clamp(log2(max(footprint.y, FLOWTEX_LEAST_TEXELS)), 0.0, u_deepest);
 #endif
 }

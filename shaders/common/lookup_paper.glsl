@@ -58,9 +58,7 @@ void flowtexGather(vec3 displacement, float weight)
 // noise's level, but no wider than a texel of the picture, of which none must be passed over.
 float flowtexFrame(vec2 dx, vec2 dy, float texels)
 {
-  vec2 sx = dx * u_pictureSize;
-  vec2 sy = dy * u_pictureSize;
-  vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), sx.x * sy.y - sx.y * sy.x);
+  vec2 footprint = flowtexFootprint(vec3(dx * u_pictureSize, 0.0), vec3(dy * u_pictureSize, 0.0));
   float covered = u_noiseCorrected ? sqrt(footprint.x * footprint.y) : footprint.x;
   flowtexPictureMip = u_lod ? max(log2(max(covered, FLOWTEX_LEAST_TEXELS)), 0.0) : 0.0;
   flowtexNoiseLevel = flowtexPictureMip;
@@ -84,10 +82,7 @@ vec3 flowtexPaint(vec3 colour)
 // Texture at a noise coordinate with its derivatives.
 float flowtexFragment(vec2 coordinate, vec2 noise, vec2 dx, vec2 dy, float sliceLevel)
 {
-  vec2 sx = dx * u_noiseSize;
-  vec2 sy = dy * u_noiseSize;
-  float determinant = sx.x * sy.y - sx.y * sy.x;
-  vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
+  vec2 footprint = flowtexFootprint(vec3(dx * u_noiseSize, 0.0), vec3(dy * u_noiseSize, 0.0));
   float texels = u_noiseCorrected ? sqrt(footprint.x * footprint.y) : footprint.x;
   flowtexMip = u_lod ? max(log2(max(texels, FLOWTEX_LEAST_TEXELS)), 0.0) : 0.0;
   flowtexNoiseLevel = flowtexMip;

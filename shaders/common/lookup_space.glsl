@@ -47,7 +47,7 @@ void flowtexMove(float slope, float speed)
 // Texture at a position with the footprint given by its derivatives.
 float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
-  vec2 footprint = flowtexFootprint(dot(dx, dx), dot(dy, dy), length(cross(dx, dy)));
+  vec2 footprint = flowtexFootprint(dx, dy);
   flowtexPixel = u_lod ? footprint.x : u_texel / u_grain;
   float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
   flowtexNoiseLevel = log2(grain / u_texel);

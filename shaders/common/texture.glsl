@@ -34,13 +34,19 @@ vec3 flowtexUnit(vec3 vector)
   return vector * inversesqrt(max(dot(vector, vector), FLOWTEX_LEAST_SQUARE));
 }
 
-// Footprint of a pixel: the longest and the shortest side of what it covers.
-vec2 flowtexFootprint(float aa, float bb, float determinant)
+// Footprint of a pixel: the longest and the shortest side of what it covers, by derivatives on the screen.
+vec2 flowtexFootprint(vec3 dx, vec3 dy)
 {
-  float half_ = 0.5 * (aa + bb);
-  float root = sqrt(max(half_ * half_ - determinant * determinant, 0.0));
-  float longest = sqrt(max(half_ + root, FLOWTEX_LEAST_SQUARE));
-  return vec2(longest, abs(determinant) / longest);
+  // In their own size, so that no power is too small or too large for single precision.
+  vec3 most = max(abs(dx), abs(dy));
+  float size = max(max(most.x, most.y), max(most.z, FLOWTEX_LEAST_SQUARE));
+  dx /= size;
+  dy /= size;
+  float half_ = 0.5 * (dot(dx, dx) + dot(dy, dy));
+  vec3 across = cross(dx, dy);
+  float square = dot(across, across);
+  float longest = sqrt(max(half_ + sqrt(max(half_ * half_ - square, 0.0)), FLOWTEX_LEAST_SQUARE));
+  return size * vec2(longest, sqrt(square) / longest);
 }
 
 #ifdef FLOWTEX_SPARSE

@@ -1,4 +1,4 @@
 in vec2 flowtexPlaceVSOutput;
-in vec2 flowtexShapeVSOutput;
+in float flowtexSizeVSOutput;
 in vec4 flowtexCoreVSOutput;
 //#include common/arrow_shape.glsl

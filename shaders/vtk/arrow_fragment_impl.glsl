@@ -1,1 +1,1 @@
-  gl_FragData[0] = flowtexArrow(flowtexPlaceVSOutput, flowtexShapeVSOutput.x, flowtexShapeVSOutput.y, flowtexCoreVSOutput);
+  gl_FragData[0] = flowtexArrow(flowtexPlaceVSOutput, flowtexSizeVSOutput, flowtexCoreVSOutput);

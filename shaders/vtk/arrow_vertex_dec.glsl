@@ -8,7 +8,7 @@ in vec3 flowtexNormal;
 in vec3 flowtexCorners;
 #endif
 out vec2 flowtexPlaceVSOutput;
-out vec2 flowtexShapeVSOutput; // size and share
+out float flowtexSizeVSOutput;
 out vec4 flowtexCoreVSOutput; // colour, and whether it is that of a value
 uniform bool u_plain; // the arrows have the colours
 //#include common/arrow.glsl

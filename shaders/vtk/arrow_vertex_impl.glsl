@@ -8,5 +8,5 @@
                                               flowtexRadius, int(flowtexRibbon.x), flowtexRibbon.y);
   gl_Position = flowtexVertex.position;
   flowtexPlaceVSOutput = flowtexVertex.place;
-  flowtexShapeVSOutput = vec2(flowtexVertex.size, flowtexVertex.share);
+  flowtexSizeVSOutput = flowtexVertex.size;
   flowtexCoreVSOutput = u_plain ? vec4(flowtexMapped(flowtexCoordinate), 1.0) : vec4(0.0);

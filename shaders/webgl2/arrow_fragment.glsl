@@ -1,5 +1,5 @@
 in vec2 flowtexPlaceOut;
-in vec2 flowtexShapeOut;
+in float flowtexSizeOut;
 in vec4 flowtexCoreOut;
 
 //#include common/arrow_shape.glsl
@@ -8,5 +8,5 @@ out vec4 flowtexOut;
 
 void main()
 {
-  flowtexOut = flowtexArrow(flowtexPlaceOut, flowtexShapeOut.x, flowtexShapeOut.y, flowtexCoreOut);
+  flowtexOut = flowtexArrow(flowtexPlaceOut, flowtexSizeOut, flowtexCoreOut);
 }

@@ -16,7 +16,7 @@ in vec2 flowtexScalar; // share of the colour map's range, at both times of the 
 uniform mat4 u_matrix; // from the surface's frame to the picture
 
 out vec2 flowtexPlaceOut;
-out vec2 flowtexShapeOut; // size and share
+out float flowtexSizeOut;
 out vec4 flowtexCoreOut;  // colour, and whether it is that of a value
 uniform bool u_plain;     // the arrows have the colours
 
@@ -33,7 +33,7 @@ void main()
                                        flowtexRadius, gl_VertexID >> 1, side);
   gl_Position = stroke.position;
   flowtexPlaceOut = stroke.place;
-  flowtexShapeOut = vec2(stroke.size, stroke.share);
+  flowtexSizeOut = stroke.size;
 #ifdef FLOWTEX_UNSTEADY
   float scalar = mix(flowtexScalar.x, flowtexScalar.y, u_between);
 #else

@@ -177,3 +177,16 @@ def test_arrows_are_shown_in_perspective_and_gone_when_switched_off() -> None:
     scene = {"camera": [(2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]}
     assert len(middles(drawn(torus(), arrows=True, **scene))) > 20
     assert (drawn(torus(), arrows=False, **scene) == drawn(torus(), **scene)).all()
+
+
+@pytest.mark.parametrize(("power", "offset"), [(40, 0.0), (-40, 0.0), (40, 1e12), (0, 2.0**36)])
+@pytest.mark.parametrize("make", [gyre, globe])
+def test_arrows_have_their_shape_at_any_scale_and_place(
+    make: Any, power: int, offset: float
+) -> None:
+    field = make()
+    points = np.ldexp(field.points, power) + offset
+    far = FlowField.from_arrays(points, field.velocity[0], valid=field.valid)
+    ours, theirs = drawn(field, arrows=SPACING).astype(int), drawn(far, arrows=SPACING).astype(int)
+    assert (ours[..., 0] < 110).mean() > 0.02
+    assert (np.abs(ours - theirs).max(axis=-1) > 60).mean() < 2e-3

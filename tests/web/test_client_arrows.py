@@ -26,6 +26,21 @@ from flowtex.web.view import web_views
 pytestmark = pytest.mark.browser
 
 PLAIN = {"samples": 11, "strength": 0.0, "arrows": 24}
+#: As large as the orbit of a planet in metres.
+LARGE = 2.0**40
+LARGE_VIEW = Camera(
+    (0.9 * LARGE, 0.5 * LARGE, 3 * LARGE),
+    (0.9 * LARGE, 0.5 * LARGE, 0.0),
+    (0, 1, 0),
+    parallel=True,
+    parallel_scale=0.5 * LARGE,
+)
+
+
+def large_gyre() -> FlowField:
+    return FlowField.from_arrays(LARGE * gyre().points, gyre().velocity[0])
+
+
 VIEWS: dict[str, tuple[Callable[[], FlowField], Camera, dict[str, Any]]] = {
     "plane": (gyre, straight(2), {}),
     "near": (gyre, straight(300), {}),
@@ -33,6 +48,7 @@ VIEWS: dict[str, tuple[Callable[[], FlowField], Camera, dict[str, Any]]] = {
     "curved": (torus, ASIDE, {}),
     "between two steps": (swinging, straight(1, (0, 0)), {"time": 0.55}),
     "triangles": (scattered_gyre, straight(3), {}),
+    "large": (large_gyre, LARGE_VIEW, {}),
 }
 
 
@@ -62,15 +78,15 @@ def test_arrows_have_the_colours(client: ClientPage) -> None:
     compare(theirs, swinging(), camera=camera, time=0.55, show_scalar_bar=False, **options)
 
 
-def fading(field: FlowField, *, time: float | None = None, **options: Any) -> Bytes:
-    """Draw arrows that fade in, as in a view that may come nearer."""
+def frame(field: FlowField, *, time: float | None = None, **options: Any) -> Bytes:
+    """Draw a frame of a view that may come nearer."""
     with closing(OffscreenPlotter(field, Options.split(**options), size=SIZE)) as plotter:
         return plotter.picture(time=time)
 
 
 def compare(theirs: Bytes, field: FlowField, **options: Any) -> None:
     ours, without = (
-        fading(field, **{**options, **more}) for more in ({}, {"arrows": 0, "scalars": False})
+        frame(field, **{**options, **more}) for more in ({}, {"arrows": 0, "scalars": False})
     )
     assert (np.abs(ours.astype(int) - without) > 60).any(axis=-1).mean() > 0.02
     # Outlines of the surface are smoothed in one of them.

@@ -13,7 +13,6 @@ from flowtex.field.triangles.topology import normals_at_corners
 from flowtex.rendering.constants import (
     HUE_SHIFT,
     LEAST_FACING,
-    LEAST_SQUARE,
     LEAST_TEXELS,
     LEVEL_DARKEST,
     LEVELS_AROUND,
@@ -124,7 +123,7 @@ def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
     square = np.maximum(aa * bb - ab * ab, 0.0)
     half = 0.5 * (aa + bb)
     root = np.sqrt(np.maximum(half * half - square, 0.0))
-    longest = np.sqrt(np.maximum(half + root, LEAST_SQUARE))
+    longest = np.sqrt(np.maximum(half + root, np.finfo(float).tiny))
     return longest, np.sqrt(square) / longest
 
 
