@@ -85,7 +85,7 @@ LIBRARIES = (
         ),
         in_functions=(
             "_util.colours",
-            "plotting.offscreen.annotations",
+            "scene.annotations",
             "plotting.offscreen.dynamic",
             "xarray",
         ),

@@ -22,13 +22,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import Bytes
+from flowtex._util.colours import rgb
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, TILE_PX
 from flowtex.app.streaming.viewport import GAP_PX, Rect, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.plotting.offscreen.annotations import annotate
 from flowtex.plotting.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
@@ -37,6 +37,7 @@ from flowtex.plotting.offscreen.encoders import (
     default_fps,
 )
 from flowtex.plotting.offscreen.movie import frame_times
+from flowtex.scene.annotations import Layout, annotate
 from flowtex.settings import Settings, named_values
 from flowtex.textures.images import averaged
 
@@ -55,22 +56,36 @@ class ExportError(FieldError):
 class TiledPicture:
     """Draws pictures of any size, a tile at a time through a window as large as a tile.
 
-    ``density`` and ``supersampling`` are those of a :class:`Job`.
+    The arguments are those of a :class:`Job`.
     """
 
     def __init__(
-        self, viewport: Viewport, size: tuple[int, int], density: float, supersampling: int
+        self,
+        viewport: Viewport,
+        size: tuple[int, int],
+        density: float,
+        supersampling: int,
+        *,
+        annotations: bool = False,
     ) -> None:
         self.size, self._viewport, self._supersampling = size, viewport, supersampling
         self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
         viewport.window.longest_side = TILE_PX
         for pane in viewport.panes:
             pane.handle.density = density * supersampling
+        self._rows = slice(0, size[1])  # those with a flow
+        if annotations:
+            layouts = self.annotate(np.zeros((size[1], size[0], 3), np.uint8))
+            above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+            self._rows = slice(above, size[1] - below)
 
     def draw(self) -> Iterator[tuple[Bytes, float]]:
         """Yield the picture so far, always the same array, and its share, after each tile."""
-        width, height = self.size
-        canvas = np.full((height, width, 3), LINE_GREY, np.uint8)
+        width, height = self.size[0], self._rows.stop - self._rows.start
+        ground = np.rint(255 * np.array(rgb(self._viewport.background)))
+        canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
+        rows = canvas[self._rows]
+        rows[:] = LINE_GREY
         panes, times = self._viewport.panes, self._supersampling
         wide = (width - (len(panes) - 1) * self._gap) // len(panes)
         done = 0
@@ -83,7 +98,7 @@ class TiledPicture:
                 part = (times * left, times * top, times * across, times * down)
                 pixels = pane.draw(part[2], part[3], part)
                 place = slice(top, top + down), slice(first + left, first + left + across)
-                canvas[place] = averaged(pixels, times)
+                rows[place] = averaged(pixels, times)
                 done += across * down
                 yield canvas, done / (width * height)
 
@@ -93,20 +108,23 @@ class TiledPicture:
         for top, left in product(range(0, height, side), range(0, width, side)):
             yield left, top, min(side, width - left), min(side, height - top)
 
-    def annotate(self, picture: Bytes) -> None:
+    def annotate(self, picture: Bytes) -> list[Layout]:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
-        viewport, count = self._viewport, len(self._viewport.panes)
+        viewport, count, layouts = self._viewport, len(self._viewport.panes), []
         for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
             scene = pane.handle.scene
             values = dict(scene.settings)
-            annotate(
+            written = annotate(
                 view,
                 scene,
                 viewport.camera,
+                flow_height=self._rows.stop - self._rows.start,
                 background=viewport.background,
                 label=named_values({n: values[n] for n in viewport.differences if n in values}),
                 legend=scene.settings.noise != "image",
             )
+            layouts.append(written)
+        return layouts
 
 
 class Job:
@@ -160,7 +178,13 @@ class Job:
         raise NotImplementedError
 
     def _tiled(self, viewport: Viewport) -> TiledPicture:
-        return TiledPicture(viewport, self._size, self._density, self._supersampling)
+        return TiledPicture(
+            viewport,
+            self._size,
+            self._density,
+            self._supersampling,
+            annotations=self._annotations,
+        )
 
     async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
         """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""

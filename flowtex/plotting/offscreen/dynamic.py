@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from flowtex.errors import FieldError
-from flowtex.plotting.offscreen.annotations import time_text
 from flowtex.plotting.offscreen.figure import USUAL_DPI, axes
+from flowtex.scene.annotations import time_text
 from flowtex.scene.options import Appearance, FieldOptions, accepts_options
 
 #: Width and height of a plot whose size is not known yet, in pixels.

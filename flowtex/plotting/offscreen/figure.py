@@ -20,7 +20,6 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
 from flowtex.field.arrays import SectionAxes
-from flowtex.plotting.offscreen.annotations import time_text
 from flowtex.plotting.offscreen.earth_axes import (
     AxesUnit,
     is_geo,
@@ -31,6 +30,7 @@ from flowtex.plotting.offscreen.earth_axes import (
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.plotting.offscreen.scaled_axes import AxesScales, with_polar_scalars
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.scene.annotations import time_text
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene.scene import Scene
 from flowtex.sources.datasets import is_dataset

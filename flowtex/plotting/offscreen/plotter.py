@@ -18,10 +18,10 @@ from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.offscreen.annotations import annotate, difference_text
 from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
+from flowtex.scene.annotations import Layout, annotate, difference_text
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene.scene import Scene, share_field
 from flowtex.sources.notices import notify_section
@@ -97,6 +97,8 @@ class OffscreenPlotter:
             for handle in self.handles:
                 handle.density, handle.still = supersampling * density, still
             point_camera(self._plotter, self.handles[0].scene, options.view, margin)
+            if annotations:
+                self._reserve(size, margin)
         except BaseException:
             self._plotter.close()
             raise
@@ -122,22 +124,38 @@ class OffscreenPlotter:
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
         picture = averaged(pixels, self._supersampling)
-        return self._annotated(picture) if self._annotations else picture
+        if not self._annotations:
+            return picture
+        canvas = self._canvas.copy()
+        canvas[self._rows] = picture
+        self._annotate(canvas)
+        return canvas
 
-    def _annotated(self, picture: Bytes) -> Bytes:
-        picture = picture.copy()
-        changes = self._view.beside or {}
-        views = np.array_split(picture, len(self.handles), axis=1)
-        for view, handle in zip(views, self.handles, strict=True):
-            annotate(
-                view,
-                handle.scene,
-                read_camera(self._plotter.camera),
-                background=self._view.ground,
-                label=difference_text(handle.scene, changes),
-                legend=self._legend,
-            )
-        return picture
+    def _reserve(self, size: tuple[int, int], margin: float) -> None:
+        """Leave room for annotations above and below the flow of a small picture."""
+        width, height = size
+        self._rows, ground = slice(0, height), self._plotter.background_color.int_rgb
+        self._canvas = np.full((height, width, 3), ground, np.uint8)
+        layouts = self._annotate(self._canvas.copy())
+        above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+        if left_out := dict.fromkeys(name for each in layouts for name in each.left_out):
+            notify(f"a picture of {width} x {height} has no room for: {', '.join(left_out)}")
+        if above or below:
+            self._rows = slice(above, height - below)
+            drawn = (width, height - above - below)
+            self._plotter.window_size = [self._supersampling * side for side in drawn]
+            point_camera(self._plotter, self.handles[0].scene, self._view, margin)
+
+    def _annotate(self, canvas: Bytes) -> list[Layout]:
+        """Write on a picture, in place."""
+        changes, legend = self._view.beside or {}, self._legend
+        look: dict[str, Any] = {"background": self._view.ground, "legend": legend}
+        look["flow_height"] = self._rows.stop - self._rows.start
+        camera, views = read_camera(self._plotter.camera), len(self.handles)
+        return [
+            annotate(view, h.scene, camera, label=difference_text(h.scene, changes), **look)
+            for view, h in zip(np.array_split(canvas, views, axis=1), self.handles, strict=True)
+        ]
 
     def close(self) -> None:
         """Free the graphics card."""
@@ -270,7 +288,7 @@ def render(
         0.5. :func:`flowtex.extent` returns the rectangle that a flat picture shows.
     annotations
         Whether legend, scale bar, time and the field's name are drawn on the picture, each if it
-        applies and has room.
+        applies and has room. In a small picture the flow is drawn between them.
     scalar_bar_args
         As for ``plotter.add_mesh``. This bar is drawn only with ``show_scalar_bar=True`` and
         without annotations.

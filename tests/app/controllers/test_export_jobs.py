@@ -257,7 +257,7 @@ def test_annotations_are_written_on_what_is_saved(
     view.compare(split)
     shots = []
     for written in (False, True):
-        job = PictureJob(view, tmp_path / "a.png", (480, 160), annotations=written)
+        job = PictureJob(view, tmp_path / "a.png", (1200, 400), annotations=written)
         shots.append(pixels(run(job)))
     movie = MovieJob(view, tmp_path / "a.gif", (120, 80), seconds=0.2, fps=10, annotations=True)
     with Image.open(run(movie)) as file:
@@ -267,8 +267,8 @@ def test_annotations_are_written_on_what_is_saved(
     halves = [differs] if split is None else np.array_split(differs, 2, axis=1)
     for half in halves:
         wide = half.shape[1]
-        assert half[90:, wide // 2 :].any()  # the legend
-        assert half[90:, : wide // 2].any()  # the scale bar
-        assert half[:50, wide // 2 :].any() == (steps > 1)  # the time
-        assert half[:50, : wide // 2].any() == (split is not None)  # what differs
-        assert not half[60:80].any()
+        assert half[300:, wide // 2 :].any()  # the legend
+        assert half[300:, : wide // 2].any()  # the scale bar
+        assert half[:100, wide // 2 :].any() == (steps > 1)  # the time
+        assert half[:100, : wide // 2].any() == (split is not None)  # what differs
+        assert not half[150:250].any()

@@ -1,7 +1,8 @@
 """Legends, time, scale bar and title, written on finished pictures.
 
 Each has its own plate in a corner. Plates without room are left out, the title first and the legend
-last. Text grows with the picture, so that small and large ones look alike.
+last. Text grows with the picture, so that small and large ones look alike; in small pictures, where
+it cannot shrink further, plates stand above and below the flow and cover none of it.
 """
 
 from __future__ import annotations
@@ -37,16 +38,18 @@ from flowtex.scene.scene import Scene
 
 #: Height of the text: a share of the picture's height, or of a width that goes with it.
 TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
-#: Height below which text cannot be read, in pixels.
-SMALLEST_TEXT_PX = 11
+#: Heights of the text in a small picture, and its share of that picture's height.
+SMALL_TEXT_PX, SMALL_TEXT_SHARE = (9, 11), 1 / 13
+#: Share of a small picture's height that plates take at most, and of their gaps and padding there.
+MOST_STRIPS, CLOSER = 0.55, 0.5
 #: Share of the picture that a plate covers at most.
 MOST_COVER = 0.125
 #: Greatest share of the picture's width that a scale bar has.
 SCALE_BAR_WIDTH = 0.2
 #: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
 PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
-#: How opaque a plate is, and the lightness from which a background counts as light.
-OPACITY, LIGHT_FROM = 0.8, 0.5
+#: How opaque a plate is, and the luminance from which black has more contrast than white.
+OPACITY, LIGHT_FROM = 0.8, 0.18
 #: Digits of the values of a legend: the fewest that distinguish them.
 DIGITS = range(3, 9)
 #: Number from which on the text of one has a power of ten.
@@ -81,17 +84,32 @@ class Plate:
         return self.left, self.top, self.left + self.image.width, self.top + self.image.height
 
 
-def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> None:
-    """Write on a picture, (H, W, 3) uint8, in place; :func:`plates` has the parameters."""
+@dataclass(frozen=True)
+class Layout:
+    """Plates on a picture, the most important first, and the names of those without room.
+
+    A small picture has no flow in its uppermost and lowermost rows, ``above`` and ``below``.
+    """
+
+    plates: list[Plate]
+    left_out: list[str]
+    above: int = 0
+    below: int = 0
+
+
+def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> Layout:
+    """Write on a picture, (H, W, 3) uint8, in place; :func:`layout` has the parameters."""
     height, width = picture.shape[:2]
-    for plate in plates(scene, (width, height), camera, **options):
+    result = layout(scene, (width, height), camera, **options)
+    for plate in result.plates:
         left, top, right, bottom = plate.box
         below, above = picture[top:bottom, left:right], np.asarray(plate.image, dtype=float)
         share = above[..., 3:] / 255
         below[:] = np.rint(below * (1 - share) + above[..., :3] * share)
+    return result
 
 
-def plates(
+def layout(
     scene: Scene,
     size: tuple[int, int],
     camera: Camera,
@@ -99,15 +117,16 @@ def plates(
     background: Any = "white",
     label: str = "",
     legend: bool = True,
-) -> list[Plate]:
-    """Return the plates on a picture, the most important first.
+    flow_height: int | None = None,
+) -> Layout:
+    """Return what is written on a picture.
 
-    ``size`` is the width and height of the picture in pixels, and ``label`` is added to the name of
-    the field in the title. Plates are light on a light background. There is no legend for an image
-    or a plain surface.
+    ``size`` is the width and height of the picture in pixels, in which the flow has all rows or
+    ``flow_height``, and ``label`` is added to the name of the field in the title. Plates are light
+    on a light background. There is no legend for an image or a plain surface.
     """
     width, height = size
-    writer = _Writer(size, background)
+    writer = _Writer(size, background, flow_height)
     title = _printable(", ".join(text for text in (scene.field.name, label) if text))
     parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
         ("legend", True, True, writer.legends(scene) if legend else iter(())),
@@ -116,35 +135,50 @@ def plates(
         ("title", False, False, writer.texts(title)),
         ("structure", False, True, writer.structure(scene) if legend else iter(())),
     )
-    gap, placed = writer.gap, list[Plate]()
+    gap, small, placed, left_out = writer.gap, writer.small, list[Plate](), list[str]()
+    strips = [0, 0]  # above and below the flow
     for name, right, low, images in parts:
+        image = None
         for image in images:
             left = width - gap - image.width if right else gap
             top = height - gap - image.height if low else gap
-            if name == "structure":  # above the scale bar
-                bars = [plate.top for plate in placed if plate.name == "scale bar"]
-                top = min(bars, default=height) - gap - image.height
+            if name == "structure":  # above the scale bar, or beside it
+                bars = [plate for plate in placed if plate.name == "scale bar"]
+                if small:
+                    left = max((plate.box[2] for plate in bars), default=0) + gap
+                else:
+                    top = min((plate.top for plate in bars), default=height) - gap - image.height
             plate = Plate(name, left, top, image)
             fits = gap <= left <= width - gap - image.width
             fits &= gap <= top <= height - gap - image.height
-            fits &= image.width * image.height <= MOST_COVER * width * height
+            larger = [*strips]
+            larger[low] = max(strips[low], image.height + 2 * gap)
+            share = sum(larger) / height if small else image.width * image.height / width / height
+            fits &= share <= (MOST_STRIPS if small else MOST_COVER)
             if fits and all(_apart(plate, other, gap) for other in placed):
                 placed.append(plate)
+                strips = larger
                 break
-    return placed
+        else:
+            left_out += [] if image is None else [name]
+    return Layout(placed, left_out, *(strips if small else (0, 0)))
 
 
 class _Writer:
     """Makes the plates of pictures of one size and background, the largest form of each first."""
 
-    def __init__(self, size: tuple[int, int], background: Any) -> None:
-        self._size = size
-        height = min(size[1], size[0] / WIDEST_ASPECT)
-        self._em = max(round(height * TEXT_SHARE), SMALLEST_TEXT_PX)
+    def __init__(self, size: tuple[int, int], background: Any, flow_height: int | None) -> None:
+        self._size, self._flow_height = size, flow_height or size[1]
+        height, (least, most) = min(size[1], size[0] / WIDEST_ASPECT), SMALL_TEXT_PX
+        self._em = round(height * TEXT_SHARE)
+        self.small = self._em < most
+        if self.small:
+            self._em = min(max(round(height * SMALL_TEXT_SHARE), least), most)
         self._font = _font(self._em)
         self._line = sum(self._font.getmetrics())
-        self._thin, self.gap = self._px(LINE), self._px(GAP)
-        is_light = float(np.dot(rgb(background), (0.299, 0.587, 0.114))) >= LIGHT_FROM
+        self._thin, closer = self._px(LINE), CLOSER if self.small else 1.0
+        self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
+        is_light = float(np.array(rgb(background)) ** 2.2 @ (0.2126, 0.7152, 0.0722)) >= LIGHT_FROM
         self._plate, self._ink = ("white", "black") if is_light else ("black", "white")
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
@@ -175,7 +209,7 @@ class _Writer:
         if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
             return
         scale = map_scale(scene.field, camera.focal_point)
-        unit_px = scale * self._size[1] / (2 * camera.height)
+        unit_px = scale * self._flow_height / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
         unit, across = _printable(scene.field.length_unit), round(length * unit_px)
         if not across:
@@ -193,7 +227,7 @@ class _Writer:
         yield image
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield a legend with round values, and one with every second of these."""
+        """Yield a legend with round values, with every second of these, and with the outer ones."""
         name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
         if name is None or settings.show_level or not appearance.visible:
             return
@@ -203,9 +237,10 @@ class _Writer:
         if image.width <= LEGEND_WIDTH * self._size[0]:
             yield image
         yield self._legend(title, table, marks[::2], scene.beyond)
+        yield self._legend(title, table, marks[:: max(len(marks) - 1, 1)], scene.beyond)
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield a legend of the marks in the picture: critical points and lines."""
+        """Yield legends of critical points and lines: one column, two rows, and one."""
         structure, settings, step = scene.structure, scene.settings, scene.step
         count, saddles = settings.critical_points, settings.separatrices
         points = structure.points(step)[:count] if count else ()
@@ -217,33 +252,35 @@ class _Writer:
         paths = structure.paths(step, saddles) if saddles else {}
         rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
         rows |= NULLCLINE_COLORS if settings.nullclines else {}
-        if not rows:
-            return
-        width = max(map(self._width, rows)) + self._line
-        image, draw = self._blank(width, len(rows) * self._line)
-        side = SMOOTH * self._line
-        for n, (name, look) in enumerate(rows.items()):
-            self._write(draw, self._line, n * self._line, name)
-            mark = Image.new("RGBA", (side, side))
-            if isinstance(look, str):
-                for thick, color in zip(LINE_PX, (RIM_COLOR, look), strict=True):
-                    high = LINE_SHARE * side * thick / LINE_PX[0] / 2
-                    box = (side / 5 - high, side / 2 - high, side * 0.7 + high, side / 2 + high)
-                    ImageDraw.Draw(mark).rectangle(box, color)
-            else:
-                colors = [RIM_COLOR, look.color, MIDDLE_COLOR][: 3 if look.turns else 2]
-                for diameter, color in zip(DOT_PX, colors, strict=False):
-                    size = DOT_SHARE * diameter / DOT_PX[0] * side / 2
-                    low, high = side / 2 - size, side / 2 + size
-                    ImageDraw.Draw(mark).ellipse((low, low, high, high), color)
-            place = (self._pad - self._line // 8, self._pad + n * self._line)
-            image.alpha_composite(mark.resize((self._line,) * 2, Image.Resampling.BOX), place)
-        yield image
+        width, side = max(map(self._width, rows), default=0) + self._line, SMOOTH * self._line
+        for lines in [*dict.fromkeys((len(rows), 2, 1))] if rows else []:
+            wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
+            image, draw = self._blank(wide, lines * self._line)
+            for n, (name, look) in enumerate(rows.items()):
+                x, y = (width + self._line) * (n // lines), self._line * (n % lines)
+                self._write(draw, x + self._line, y, name)
+                mark = Image.new("RGBA", (side, side))
+                if isinstance(look, str):
+                    for thick, color in zip(LINE_PX, (RIM_COLOR, look), strict=True):
+                        high = LINE_SHARE * side * thick / LINE_PX[0] / 2
+                        box = (side / 5 - high, side / 2 - high, side * 0.7 + high, side / 2 + high)
+                        ImageDraw.Draw(mark).rectangle(box, color)
+                else:
+                    colors = [RIM_COLOR, look.color, MIDDLE_COLOR][: 3 if look.turns else 2]
+                    for diameter, color in zip(DOT_PX, colors, strict=False):
+                        size = DOT_SHARE * diameter / DOT_PX[0] * side / 2
+                        low, high = side / 2 - size, side / 2 + size
+                        ImageDraw.Draw(mark).ellipse((low, low, high, high), color)
+                place = (self._pad + x - self._line // 8, self._pad + y)
+                image.alpha_composite(mark.resize((self._line,) * 2, Image.Resampling.BOX), place)
+            yield image
 
     def _legend(
         self, title: str, table: Bytes, marks: list[tuple[float, str]], beyond: tuple[bool, bool]
     ) -> Image.Image:
         """Return the legend; the colours end in a tip where values lie beyond them."""
+        while len(title) > 1 and self._width(title) > self._size[0] - 2 * (self.gap + self._pad):
+            title = f"{title[:-2].strip()}…"
         shares, numbers = zip(*marks, strict=True)
         widest = max(map(self._width, numbers)) + self._px(GAP)
         apart = min(np.diff(shares), default=1.0)
@@ -274,10 +311,6 @@ class _Writer:
             self._write(draw, round(start + place), self._line + high, text)
         return image
 
-    @property
-    def _pad(self) -> int:
-        return self._px(PADDING)
-
     def _px(self, heights: float) -> int:
         return max(round(heights * self._em), 1)
 
@@ -285,7 +318,7 @@ class _Writer:
         """Return a plate with room for a width and height, and the object that draws on it."""
         size = (width + 2 * self._pad, height + 2 * self._pad)
         image = Image.new("RGBA", size, self._plate)
-        image.putalpha(round(255 * OPACITY))
+        image.putalpha(0 if self.small else round(255 * OPACITY))
         return image, ImageDraw.Draw(image)
 
     def _width(self, text: str) -> int:

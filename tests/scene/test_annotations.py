@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -18,21 +19,25 @@ from strategies import property_test
 import flowtex
 from flowtex import FlowField
 from flowtex._util.colours import colour_table, rgb
+from flowtex._util.notices import Notice
 from flowtex.cli import main
-from flowtex.plotting.offscreen.annotations import (
-    Plate,
-    _font,
-    _Writer,
-    difference_text,
-    length_text,
-    plates,
-    round_length,
-    time_text,
-)
+from flowtex.plotting.offscreen import plotter
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COLORS
+from flowtex.scene.annotations import (
+    Layout,
+    Plate,
+    _font,
+    _Writer,
+    annotate,
+    difference_text,
+    layout,
+    length_text,
+    round_length,
+    time_text,
+)
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
@@ -60,7 +65,7 @@ def written(
     scene: Scene, size: tuple[int, int] = (640, 400), camera: Camera | None = None, **options: Any
 ) -> dict[str, Plate]:
     camera = camera or Camera.fit(scene.field.surface, size[0] / size[1])
-    return {plate.name: plate for plate in plates(scene, size, camera, **options)}
+    return {plate.name: plate for plate in layout(scene, size, camera, **options).plates}
 
 
 @pytest.fixture
@@ -114,11 +119,70 @@ def test_whatever_the_size_and_the_words_are(size: tuple[int, int], name: str, u
     assert cover.max() <= 1
 
 
-def test_what_has_no_room_is_left_out_the_title_first() -> None:
+def test_what_has_no_room_is_left_out_the_title_first(opengl: None) -> None:
     scene = Scene(patch(name="a name that is as long as this"))
     assert list(written(scene, (640, 400))) == ["legend", "time", "scale bar", "title"]
-    assert list(written(scene, (220, 180))) == ["legend", "time", "scale bar"]
+    assert list(written(scene, (180, 150))) == ["legend", "time", "scale bar"]
     assert list(written(scene, (40, 30))) == []
+    with pytest.warns(Notice, match="a picture of 180 x 150 has no room for: title$"):
+        flowtex.render(scene.field, size=(180, 150), samples=3, annotations=True)
+
+
+@pytest.mark.parametrize(
+    "size", [(100, 80), (160, 120), (200, 150), (320, 240), (480, 360), (150, 400), (500, 120)]
+)
+@pytest.mark.parametrize("background", ["white", "#808080", "black"])
+def test_annotations_cover_no_flow_in_small_pictures(
+    opengl: None, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int], background: str
+) -> None:
+    seen: list[tuple[Any, Layout]] = []
+
+    def annotated(picture: Any, *arguments: Any, **options: Any) -> Layout:
+        before = picture.copy()
+        seen.append((before, annotate(picture, *arguments, **options)))
+        return seen[-1][1]
+
+    monkeypatch.setattr(plotter, "annotate", annotated)
+    long = patch(name="speed", time_unit="s", units={"pressure": "kg m-1 s-2, as measured"})
+    views: list[dict[str, Any]] = [
+        {"mesh": long, "scalars": "pressure", "zoom": 5},
+        {"mesh": long, "scalars": "pressure", "clim": (-1.2345e7, 9.87654e7), "critical_points": 3},
+        {"mesh": flowtex.examples.delta_wing(), "scalars": "height"},
+        {"mesh": long, "beside": {"lod": False}},
+    ]
+    for view in views:
+        seen.clear()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Notice)
+            picture = flowtex.render(
+                **view, size=size, samples=3, annotations=True, background=background
+            )
+        assert picture.shape == (*size[::-1], 3)
+        drawn = seen[len(seen) // 2 :]  # the others are for the room
+        assert any((before != before[0, 0]).any() for before, _ in drawn)
+        for before, written in drawn:
+            is_flow = (before != np.rint(255 * np.array(rgb(background)))).any(axis=-1)
+            for left, top, right, bottom in (plate.box for plate in written.plates):
+                assert not is_flow[top:bottom, left:right].any()
+    assert {"legend"} <= {plate.name for plate in drawn[0][1].plates} or size[0] < 200
+
+
+def contrast(ink: Any, ground: Any) -> float:
+    """Contrast of two colours as WCAG defines it."""
+    values = np.stack([ink, ground]) / 255
+    linear = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    low, high = sorted(linear @ (0.2126, 0.7152, 0.0722))
+    return float((high + 0.05) / (low + 0.05))
+
+
+@pytest.mark.parametrize("background", ["white", "#808080", "black", "red", "#00c000", "#3060ff"])
+def test_small_pictures_have_readable_text(opengl: None, background: str) -> None:
+    picture = flowtex.render(
+        patch(), size=(320, 240), samples=3, annotations=True, background=background
+    )
+    title, ground = picture[:20, :100].reshape(-1, 3), picture[0, 160]
+    ink = title[np.abs(title.astype(int) - ground).sum(axis=-1).argmax()]
+    assert contrast(ink, ground) > 3.5
 
 
 def test_text_grows_with_the_picture() -> None:
@@ -277,30 +341,34 @@ def test_the_font_has_the_letters_of_units() -> None:
 
 def test_a_picture_has_them_only_when_asked(opengl: None) -> None:
     field = patch()
-    options: dict[str, Any] = {"size": (300, 200), "samples": 3}
+    options: dict[str, Any] = {"size": (640, 400), "samples": 3}
     plain = flowtex.render(field, **options)
     with_text = flowtex.render(field, **options, annotations=True, show_scalar_bar=True)
     changed = np.zeros(plain.shape[:2], bool)
     scene = Scene(field)
-    for left, top, right, bottom in (plate.box for plate in written(scene, (300, 200)).values()):
+    for left, top, right, bottom in (plate.box for plate in written(scene).values()):
         changed[top:bottom, left:right] = True
     differs = (plain != with_text).any(axis=-1)
     assert differs.any() and not (differs & ~changed).any()
     without = flowtex.render(field, **options, annotations=True, show_scalar_bar=False)
-    assert (without == plain)[100:, 150:].all() and (without != plain).any()
+    assert (without == plain)[200:, 320:].all() and (without != plain).any()
 
 
 def test_two_views_say_how_they_differ(opengl: None, texts: list[str]) -> None:
     field = patch()
     options: dict[str, Any] = {"size": (801, 300), "samples": 3, "beside": {"lod": False}}
     flowtex.render(field, **options, annotations=True)
-    assert [t for t in texts if "lod" in t] == ["patch, lod = True", "patch, lod = False"]
+    assert [*dict.fromkeys(t for t in texts if "lod" in t)] == [
+        "patch, lod = True",
+        "patch, lod = False",
+    ]
 
 
 def test_each_frame_of_a_movie_has_its_time(opengl: None, texts: list[str]) -> None:
     list(frames(patch(), size=(300, 200), seconds=0.5, fps=6, samples=3, annotations=True))
     # The same velocity at the end as at the beginning: a loop, without its last time.
-    assert [t for t in texts if t.startswith("t = ")] == ["t = 0.00 s", "t = 0.33 s", "t = 0.67 s"]
+    first, *times = [t for t in texts if t.startswith("t = ")]  # the first one is for the room
+    assert first == times[0] and times == ["t = 0.00 s", "t = 0.33 s", "t = 0.67 s"]
 
 
 def test_the_flag_of_the_shell(opengl: None, tmp_path: Path) -> None:
@@ -346,7 +414,7 @@ def test_kinds_of_marked_points_are_named(texts: list[str]) -> None:
     camera = Camera.fit(field.surface, 4 / 3)
     for count, named in ((0, []), (100, ["saddle", "centre"])):
         scene = Scene(field, Settings(critical_points=count))
-        found = {plate.name: plate for plate in plates(scene, (800, 600), camera)}
+        found = {plate.name: plate for plate in layout(scene, (800, 600), camera).plates}
         assert [text for text in texts if text in KIND_MARKS] == named
         assert ("structure" in found) == bool(named)
     bar, kinds = found["scale bar"], found["structure"]
@@ -364,7 +432,7 @@ def test_lines_of_the_structure_are_named(texts: list[str]) -> None:
     camera = Camera.fit(field.surface, 4 / 3)
     names = ["stable orbit", "unstable orbit", "u = 0", "v = 0"]
     scene = Scene(field, Settings(separatrices=1, nullclines=True))
-    (plate,) = [p for p in plates(scene, (800, 600), camera) if p.name == "structure"]
+    (plate,) = [p for p in layout(scene, (800, 600), camera).plates if p.name == "structure"]
     assert [text for text in texts if text in (*LINE_COLORS, *NULLCLINE_COLORS)] == names
     pixels = np.asarray(plate.image)[..., :3]
     for name in names:
