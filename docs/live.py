@@ -39,9 +39,8 @@ import flowtex
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.web.assets import asset, client_script
 from flowtex.web.export import page_text
-from flowtex.web.view import WebView, web_views
+from flowtex.web.view import WebView, asset, client_script, web_views
 
 #: Folder of the site's own files, told to the kernels of notebooks as well.
 FOLDER = "FLOWTEX_SITE_STATIC"

@@ -20,7 +20,7 @@ from xarray.plot import FacetGrid
 
 import flowtex
 from flowtex._util.arguments import brief, checked_number
-from flowtex._util.terminal.console import plain_text
+from flowtex._util.terminal import plain_text
 from flowtex.field import FlowField
 from flowtex.field.point_values import PointValues
 from flowtex.sources.datasets.read import recognised

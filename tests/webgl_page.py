@@ -18,8 +18,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
 from flowtex.textures.tiles import TileKey
-from flowtex.web.assets import client_module
-from flowtex.web.view import TileSource
+from flowtex.web.view import TileSource, client_module
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, TypeVar
 
-from flowtex._util.terminal.console import terminal
+from flowtex._util.terminal import terminal
 from flowtex._util.threads import has_threads
 
 if TYPE_CHECKING:

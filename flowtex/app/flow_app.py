@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import string
+import re
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields
@@ -175,21 +175,18 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     )
     name, *others = library.names
     try:
-        return name, _first_of(library, name, partial_choice, sure=not others)
+        choice = library.complete(name, partial_choice)
+        if others:
+            library.field(name, choice)  # whether it can be drawn
+        return name, choice
     except (FieldError, OSError):
         # Other files of a folder can be shown even if the first one cannot.
         for other in others:
             with suppress(FieldError, OSError):
-                return other, _first_of(library, other, partial_choice)
+                choice = library.complete(other, partial_choice)
+                library.field(other, choice)
+                return other, choice
         raise
-
-
-def _first_of(library: Library, name: str, chosen: Choice, *, sure: bool = False) -> Choice:
-    """Return a complete choice, after a check that it can be drawn unless that is ``sure``."""
-    choice = library.complete(name, chosen)
-    if not sure:
-        library.field(name, choice)
-    return choice
 
 
 def serve(
@@ -283,21 +280,6 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
     return lambda server: FlowApp(library, server=server, **options)
 
 
-class _Page(string.Template):
-    delimiter = "%"
-
-
-class _Names(dict[str, str]):
-    """Words of the template; all others are names of values of the page's state."""
-
-    def __init__(self, key: Callable[[str], str], words: dict[str, str]) -> None:
-        super().__init__(words)
-        self._key = key
-
-    def __missing__(self, name: str) -> str:
-        return self._key(name)
-
-
 def build_page(controllers: Controllers) -> Any:
     """Build the page; return trame's layout, whose ``html`` is the text of the page."""
     context, data, sharing = controllers.context, controllers.data, controllers.sharing
@@ -314,7 +296,10 @@ def build_page(controllers: Controllers) -> Any:
     }
     words = {**WORDS, **{name: server.trigger_name(call) for name, call in actions.items()}}
     words["TYPED"] = "true" if context.library.typed else "false"
-    page = _Page(TEMPLATE.read_text("utf-8")).substitute(_Names(state.key, words))
+    # All other names are those of values of the page's state.
+    page = re.sub(
+        r"%(\w+)", lambda m: words.get(m[1], state.key(m[1])), TEMPLATE.read_text("utf-8")
+    )
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
     before, after = page.split(VIEW)
     with VAppLayout(server, vuetify_config=config) as layout:

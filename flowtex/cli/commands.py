@@ -24,7 +24,7 @@ from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionErro
 from flowtex._util.arguments import closest, elsewhere
 from flowtex._util.child import FORKS, prepare
 from flowtex._util.progress import waiting
-from flowtex._util.terminal.ending import Ended, ended_by_signals
+from flowtex._util.terminal import Ended, ended_by_signals
 from flowtex.cli.console import announcer, complain, describe, require_app
 from flowtex.cli.info import info
 from flowtex.cli.options import ServeFlags, UsageError

@@ -15,7 +15,7 @@ from flowtex._util.arguments import checked_target
 from flowtex._util.extras import install_extra
 from flowtex._util.notices import Notice
 from flowtex._util.progress import waiting
-from flowtex._util.terminal.console import terminal
+from flowtex._util.terminal import terminal
 from flowtex.cli.options import UsageError, arguments, flag_names
 from flowtex.scene.options import FieldOptions, Options
 from flowtex.textures.images import load_image

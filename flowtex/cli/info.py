@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
-from flowtex._util.terminal.console import terminal
+from flowtex._util.terminal import terminal
 from flowtex.cli.console import in_flags, load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 

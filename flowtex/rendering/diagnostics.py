@@ -308,7 +308,7 @@ def print_checks(checks: Sequence[Check]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from flowtex._util.terminal.console import terminal
+    from flowtex._util.terminal import terminal
 
     colours = {"ok": "green", "warn": "yellow", "fail": "bold red"}
     table = Table("", "what", "found", box=None)

@@ -36,7 +36,6 @@ from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.textures.tiles import Pyramid
 from flowtex.web import preview
-from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import (
     StoreLink,
     check_basemap,
@@ -45,7 +44,7 @@ from flowtex.web.linked import (
     map_pieces,
     store_header,
 )
-from flowtex.web.view import TileSource, WebView, browser_options, web_views
+from flowtex.web.view import TileSource, WebView, asset, browser_options, client_script, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75

@@ -21,8 +21,7 @@ from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.tiles import shared_pyramid
-from flowtex.web.assets import asset
-from flowtex.web.view import WebView
+from flowtex.web.view import WebView, asset
 
 #: Valid host names, which have no characters with a meaning in a page's policy.
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")

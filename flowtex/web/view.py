@@ -1,4 +1,4 @@
-"""A scene as it is sent to a browser: the header and the arrays that the client draws."""
+"""A scene as it is sent to a browser: header and arrays for the client, and its own files."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from flowtex._util.arguments import checked_count
@@ -337,3 +338,32 @@ def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
         return _Tile(scene.pyramid.textures(key), None)
     textures = scene.pyramid.tile(key, [scene.source(step) for step in steps])
     return _Tile(textures, None if textures is None else packing_of(textures))
+
+
+_FOLDER = Path(__file__).resolve().parent
+
+
+def asset(name: str) -> Path:
+    """Return the path of one of the client's files, such as ``"core.js"``."""
+    path = _FOLDER / name
+    if not path.is_file():
+        msg = (
+            f"{path} is missing. Install flowtex again: "
+            "python -m pip install --force-reinstall --no-deps flowtex"
+        )
+        raise FileNotFoundError(msg)
+    return path
+
+
+def client_module() -> str:
+    """Return the client as the text of a module, for widgets and pages."""
+    return _joined("core.js", "exports.mjs")
+
+
+def client_script(*, with_store: bool = False) -> str:
+    """Return the client as a script that defines ``flowtex``, and ``flowtexStore`` to read one."""
+    return _joined("core.js", *(("store.js",) if with_store else ()))
+
+
+def _joined(*names: str) -> str:
+    return "".join(asset(name).read_text("utf-8") for name in names)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import property_test
 
-from flowtex.sources.fill import undeclared_fill
+from flowtex.sources.datasets.masks import undeclared_fill
 
 FILLS = (-999.0, -9999.0, 9999.0, -99.99, -999.9, -32768.0, -8888.0, -(2.0**31), -1e10, 1e20, 1e35)
 

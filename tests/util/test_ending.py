@@ -15,7 +15,7 @@ from served import signals_of_a_terminal
 from waiting import PATIENCE_S, wait_until
 
 from flowtex import examples
-from flowtex._util.terminal.ending import Ended, ended_by_signals
+from flowtex._util.terminal import Ended, ended_by_signals
 from flowtex.cli import commands, main
 
 

@@ -10,7 +10,7 @@ from rich.table import Table
 from strategies import property_test
 
 import flowtex
-from flowtex._util.terminal.console import plain_text, terminal
+from flowtex._util.terminal import plain_text, terminal
 from flowtex.cli import main
 from flowtex.cli.console import complain, say
 
@@ -75,4 +75,4 @@ def test_there_is_one_console() -> None:
             if (module == "rich.console" and "Console" in names) or "rich" in names:
                 makers.append(str(path.relative_to(package)))
     # One for types, and the one that it is made from.
-    assert set(makers) == {"_util/terminal/console.py"}
+    assert set(makers) == {"_util/terminal.py"}

@@ -14,9 +14,8 @@ import pytest
 import flowtex
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene.scene import Scene
-from flowtex.web.assets import client_module
 from flowtex.web.preview import preview_png
-from flowtex.web.view import WebView
+from flowtex.web.view import WebView, client_module
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route

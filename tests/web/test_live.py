@@ -11,8 +11,7 @@ from embed import write_scene
 from flows import gyre
 
 from flowtex.scene.options import Options
-from flowtex.web.assets import asset
-from flowtex.web.view import web_views
+from flowtex.web.view import asset, web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -22,7 +22,7 @@ from scipy.ndimage import map_coordinates
 import flowtex
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.pyramid import build
-from flowtex.web.assets import asset
+from flowtex.web.view import asset
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

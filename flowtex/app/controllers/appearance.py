@@ -103,13 +103,14 @@ class Appearance(Controller):
         tick = (last - first) / max((len(times) - 1) * STOPS_PER_STEP, 1)
         self.state.set(comparisons=comparisons, first=first, last=last, tick=tick)
         if self.compared not in comparisons:
-            self.end_comparison()
+            self.state.set(compare="nothing")
+            self.take_comparison()
 
     def take_painter(self) -> None:
         """Draw by the painter that the page requests; the camera stays the same."""
         painter, element = self.state.get("painter"), self.area.element
         if painter != element.painter and name_among(painter, PAINTERS):
-            element.draw_by(painter)
+            element.call("paint", painter)  # the page begins again with it
         else:
             self.state.set(painter=element.painter)
 
@@ -137,7 +138,8 @@ class Appearance(Controller):
             self.state.set(compare=self.compared)
         elif choice != self.compared:
             try:
-                self.area.compare(comparison(choice, self._first_time) or None)
+                first = float(self.viewport.field.times[0])
+                self.area.compare(comparison(choice, first) or None)
             except Exception:
                 self.state.set(compare=self.compared)
                 raise
@@ -158,11 +160,6 @@ class Appearance(Controller):
     def _show_time_beside(self) -> None:
         time = self.viewport.time_beside
         self.state.set(time_beside=time, moment_beside=time_text(self.viewport.field, time))
-
-    def end_comparison(self) -> None:
-        """Show one pane again."""
-        self.state.set(compare="nothing")
-        self.take_comparison()
 
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""
@@ -194,10 +191,6 @@ class Appearance(Controller):
         if saved.get("time_beside") is not None:
             self.state.set(time_beside=saved["time_beside"])
             self.take_time_beside()
-
-    @property
-    def _first_time(self) -> float:
-        return float(self.viewport.field.times[0])
 
     def _comparisons(self) -> list[str]:
         """Return the labels of second panes that the present flow allows."""

@@ -27,6 +27,7 @@ from flowtex.app.controllers.context import (
 from flowtex.app.controllers.library import Choice, TracedFlow
 from flowtex.app.server.files import Uploads
 from flowtex.app.server.validation import clipped, name_among
+from flowtex.app.streaming.viewport import time_in
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
@@ -78,7 +79,9 @@ class Data(Controller):
         self.state.on("file")(self.take_file)
         self.state.on("vectors", "block", "axis", "index")(self.take_choice)
         context.field_changed.connect(self._show_choice)
-        self.stream.data_failed.connect(self._complain)
+        self.stream.data_failed.connect(
+            lambda error: context.complain(without_folder(str(error), self.name))
+        )
         context.area.element.parameter_asked.connect(self.take_parameter)
 
     @property
@@ -90,11 +93,6 @@ class Data(Controller):
     def choice(self) -> Choice:
         """The part of the file that is shown."""
         return self._current.choice
-
-    @property
-    def python(self) -> str | None:
-        """Expression that makes the flow, unless that comes from a file."""
-        return self.library.python(self.name)
 
     def take_file(self) -> None:
         """Open another file."""
@@ -163,7 +161,7 @@ class Data(Controller):
             flow = await request.in_thread(self._worker, lambda: self._preview(request), quick=True)
             self._show(flow, request)
             if not flow.whole:
-                complete = partial(self._complete, flow)
+                complete = partial(self._traced, replace(flow, shown=flow.field))
                 self._show(await request.in_thread(self._worker, complete, quick=False), request)
             if request.then is not None and not request.over:
                 request.then()
@@ -181,25 +179,20 @@ class Data(Controller):
         source, field = self._read(name, choice)
         limit, nodes = FILE_PREVIEW if name != self.name else PART_PREVIEW
         shown = coarsened_field(field, nodes) if field.valid.size > limit else field
-        flow = LoadedFlow(name, choice, source, field, shown)
-        return replace(flow, traced=self._trace(flow))
-
-    def _complete(self, flow: LoadedFlow) -> LoadedFlow:
-        """Trace all nodes of a flow that was shown with few."""
-        flow = replace(flow, shown=flow.field)
-        return replace(flow, traced=self._trace(flow))
+        return self._traced(LoadedFlow(name, choice, source, field, shown))
 
     def _read(self, name: str, choice: Choice) -> tuple[Source, FlowField]:
         return self.library.source(name), self.library.field(name, choice)
 
-    def _trace(self, flow: LoadedFlow) -> TracedFlow:
+    def _traced(self, flow: LoadedFlow) -> LoadedFlow:
+        """Trace the nodes of a flow that are to be shown."""
         name, times = flow.name if flow.whole else "", flow.shown.times
         traced = self.library.trace(name, flow.choice, flow.shown, self.settings)
         # Another part of the same data is shown at the same time.
         if np.array_equal(times, self.viewport.field.times):
             for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
                 traced.store.at(step)
-        return traced
+        return replace(flow, traced=traced)
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Replace the flow by another one; if that fails, it stays."""
@@ -222,10 +215,6 @@ class Data(Controller):
         except BaseException:
             self._current, self._goal = before
             raise
-
-    def _complain(self, error: Exception) -> None:
-        """Show an error of the present data on the page."""
-        self.context.complain(without_folder(str(error), self.name))
 
     def _show_choice(self) -> None:
         """Show the present choice on the page, unless another one is being opened."""
@@ -345,11 +334,6 @@ class FileBeside(Controller):
         """Whether another file exists."""
         return len(self._data.names) > 1
 
-    @property
-    def python(self) -> str | None:
-        """Expression that makes the flow, unless that comes from a file."""
-        return self.context.library.python(self.name) if self.name else None
-
     def begin(self) -> None:
         """Show the file that was chosen last, or the next one of the list."""
         self._active = True
@@ -457,7 +441,7 @@ class FileBeside(Controller):
         choice = library.nearest(name, request.choice)
         field = library.field(name, choice)
         flow = library.trace(name, choice, field, self.settings)
-        for step in sorted(set(steps_around(field.times, self.viewport.time_in(field))[:2])):
+        for step in sorted(set(steps_around(field.times, time_in(self.area.scene, field))[:2])):
             flow.store.at(step)
         return choice, flow
 

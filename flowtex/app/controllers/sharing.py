@@ -23,8 +23,6 @@ from flowtex.errors import FieldError
 FORMATS = ("PNG", "MP4", "GIF")
 #: Seconds between two reports of how far a job is.
 PROGRESS_INTERVAL_S = 0.15
-#: Characters of a link that are read.
-LINK_LENGTH = 10_000
 #: Names of numbers of the page in messages.
 LABELS = {
     "out_width": "the width",
@@ -163,13 +161,14 @@ class Sharing(Controller):
 
     def show_state(self) -> None:
         """Show the link and the lines of Python on the page."""
-        state = self.present_state()
+        state, beside = self.present_state(), self._beside.name
+        python = self.context.library.python
         self.state.set(
             link="#" + to_link(state),
             python=to_python(
                 state,
-                source=self._data.python,
-                source_beside=self._beside.python,
+                source=python(self._data.name),
+                source_beside=python(beside) if beside else None,
                 size=self.viewport.size,
             ),
         )
@@ -177,7 +176,7 @@ class Sharing(Controller):
     def take_link(self, text: object) -> None:
         """Show the state in the page's address."""
         faults: list[str] = []
-        state = from_link(str(text)[:LINK_LENGTH], faults)
+        state = from_link(str(text), faults)
         if faults:
             self.context.complain("; ".join(faults))
         if state:

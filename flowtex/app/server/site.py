@@ -32,10 +32,17 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.terminal.ending import SIGNALS, Ended, announce_end
-from flowtex.app.server.connections import LimitedServer, keep
+from flowtex._util.terminal import SIGNALS, Ended, announce_end
 from flowtex.app.server.files import add_route
-from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, known_hosts
+from flowtex.app.server.security import (
+    FAULT,
+    LOCAL,
+    LimitedServer,
+    guard,
+    is_same,
+    keep,
+    known_hosts,
+)
 from flowtex.app.server.sessions.registry import (
     ClosedError,
     FullError,

@@ -22,8 +22,7 @@ import numpy as np
 from aiohttp import web
 
 from flowtex._util.extras import import_extra
-from flowtex.app.server.connections import LimitedServer
-from flowtex.app.server.security import LOCAL, guard, is_same
+from flowtex.app.server.security import LOCAL, LimitedServer, guard, is_same
 from flowtex.app.server.site import serve_until_ended
 from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels

@@ -34,8 +34,7 @@ from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
 from flowtex.textures.tiles import TileKey
-from flowtex.web.assets import client_module
-from flowtex.web.view import TileSource, WebView
+from flowtex.web.view import TileSource, WebView, client_module
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)
@@ -190,10 +189,6 @@ class Element:
         area = self._stream.area_name
         return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._sent}
 
-    def draw_by(self, painter: str) -> None:
-        """Change the painter; the page begins again with it."""
-        self._call("paint", painter)
-
     def follow(self) -> None:
         """Send changes to the page; other scenes after all pending changes."""
         if not self.painter or self._due is not None:
@@ -217,14 +212,15 @@ class Element:
         changes |= {k: v for k, v in present.items() if v != self._sent.get(k)}
         self._sent = present
         if changes:
-            self._call("take", {**changes, "by": self._by})
+            self.call("take", {**changes, "by": self._by})
 
     def repeat(self) -> None:
         """Send the current values to the page again, to replace invalid ones."""
         self._shown, self._sent = (), {}
         self.follow()
 
-    def _call(self, method: str, *values: object) -> None:
+    def call(self, method: str, *values: object) -> None:
+        """Call a method of the element on the page."""
         self._server.js_call(self.ref, method, *values)
 
     def _present(self) -> Header:

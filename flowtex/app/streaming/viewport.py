@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.cache import WeakCache
@@ -93,7 +95,8 @@ class Viewport:
         #: The views side by side, one or two.
         self._still = True
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
-        self.window.suppress_rendering()
+        # Only draw() renders: a texture requests a picture at each change.
+        self.window.plotter.suppress_rendering = True
         self.resize(*self._size)
         self.home(zoom=zoom, focus=focus)
 
@@ -167,7 +170,7 @@ class Viewport:
         self._stop_following()
         for pane in self.panes:
             pane.handle.remove(render=False)
-        self.window.close()
+        self.window.plotter.close()
 
     def copy(self) -> Viewport:
         """Return a viewport with its own window that shows the same."""
@@ -240,7 +243,7 @@ class Viewport:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
         colour = BACKGROUNDS.get(colour, colour) if isinstance(colour, str) else colour
         self.background = colour
-        self.window.set_background(colour)
+        self.window.plotter.renderer.set_background(colour)
 
     # --- time --------------------------------------------------------------------------------
 
@@ -275,10 +278,6 @@ class Viewport:
         with suppress(TypeError, ValueError):  # no dates, or of two calendars
             return float((self.field.start - other.start).total_seconds())
         return 0.0
-
-    def time_in(self, field: FlowField) -> float:
-        """Return the present time of another flow; its last one if it has no such time."""
-        return _time_in(self.scene, field)
 
     @property
     def reads_late(self) -> bool:
@@ -322,7 +321,7 @@ class Viewport:
     @camera.setter
     def camera(self, camera: Camera) -> None:
         self._camera = camera
-        self.window.place(camera)
+        apply_camera(camera, self.window.plotter.camera)
 
     @property
     def zoom(self) -> float:
@@ -398,12 +397,12 @@ def _whole_mesh(surface: Surface) -> pv.PolyData:
 
 def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
     if "field" in changes:
-        return _time_in(first, changes["field"])
+        return time_in(first, changes["field"])
     earliest, latest = first.field.times[[0, -1]]
     return float(np.clip(changes.get("time", first.time), earliest, latest))
 
 
-def _time_in(scene: Scene, field: FlowField) -> float:
+def time_in(scene: Scene, field: FlowField) -> float:
     """Return the time of a scene in another field; the last one if that has no such time."""
     time, (first, last) = scene.time, map(float, field.times[[0, -1]])
     with suppress(TypeError, ValueError):  # no dates, or of two calendars
@@ -433,22 +432,12 @@ class OffscreenWindow:
     """
 
     def __init__(self, width: int, height: int) -> None:
-        import pyvista as pv
-
         self._size = width, height
         self.longest_side = LONGEST_SIDE_PX  #: Pixels of the window along a side, at most.
         self.plotter = pv.Plotter(
             off_screen=True, window_size=[width, height], lighting="light kit"
         )
         self.plotter.disable_anti_aliasing()
-
-    @property
-    def _window(self) -> Any:
-        return self.plotter.render_window
-
-    def suppress_rendering(self) -> None:
-        """Draw only in :meth:`draw`: a texture requests a picture at each change."""
-        self.plotter.suppress_rendering = True
 
     @property
     def size(self) -> tuple[int, int]:
@@ -460,18 +449,6 @@ class OffscreenWindow:
         self._size = size
         self.plotter.window_size = [min(side, self.longest_side) for side in size]
 
-    def close(self) -> None:
-        """Free the graphics card."""
-        self.plotter.close()
-
-    def place(self, camera: Camera) -> None:
-        """Look from a camera."""
-        apply_camera(camera, self.plotter.camera)
-
-    def set_background(self, colour: Any) -> None:
-        """Set the background colour."""
-        self.plotter.renderer.set_background(colour)
-
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Return a picture of what is visible, (height, width, 3), row 0 at the top.
 
@@ -479,16 +456,20 @@ class OffscreenWindow:
         height in pixels.
         """
         camera, renderer = self.plotter.camera, self.plotter.renderer
+        window: Any = self.plotter.render_window
         renderer.SetViewport(0, 0, *np.divide((width, height), self.plotter.window_size))
         renderer.ResetCameraClippingRange()
         saved = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
         if part is not None:
             self._narrow(camera, part)
-        self._window.Render()
+        window.Render()
         camera.SetWindowCenter(*saved[0])
         camera.SetParallelScale(saved[1])
         camera.SetViewAngle(saved[2])
-        return self._read(width, height)
+        values = vtkUnsignedCharArray()
+        window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
+        rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
+        return np.ascontiguousarray(rows[::-1])
 
     def _narrow(self, camera: vtkCamera, part: Rect) -> None:
         """Narrow the VTK camera to a part of the view."""
@@ -501,12 +482,3 @@ class OffscreenWindow:
         camera.SetParallelScale(camera.GetParallelScale() * share)
         half = np.radians(camera.GetViewAngle()) / 2
         camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * share))))
-
-    def _read(self, width: int, height: int) -> Bytes:
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-
-        values = vtkUnsignedCharArray()
-        self._window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
-        rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
-        return np.ascontiguousarray(rows[::-1])

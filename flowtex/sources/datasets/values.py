@@ -13,10 +13,9 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
-from flowtex.sources.datasets.masks import Mask, valid_range
+from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
-from flowtex.sources.fill import undeclared_fill
 from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.record import Record
 

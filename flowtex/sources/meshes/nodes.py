@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.sources.fill import undeclared_fill
+from flowtex.sources.datasets.masks import undeclared_fill
 from flowtex.sources.meshes.vectors import MeshArray, data_of, values_of
 from flowtex.sources.record import Record
 

@@ -17,8 +17,7 @@ from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
 from flowtex.sources.opening.series import Opened, are_steps, of_tree
-from flowtex.sources.opening.tables import read_csv, read_vec
-from flowtex.sources.opening.wind_json import read_winds
+from flowtex.sources.opening.tables import read_csv, read_vec, read_winds
 
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json", ".geojson")

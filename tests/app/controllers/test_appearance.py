@@ -24,7 +24,8 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     flat.area.clim, flat.area.cmap = (0.0, 1.0), "magma"
     assert second.appearance.cmap == "magma" and second.scalar_limits == (0.0, 3.0)
     flat.area.clim, flat.area.cmap = None, "viridis"
-    flat.controllers.appearance.end_comparison()
+    flat.state.set(compare="nothing")
+    flat.controllers.appearance.take_comparison()
     appearance, viewport = series.controllers.appearance, series.viewport
     now = viewport.handle.time
     series.state.set(compare="Another time")
@@ -38,7 +39,8 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     series.state.set(time_beside="late")
     appearance.take_time_beside()
     assert series.state.get("time_beside") == 1.5
-    appearance.end_comparison()
+    series.state.set(compare="nothing")
+    appearance.take_comparison()
     viewport.set_time(now)
 
 

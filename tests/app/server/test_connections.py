@@ -15,9 +15,8 @@ import aiohttp
 from aiohttp import web
 from waiting import PATIENCE_S
 
-from flowtex.app.server import connections
-from flowtex.app.server.connections import LimitedServer, keep, usual_most
-from flowtex.app.server.security import guard
+from flowtex.app.server import security
+from flowtex.app.server.security import LimitedServer, guard, keep, usual_most
 
 HALF = b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "
 FORM = b"POST /form HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n"
@@ -119,7 +118,7 @@ async def test_connections_beyond_the_maximum_are_refused(
 
 
 async def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "LINGER_S", 0.0)
+    monkeypatch.setattr(security, "LINGER_S", 0.0)
 
     def later(seconds: float) -> None:
         loop = asyncio.get_running_loop()
@@ -130,11 +129,11 @@ async def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) ->
         half, form = await here.begin(), await here.begin_form()
         whole = await here.begin(HALF + b"no\r\n\r\n")
         assert (await whole[0].readline()).startswith(b"HTTP/1.1 200")
-        later(connections.HEAD_S + 1)
+        later(security.HEAD_S + 1)
         assert await ended(half) == b""
         assert (await ended(whole)).endswith(b"a page")  # which came before its time was over
         assert not form[0].at_eof()
-        later(connections.ANSWER_S)
+        later(security.ANSWER_S)
         assert (await ended(form)).startswith(b"HTTP/1.1 408")
         await socket.send_str("here")
         assert await socket.receive_str(timeout=PATIENCE_S) == "here"

@@ -15,7 +15,7 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.units import factor
 from flowtex.sources.datasets.flow import read_flow
-from flowtex.sources.models.points import join_points
+from flowtex.sources.models.mesh import join_points
 from flowtex.sources.models.scattered import healpix_centres
 from flowtex.sources.record import Record
 

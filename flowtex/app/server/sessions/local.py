@@ -92,16 +92,12 @@ class LimitedMessages(UnChunker):
             return {**message, "args": [declared], "kwargs": {}}
         if method == "trame.lifecycle.update":
             return {**message, "kwargs": {}} if name_among(first, EVENTS) else None
-        if method == "trame.trigger" and not _is_plain_name(first):
-            return None
+        if method == "trame.trigger":  # trame writes unknown names to the log
+            is_plain = isinstance(first, str) and len(first) <= NAME_LENGTH and first.isidentifier()
+            return message if is_plain else None
         if isinstance(method, str) and method.startswith("trame.rca."):
             return {**message, "kwargs": {}} if name_among(first, self._areas) else None
         return message
-
-
-def _is_plain_name(name: object) -> bool:
-    """Return whether a name is safe in a log, to which trame writes unknown triggers."""
-    return isinstance(name, str) and len(name) <= NAME_LENGTH and name.isidentifier()
 
 
 def restrict(endpoint: Any) -> None:
