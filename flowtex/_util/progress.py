@@ -1,4 +1,4 @@
-"""Progress bars for work of more than a second, and a way to cancel work in a thread.
+"""Work in threads: pools, a way to cancel work, and progress bars for more than a second.
 
 rich draws the bar from a background thread, in a terminal or a notebook; without threads no bar is
 shown. Work inside :func:`stoppable` is cancelled at its next call of :func:`check`.
@@ -6,20 +6,62 @@ shown. Work inside :func:`stoppable` is cancelled at its next call of :func:`che
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, TypeVar
+from functools import cache
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from flowtex._util.terminal import terminal
-from flowtex._util.threads import has_threads
 
 if TYPE_CHECKING:
     from rich.progress import Progress
     from rich.status import Status
 
+P = ParamSpec("P")
 T = TypeVar("T")
+
+
+@cache
+def has_threads() -> bool:
+    """Return whether a thread can be started here."""
+    trial = threading.Thread(target=int, daemon=True)
+    try:
+        trial.start()
+    except RuntimeError:
+        return False
+    trial.join()
+    return True
+
+
+def pool(size: int, name: str) -> Executor:
+    """Return an executor with ``size`` threads; without threads it runs each call at once."""
+    return ThreadPoolExecutor(size, name) if has_threads() else _Caller()
+
+
+def start(work: Callable[[], None], name: str) -> None:
+    """Run a function in a daemon thread; without threads, run it at once."""
+    if has_threads():
+        threading.Thread(target=work, name=name, daemon=True).start()
+    else:
+        work()
+
+
+class _Caller(Executor):
+    """Run each submitted call at once, in the calling thread."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Run a call and return its finished future."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
 
 #: Time before a bar appears.
 BAR_DELAY_S = 1.0

@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.threads import pool
+from flowtex._util.progress import pool
 from flowtex.field import FlowField
 from flowtex.field.earth import MapLines
 from flowtex.plotting.vtk_camera import read_camera

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any
 
 from flowtex._util.extras import import_extra
-from flowtex._util.threads import pool
+from flowtex._util.progress import pool
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
 

@@ -122,7 +122,7 @@ def begin_trial() -> Future[OpenGLReport]:
     trial = _trials.get(os.getpid())
     if trial is None:
         prefer_headless()
-        from flowtex._util.threads import pool
+        from flowtex._util.progress import pool
 
         trial = pool(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
         _trials[os.getpid()] = trial

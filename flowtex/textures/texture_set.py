@@ -33,7 +33,7 @@ from functools import cached_property
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats32, Halves
-from flowtex._util.threads import pool
+from flowtex._util.progress import pool
 from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField

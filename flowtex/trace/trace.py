@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import brief, check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex._util.progress import track
-from flowtex._util.threads import pool
+from flowtex._util.progress import pool, track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import FOLLOWED

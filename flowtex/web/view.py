@@ -14,8 +14,7 @@ from typing import Any
 from flowtex._util.arguments import checked_count
 from flowtex._util.cache import ByteCache
 from flowtex._util.colours import colour_table, rgb
-from flowtex._util.progress import check, stoppable, track
-from flowtex._util.threads import pool
+from flowtex._util.progress import check, pool, stoppable, track
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Colours, Packing, packing_of, tile_parts

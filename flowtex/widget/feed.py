@@ -19,8 +19,7 @@ from contextlib import suppress
 from functools import partial
 
 from flowtex._util.array_types import AnyArray
-from flowtex._util.progress import Stopped
-from flowtex._util.threads import has_threads, start
+from flowtex._util.progress import Stopped, has_threads, start
 from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info

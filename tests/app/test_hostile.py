@@ -276,7 +276,8 @@ async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
 def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.Event]:
     """Let each plane be opened when its event is set, or when it is not wanted any more."""
     gates: dict[str, threading.Event] = {}
-    read = app.controllers.data._read
+    library = app.controllers.data.library
+    read = library.field
 
     def waiting(name: str, choice: Choice) -> Any:
         gate = gates.setdefault(choice.plane, threading.Event())
@@ -284,7 +285,7 @@ def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.E
             check()
         return read(name, choice)
 
-    monkeypatch.setattr(app.controllers.data, "_read", waiting)
+    monkeypatch.setattr(library, "field", waiting)
     return gates
 
 
@@ -329,8 +330,8 @@ async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
     async with playing(app):
         before, failing = app.field, raising(RuntimeError("reader crashed"))
         places: list[tuple[Any, str]] = [
-            (app.controllers.data, "_read"),
-            (app.controllers.data, "_trace"),
+            (app.controllers.data.library, "field"),
+            (app.controllers.data.library, "trace"),
             (app.context, "show"),
         ]
         for owner, name in places:

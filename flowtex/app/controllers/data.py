@@ -176,13 +176,10 @@ class Data(Controller):
     def _preview(self, request: LoadRequest) -> LoadedFlow:
         """Read a flow, and trace it with as many nodes as there is time for."""
         name, choice = request.name, self.library.complete(request.name, request.choice)
-        source, field = self._read(name, choice)
+        source, field = self.library.source(name), self.library.field(name, choice)
         limit, nodes = FILE_PREVIEW if name != self.name else PART_PREVIEW
         shown = coarsened_field(field, nodes) if field.valid.size > limit else field
         return self._traced(LoadedFlow(name, choice, source, field, shown))
-
-    def _read(self, name: str, choice: Choice) -> tuple[Source, FlowField]:
-        return self.library.source(name), self.library.field(name, choice)
 
     def _traced(self, flow: LoadedFlow) -> LoadedFlow:
         """Trace the nodes of a flow that are to be shown."""

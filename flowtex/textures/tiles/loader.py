@@ -20,8 +20,7 @@ import numpy as np
 
 from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
-from flowtex._util.progress import Stopped, check, stoppable
-from flowtex._util.threads import pool
+from flowtex._util.progress import Stopped, check, pool, stoppable
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 

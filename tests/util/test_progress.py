@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 import flowtex
-from flowtex._util import threads
+from flowtex._util import progress
 
 PACKAGE = Path(flowtex.__file__).parent
 #: Where threads are made otherwise: they serve or end processes, and keep stores.
-OTHERS = ("app", "_util/threads.py", "_util/child", "_util/terminal")
+OTHERS = ("app", "_util/progress.py", "_util/child")
 
 
 @pytest.fixture
@@ -25,17 +25,17 @@ def _no_threads(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", refuse)
-        threads.has_threads.cache_clear()
+        progress.has_threads.cache_clear()
         yield
-    threads.has_threads.cache_clear()
+    progress.has_threads.cache_clear()
 
 
 @pytest.mark.usefixtures("_no_threads")
 def test_without_threads_the_caller_does_it_at_once() -> None:
     done: list[str] = []
-    threads.start(lambda: done.append(threading.current_thread().name), "a thread")
+    progress.start(lambda: done.append(threading.current_thread().name), "a thread")
     assert done == [threading.current_thread().name]
-    with threads.pool(4, "threads") as pool:
+    with progress.pool(4, "threads") as pool:
         assert list(pool.map(abs, [-1, -2])) == [1, 2]
         wrong = pool.submit(int, "two")
         assert wrong.done()
@@ -45,7 +45,7 @@ def test_without_threads_the_caller_does_it_at_once() -> None:
 
 @pytest.mark.threads
 def test_threads_have_the_name_of_their_pool() -> None:
-    with threads.pool(2, "some") as pool:
+    with progress.pool(2, "some") as pool:
         assert pool.submit(lambda: threading.current_thread().name).result().startswith("some")
 
 
