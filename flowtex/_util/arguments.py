@@ -153,10 +153,7 @@ def elsewhere(name: str, names: Sequence[str]) -> str:
 
 
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
-    """Return a hint: which known names resemble one that does not exist, or a list of them.
-
-    Of many names only the ``usual`` ones are listed.
-    """
+    """Return known names that resemble a text, or a list of them; of many the ``usual`` ones."""
     names, examples = tuple(known), ", ".join(usual)
     if close := closest(name, names):
         return f"did you mean {' or '.join(map(repr, close))}?"

@@ -19,10 +19,7 @@ def row_blocks(rows: int, columns: int) -> Iterator[slice]:
 
 
 def even_runs(numbers: Indices) -> Iterator[slice]:
-    """Yield numbers as slices: few where they lie evenly apart, as on both sides of a seam.
-
-    Those that fall are a slice where there are three at least.
-    """
+    """Yield numbers as slices, few where they lie evenly apart, as on both sides of a seam."""
     first = 0
     while first < len(numbers):
         steps = np.diff(numbers[first:])

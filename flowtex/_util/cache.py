@@ -44,10 +44,7 @@ class _Gates:
 
 
 class WeakCache(Generic[V]):
-    """Values by key, held weakly: a value is dropped when nothing else refers to it.
-
-    The values have to allow weak references. All methods may be called from any thread.
-    """
+    """Values by key, each dropped when nothing else refers to it; for use by any thread."""
 
     def __init__(self) -> None:
         self._values = weakref.WeakValueDictionary[Hashable, V]()
@@ -55,11 +52,10 @@ class WeakCache(Generic[V]):
         self._gates = _Gates()
 
     def get(self, key: Hashable, make: Callable[[], V], *, owner: object | None = None) -> V:
-        """Return the value of a key, computing it on the first call.
+        """Return the value of a key, computed by the first thread that asks, without asking again.
 
-        Threads that ask for the same key meanwhile wait for the value, so ``make`` must not ask for
-        it. An ``owner`` has its own values for each key, which live as long as it does; they must
-        not refer to it, or neither is ever freed.
+        An ``owner`` has its own values for each key, which live as long as it does, and must not
+        refer to it.
         """
         if owner is not None:
             key = (weakref.ref(owner), key)
@@ -74,11 +70,9 @@ class WeakCache(Generic[V]):
 
 
 class ByteCache(Generic[K, S]):
-    """Values by key, up to a size in memory; the ones used longest ago are dropped first.
+    """Values by key, up to ``max_bytes`` by their ``nbytes``; those used longest ago are dropped.
 
-    The values together may have ``max_bytes``, by their ``nbytes``; ``min_count`` of them stay
-    however large they are, and not more than ``max_count`` however small. All methods may be called
-    from any thread.
+    At least ``min_count`` stay, at most ``max_count``. All methods may be called from any thread.
     """
 
     def __init__(self, max_bytes: int, *, min_count: int = 1, max_count: float = math.inf) -> None:

@@ -13,21 +13,13 @@ UNKNOWN_BYTES = 4_000_000_000
 
 
 def available_bytes(root: Path = Path("/")) -> int:
-    """Return the bytes that this process can still take before memory runs out.
-
-    It is the least of the free physical memory and of the rests that the limits of the control
-    groups (versions 1 and 2) and ``RLIMIT_AS`` leave. ``root`` is the folder in which ``proc`` and
-    ``sys`` lie.
-    """
+    """Return the least of the free memory and what control groups and ``RLIMIT_AS`` leave."""
     limits = [*_physical(root), *_groups(root), *_address_space(root)]
     return max(min(limits, default=UNKNOWN_BYTES), 0)
 
 
 def give_back() -> None:
-    """Return freed memory to the system.
-
-    glibc keeps it in a heap for each thread, which other threads do not use.
-    """
+    """Return freed memory to the system, which glibc keeps in a heap for each thread."""
     with suppress(OSError, AttributeError):  # of another C library
         ctypes.CDLL("libc.so.6").malloc_trim(0)
 

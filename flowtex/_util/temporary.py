@@ -63,10 +63,7 @@ def remove_stale_folders() -> None:
 
 
 class TemporaryFolder:
-    """A folder that its owner alone can read, removed by :meth:`close` or with this object.
-
-    When it is made, folders of processes that were killed are removed.
-    """
+    """A private folder, removed by :meth:`close` or with this object; it removes stale ones."""
 
     def __init__(self) -> None:
         remove_stale_folders()

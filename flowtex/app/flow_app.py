@@ -166,10 +166,7 @@ class FlowApp:
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
-    """Return the first flow to show: its name, and the part that the options choose.
-
-    Raises the FieldError of the first flow when none can be opened.
-    """
+    """Return the first flow that can be shown and its chosen part, or raise the first error."""
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )

@@ -29,11 +29,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
 
 
 def _is_requested() -> bool:
-    """Return whether the user has named this backend.
-
-    PyVista does not say whether a backend was named or is merely the first that was found, so the
-    caller's argument is inspected; without that, the answer is yes.
-    """
+    """Return whether the user has named this backend, which only frames of the caller tell."""
     frame = sys._getframe(1)
     while (caller := frame.f_back) is not None:
         frame = caller

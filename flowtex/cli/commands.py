@@ -69,8 +69,6 @@ for _command in (render, movie, export, formula, info, pyramid, serve):
 @app.command
 def doctor() -> int:
     """Check the system that flowtex runs on, and name what is missing."""
-    from flowtex.rendering import diagnostics
-
     return diagnostics.main()
 
 
@@ -144,9 +142,7 @@ def _warn(message: Warning | str, *_: Any) -> None:
 
 def _exit_code(error: Exception) -> int | None:
     """Exit code of an error that the user can correct; ``None`` for a defect of the program."""
-    from flowtex.rendering.diagnostics import OpenGLMissingError
-
-    if isinstance(error, OpenGLMissingError):
+    if isinstance(error, diagnostics.OpenGLMissingError):
         return 1
     return 2 if isinstance(error, (CycloptsError, FieldError)) else None
 
@@ -161,8 +157,7 @@ def begin() -> None:
 def serve_processes(page: ServeFlags | None) -> bool:
     """Serve the page of the running command by processes, and return whether that is possible.
 
-    Where the system forks, each session is a process that runs the same command, up to the point
-    where it would serve: there it opens one session, for the process in front.
+    Each is forked, and runs the same command up to the point where it would serve.
     """
     if not FORKS or _host.get() is not None:
         return False

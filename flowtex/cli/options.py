@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, fields, make_dataclass
 from dataclasses import field as data_field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
@@ -102,15 +102,9 @@ TIME = Annotated[
 ]
 
 if TYPE_CHECKING:
-
-    class FieldFlags:
-        """The part of a file to draw."""
-
-    class LookFlags:
-        """Colours and view."""
-
-    class SettingFlags:
-        """One flag for each setting."""
+    FieldFlags: TypeAlias = object
+    LookFlags: TypeAlias = object
+    SettingFlags: TypeAlias = object
 else:
     FieldFlags = _flags(
         "FieldFlags",

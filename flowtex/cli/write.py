@@ -6,7 +6,7 @@ import re
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -40,9 +40,6 @@ from flowtex.cli.options import (
 )
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
 
 #: Share of the flow that may leave the surface before the message has it.
 NOTABLE_LOSS = 0.01

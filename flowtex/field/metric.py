@@ -43,10 +43,7 @@ class IndexVelocity:
 def to_index_space(
     tangents: Floats, valid: Bools, poles: Poles | None, velocity: Floats
 ) -> IndexVelocity:
-    """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space.
-
-    The tangents of the surface are (2, J, I, 3), by i and by j.
-    """
+    """Express a velocity (T, J, I, 3), by tangents (2, J, I, 3) along i and j, in index space."""
     p_i, p_j = tangents
     square = np.einsum("djic,djic->ji", tangents, tangents)
     tiny = COLLAPSED_AREA * float(np.median(square if valid.all() else square[valid]))

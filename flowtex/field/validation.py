@@ -215,10 +215,7 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
 
 
 def _is_wide(p: Floats, ok: Bools) -> bool:
-    """Return whether a sample of the valid nodes shows that they are wider than a line.
-
-    Variances summed over more nodes are never smaller, and never greater than the bounding box's.
-    """
+    """Return whether a sample of the nodes is wider than a line, and so are all of them."""
     thinned = tuple(slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape)
     sample = p[thinned][ok[thinned]]
     if len(sample) < 3:

@@ -54,6 +54,7 @@ from flowtex.pyramid.tasks import (
     mend,
 )
 from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
+from flowtex.settings import TABLE
 from flowtex.textures.tiles import TileKey
 from flowtex.textures.tiles.pyramid import level_lines, level_shape
 
@@ -175,9 +176,7 @@ def build(
     >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
     0
     """
-    if lines not in ("auto", "pathlines", "streamlines"):
-        msg = f"lines is {lines!r}; expected 'auto', 'pathlines' or 'streamlines'"
-        raise FieldError(msg)
+    lines, parameter = TABLE["lines"].check(lines), TABLE["parameter"].check(parameter)
     place = place_text(store)
     with plain_faults():
         check_room(place, listed(store_at(place, read_only=False).list_dir))
@@ -315,22 +314,19 @@ def _remove(store: Store) -> None:
     sync(store.delete(DOCUMENT))
 
 
+@dataclass
 class _Run:
     """One call of :func:`build`: its store, and numbers of shards."""
 
-    def __init__(
-        self,
-        place: str,
-        group: Any,
-        arrays: Mapping[str, Sequence[str]],
-        about: dict[str, Any],
-        source: str,
-        progress: bool,  # noqa: FBT001
-    ) -> None:
-        self.place, self.group, self.arrays, self.about = place, group, arrays, about
-        self.source, self.progress = source, progress
-        self.name = uuid.uuid4().hex
-        self.made = self.kept = 0
+    place: str
+    group: Any
+    arrays: Mapping[str, Sequence[str]]
+    about: dict[str, Any]
+    source: str
+    progress: bool
+    name: str = ""
+    made: int = 0
+    kept: int = 0
 
     def update(self, **entries: Any) -> None:
         """Add to the description of the pyramid; under the new name, workers open it again."""

@@ -253,11 +253,7 @@ Arrays: TypeAlias = Callable[[str], Any]
 
 
 def to_write(store: Store) -> Arrays:
-    """Return a function that opens arrays of a store for writing, zeros included.
-
-    By default Zarr leaves out chunks of zeros, such as land; here every chunk has an object, so
-    that a missing one is recognised.
-    """
+    """Return a function that opens arrays for writing, zeros too, so that gaps are recognised."""
     zarr = import_extra("zarr", "store")
 
     def opened(name: str) -> Any:

@@ -306,10 +306,7 @@ class Levels:
             raise self._error(piece.name, error) from None
 
     async def _opened(self, name: str, expected: dict[str, Any]) -> AsyncArray[ArrayV3Metadata]:
-        """Return an asynchronous array of Zarr's.
-
-        Its format must be the one written here: it decides the meaning of the bytes.
-        """
+        """Return an array of Zarr's; its format, the meaning of its bytes, must be the one here."""
         if name not in self._arrays:
             open_array = import_extra("zarr.api.asynchronous", "store").open_array
             array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
@@ -398,10 +395,8 @@ def _wait(reading: Coroutine[Any, Any, T]) -> T:
 def create_samples(group: Group, about: About) -> None:
     """Create the array of samples, from which the ranges of colours are found.
 
-    Each task keeps the least and the greatest value of its part, and some of its values: those of
-    every 2^n-th row and column, a million of the whole surface. They stay in the store, so that a
-    build that continues knows them. The whole range is exact, the robust one has the percentiles of
-    that sample.
+    Each task keeps the least and the greatest value of its part, for whole ranges, and those of
+    every 2^n-th row and column, for percentiles.
     """
     parts = parts_along((about["nodes"][0], about["nodes"][1]))
     size = (len(_quantities(about)), 2 + math.prod(_shape(about)))

@@ -144,16 +144,13 @@ def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
             return objects.HTTPStore.from_url(text, **options)
         return objects.from_url(text, **options)
     except Exception as error:
-        msg = f"{text} is not the address of a store ({_first_line(error)})"
+        reason = str(error).partition("\n")[0]
+        msg = f"{text} is not the address of a store ({reason})"
         raise PyramidError(msg) from None
 
 
 def store_at(place: str | Path, *, read_only: bool = True) -> Store:
-    """Return the store of Zarr's at a place.
-
-    A file of a local folder is written beside its place and renamed, an object is put in one piece:
-    both are whole or absent.
-    """
+    """Return the store of Zarr's at a place, where files and objects are whole or absent."""
     text = place_text(place)
     import_extra("zarr.storage", "store")
     from zarr import storage
@@ -290,10 +287,6 @@ def plain_faults() -> Iterator[None]:
             raise
         msg = f"the store {fault_words(error)}"
         raise PyramidError(msg) from None
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).partition("\n")[0]
 
 
 @contextmanager

@@ -48,11 +48,9 @@ GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
 
 
 class Source:
-    """Nodes that a pyramid is built from.
+    """Nodes (J, I) of a ``shape`` that a pyramid is built from, and the time steps of ``scalars``.
 
-    ``field`` has the names, the times and the map of the field; only some sources have its nodes
-    there. ``shape`` is the number of nodes (J, I), ``scalars`` the number of time steps of each
-    scalar.
+    ``field`` has the names, the times and the map; only some sources have its nodes there.
     """
 
     field: FlowField

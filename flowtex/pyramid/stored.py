@@ -365,10 +365,9 @@ def _steps(count: int, read: Callable[[int], AnyArray]) -> Steps:
 
 
 def _between(places: Floats, line: Floats, turn: float | None) -> tuple[Indices, Floats]:
-    """Return the numbers in a line of the two nodes around each place, (2, N).
+    """Return the two nodes of a line around each place, (2, N), and shares of the second, (N,).
 
-    The shares of the second ones, (N,), come with them. Where places lie farther apart than nodes,
-    the nearest node is used for both: the nodes that are read are then evenly spaced.
+    Beside places that lie farther apart than nodes both are the nearest one, so evenly spaced.
     """
     if turn is not None:
         line = np.unwrap(line, period=turn)

@@ -220,8 +220,7 @@ def _writable(place: str, run: str) -> Arrays:
 def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
     """Write the data of a tile for browsers at some steps; with step 0 also its surface.
 
-    The flow is the velocity where the client can trace it. Where it cannot, along pathlines, the
-    flow is slices, with a halo that is wide enough for the first, middle and last step.
+    The flow is the velocity where the client can trace it, else slices, as along pathlines.
     """
     fingerprint = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)

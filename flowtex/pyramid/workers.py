@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import pickle
 import traceback
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
@@ -117,7 +118,7 @@ class Cluster(Threads):
             yield from super().run(function, tasks, need, *arguments)
             return
         # Results of tasks outlive the worker that has them.
-        sent = [self._client.submit(_unpacked, data, pure=False) for data in packed]
+        sent = [self._client.submit(pickle.loads, data, pure=False) for data in packed]
         futures = self._client.map(
             _run_task, tasks, function=function, inputs=sent, pure=False, retries=MOST_TRIALS - 1
         )
@@ -164,9 +165,3 @@ def _packed(value: object) -> bytes | None:
         )
         raise PyramidError(msg) from error
     return data if len(data) <= MOST_SENT else None
-
-
-def _unpacked(data: bytes) -> Any:
-    import pickle
-
-    return pickle.loads(data)

@@ -44,8 +44,7 @@ OUTER = "outer"
 class Source:
     """The choices of a file, a mesh or a field, from which one field after another is made.
 
-    ``name`` is for captions, ``nbytes`` the size in memory, and ``identity`` the state of
-    the files when they were opened; empty without files.
+    ``identity`` is the state of its files when they were opened.
     """
 
     def __init__(self, name: str = "") -> None:

@@ -110,10 +110,9 @@ class NodeDisplacements:
     def _straight(
         self, nodes: Indices, along_i: Floats32, along_j: Floats32
     ) -> tuple[Floats32, Bools]:
-        """Return displacements (C, N) on a surface that is straight where positions are unknown.
+        """Return displacements (C, N) that are straight beyond the last known cell on their way.
 
-        It continues from the last place on the way there whose cell is known. The second value is
-        whether the cell at the end of the way is.
+        The second value is whether the cell at the end of the way is known.
         """
         start, along = np.stack([self._j, self._i])[:, nodes], np.stack([along_j, along_i])
         most = np.array(self._cells.shape)[:, None] - 1
@@ -141,10 +140,7 @@ SMALL_CELLS = 5
 
 @dataclass(frozen=True)
 class Padding:
-    """Where the nodes of one axis lie in a texture.
-
-    Of ``total`` nodes, ``nodes`` are drawn, from number ``first`` on.
-    """
+    """Where ``nodes`` of the ``total`` on one axis, from the ``first``, lie in a texture."""
 
     nodes: int
     before: int
@@ -388,10 +384,7 @@ class SurfaceGeometry(DrawnSurface):
 
     @cached_property
     def normal(self) -> Floats32:
-        """Unit normals at the nodes, (J, I, 3), in the mesh's own axes.
-
-        A node whose cells have collapsed takes the normal of the line beside it.
-        """
+        """Unit normals at the nodes, (J, I, 3); collapsed cells have those of the line beside."""
         normal = np.cross(*self.field.surface.tangents)
         length = norm(normal)[..., None]
         small = _is_small(length[..., 0])
@@ -442,10 +435,7 @@ class SurfaceGeometry(DrawnSurface):
         return values.reshape(self.shape)
 
     def write_texels(self, data: Floats32, texels: AnyArray) -> None:
-        """Write data (J, I, C) of the nodes of :attr:`texels` into texels (H, W, C).
-
-        Blanked nodes of ``data`` are filled in place.
-        """
+        """Write data (J, I, C) of nodes, blanked ones filled in place, into texels (H, W, C)."""
         if self._nearest is not None:
             blank, nearest = self._nearest
             data[blank] = data[nearest]

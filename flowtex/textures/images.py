@@ -126,11 +126,7 @@ def averaged(pixels: Bytes, times: int) -> Bytes:
 
 
 def load_image(image: Any) -> Any:
-    """Read an image when it is a path, and return anything else as it is.
-
-    Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, by the orientation in the file. Raises
-    an :class:`ImageError` when the file does not exist, or is no picture that can be read.
-    """
+    """Read an image (H, W, 1 to 4) when it is a path, row 0 at the top; anything else stays."""
     if not isinstance(image, (str, Path)):
         return image
     path = Path(image).expanduser()

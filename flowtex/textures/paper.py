@@ -62,10 +62,7 @@ class PaperTextures:
     def build(
         cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
-        """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``.
-
-        Raises a FieldError when the pattern is unknown, or its image is missing.
-        """
+        """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``."""
         field, corrected = store.field, settings.noise_correction
         height, width = _size(field, settings.resolution)
         along_i, along_j = _coordinates(field, correction=corrected)
@@ -183,11 +180,7 @@ def _unit(noise: Floats) -> Floats32:
 
 
 def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
-    """Return the lag in which the flow crosses one texel (equation 3), (H, W).
-
-    The speed in index space is interpolated between the nodes, not its inverse: with that, one node
-    at rest would dominate the cells around it.
-    """
+    """Return the lag in which the flow crosses one texel (equation 3), by interpolated speeds."""
     field = store.field
     speed = np.abs(field.index_velocity.components).max(axis=0)
     if store.parameter == "arclength":

@@ -81,12 +81,7 @@ class TextureSet:
         image: Floats32 | None = None,
         geometry: SurfaceGeometry | TriangleGeometry | None = None,
     ) -> TextureSet:
-        """Make the textures that the settings ask for.
-
-        The image (H, W, 4) is that for ``noise="image"``, and the geometry by default that of the
-        field. Raises a FieldError when the slices do not belong to the field, or are more than a
-        shader has room for; or when an image is missing, or the surface does not support the noise.
-        """
+        """Make the textures that the settings ask for; a FieldError where slices do not fit."""
         field = store.field
         check_noise(field, settings.noise)
         if store.unit.shape != field.shape:
@@ -107,10 +102,7 @@ class TextureSet:
         return cls(geometry, store, PaperTextures.build(store, settings, image))
 
     def with_image(self, image: Floats32) -> TextureSet:
-        """Return the same with another picture in place of the noise texture.
-
-        Raises a FieldError when there is no noise texture.
-        """
+        """Return the same with another picture in place of the noise texture."""
         if self.paper is None:
             msg = (
                 "an image replaces a noise texture, but this texture set has none; expected "
@@ -182,10 +174,7 @@ class TextureSet:
 
     @cached_property
     def critical_cell(self) -> float:
-        """Length of the longest cell whose nodes may not agree on the direction; 0 if all do.
-
-        Of a field that varies, whose steps may be read late, any cell may be one of these.
-        """
+        """Length of the longest cell whose nodes may not agree on the direction; 0 if all do."""
         if not self.in_cells:
             return 0.0
         field = self.geometry.field
@@ -334,10 +323,7 @@ class LayerPrefetch:
         self._ready: tuple[tuple[int, int | None], Future[Halves]] | None = None
 
     def prepare(self, step: int, lags: int | None = None) -> None:
-        """Begin to compute the layers of a step, if it exists, at this many lags.
-
-        It is cancelled with the work in this thread, see :func:`flowtex._util.progress.stoppable`.
-        """
+        """Begin to compute the layers of a step, if it exists, as work of this thread."""
         if not 0 <= step < self._textures.store.steps:
             return
         if self._ready is not None and self._ready[0] == (step, lags):

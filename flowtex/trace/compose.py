@@ -207,10 +207,7 @@ class _SliceLookup:
         self.polar = side.polar
 
     def judge(self, m: int, share: float) -> None:
-        """Find the cells in which the error of slice m is at most ``share`` times that allowed.
-
-        In other cells shorter slices are used.
-        """
+        """Find the cells where the error of slice m is ``share`` times that allowed."""
         error: AnyArray = np.zeros((), np.float32)
         for axis, means in zip((1, 2), self._bends[:, m], strict=True):
             bend = _bend(self._grids[m], axis)

@@ -27,12 +27,9 @@ LEAST_LAGS = 2
 
 
 def lag_unit(field: FlowField, parameter: str) -> Floats:
-    """Return one unit of lag at each node, (J, I).
+    """Return one unit of lag at each node, (J, I): the cell size by arc length, or a unit of time.
 
-    By arc length it is the local cell size, so cells of very different sizes share the same
-    lags; by time it is one unit of the field's time. On triangles it is the size of small cells
-    everywhere: no path there needs to be longer than the last lag, and paths that have one unit can
-    be composed.
+    On triangles it is the size of small cells everywhere, so that paths can be composed.
     """
     if parameter == "arclength":
         size = field.surface.cell_size
@@ -43,10 +40,7 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
 
 
 def longest_path(field: FlowField) -> float:
-    """Return the default length of the paths, in the mesh's units.
-
-    A globe is as wide as a side of its bounding box, and no view shows the diagonal.
-    """
+    """Return the default length of the paths; a globe is as wide as a side of its bounding box."""
     poles = field.surface.poles
     closed = poles is not None and poles.both
     return LAST_EXTENTS * field.surface.extent / (np.sqrt(3) if closed else 1)
@@ -84,11 +78,7 @@ def choose_lags(
 
 
 def typical_speed(field: FlowField) -> float:
-    """Return the root mean square of the speed, in length per time; 1 in a flow at rest.
-
-    On a map it is that of the speed on the Earth: towards the poles a flat map stretches velocities
-    without limit.
-    """
+    """Return the root mean square of the speed, on maps that on the Earth; 1 in a flow at rest."""
     typical = field.typical
     on_earth = field.projection is not None and "speed" in field.scalars
     steps = typical.scalars["speed"] if on_earth else typical.speed

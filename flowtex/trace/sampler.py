@@ -227,10 +227,7 @@ class Patch(NamedTuple):
     signs: NDArray[np.int8] | None = None
 
     def without_sign(self, vectors: Floats | None = None) -> Patch:
-        """Return the patch for sign-free data, in which v means the same as -v.
-
-        The vectors at the nodes (J, I, C) are by default those of the chart itself.
-        """
+        """Return the patch for sign-free data, by default for the vectors (J, I, C) of itself."""
         if vectors is None:
             parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
             vectors = np.stack(parts, axis=-1)
@@ -380,12 +377,9 @@ class Corners(NamedTuple):
 
 
 class NodeGrid:
-    """The nodes of a surface in index space, (J, I), continued beyond its poles.
+    """Nodes of a surface in index space, (J, I), continued beyond its poles; ``cells`` are open.
 
-    Every component is its own array: one gather of scalars costs a tenth of a gather of short rows,
-    and look-ups are most of what tracing does.
-
-    ``cells`` (J - 1, I - 1) are those that are not blanked.
+    Every component is its own array: a gather of scalars costs a tenth of one of short rows.
     """
 
     def __init__(
@@ -472,10 +466,7 @@ class NodeGrid:
         return high
 
     def alive(self, position: AnyArray, edge: float = BORDER_ROUNDING_CELLS) -> Bools:
-        """Return whether positions (2, N) are inside the domain, in a cell that is not blanked.
-
-        ``edge`` cells beyond a border still count as inside.
-        """
+        """Return whether positions (2, N) are in open cells, or ``edge`` cells beyond a border."""
         result = np.ones(position.shape[1], dtype=bool)
         if self.poles is not None:
             position = self.poles.fold(position)

@@ -193,11 +193,7 @@ def chosen_lines(field: FlowField, lines: str = "auto") -> str:
 
 
 def changing_share(field: FlowField) -> float:
-    """Return the share of nodes and times where the flow changes by half within a streak, 0 to 1.
-
-    A streak lasts until a particle has moved by a twentieth of the surface. Large fields are
-    sampled at some rows, columns and steps.
-    """
+    """Return the share of sampled nodes where the flow changes by half within a streak."""
     if field.steady:
         return 0.0
     j, i = judged_lines(field.shape)

@@ -43,10 +43,7 @@ class StoreLink:
 
     @classmethod
     def of(cls, text: str) -> StoreLink:
-        """Return the link of an address.
-
-        Raises a FieldError when a browser could not read it, or it contains secrets.
-        """
+        """Return the link of an address; a FieldError if it is unreadable or contains secrets."""
         if not isinstance(text, str):
             msg = f"store is {text!r}; expected an address, such as './flow.zarr'"
             raise FieldError(msg)
@@ -74,10 +71,7 @@ class StoreLink:
 
 
 def linked_data(view: WebView) -> ClientData:
-    """Return the data of a page for a view whose tiles are in a store.
-
-    Raises a FieldError when the flow is not one of a store, or the store has other paths.
-    """
+    """Return the data of a page for a view whose tiles are in a store, which must be the same."""
     stored, data = _stored(view), view.page_data()
     if not stored.about.get("complete"):
         notify("the store is incomplete; missing tiles are shown coarse", UserWarning)

@@ -199,11 +199,7 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
-    """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it.
-
-    Equal meshes share their traces. ``steps`` and the errors are those of :class:`WebView` and
-    :meth:`Scene.of`.
-    """
+    """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it."""
     field = share_field(options.field.field(mesh))
     notify_section(field.section)
     background, changes = options.view.background, options.view.beside
@@ -265,10 +261,7 @@ class TileSource:
         self._is_closed = False
 
     def parts(self, key: TileKey | None, steps: Sequence[int], kind: str = "") -> Parts:
-        """Return the parts of a tile at time steps, or of the whole; see the module's text.
-
-        Raises a LookupError if the tile or step does not exist.
-        """
+        """Return the parts of a tile at time steps, or of the whole; a LookupError if none."""
         if kind:
             return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}
         if key is None:
@@ -296,11 +289,7 @@ class TileSource:
         is_over: Callable[[], bool] = lambda: False,
         kind: str = "",
     ) -> Future[Parts]:
-        """Make parts in a thread.
-
-        Once it ``is_over``, or the source is closed, the future fails with
-        :class:`~flowtex._util.progress.Stopped`.
-        """
+        """Make parts in a thread; ``Stopped`` once it ``is_over``, or the source is closed."""
 
         def make() -> Parts:
             with stoppable(lambda: self._is_closed or is_over()):

@@ -94,10 +94,7 @@ def fork_server(preload: tuple[str, ...]) -> ForkServer:
 
 
 def main(control: int, preload: list[str]) -> NoReturn:
-    """Load modules, and fork children, until the other end of the control socket is closed.
-
-    ``"module:function"`` calls a function as well.
-    """
+    """Load modules, or call ``"module:function"``, and fork children until the socket is closed."""
     server = _Server(socket.socket(fileno=control))
     for entry in preload:
         module, _, function = entry.partition(":")

@@ -39,9 +39,8 @@ PIPE_BYTES = 1 << 20
 class ChildError(Exception):
     """A child gives no answer.
 
-    ``kind`` is the name of the class of the error that it raised; empty where it died, had to be
-    ended, or lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``. ``trace`` is where
-    it was raised; empty where the text says all.
+    ``kind`` and ``trace`` are class and place of the error that it raised; empty where the text
+    says all, such as ``"crashed (SIGSEGV)"``.
     """
 
     def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
@@ -113,9 +112,8 @@ class Child:
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
-        Raises a ChildError when the child is dead, dies, exceeds its memory, raises an error, or
-        does not answer in ``timeout`` seconds, after which it is ended. When the work was
-        cancelled, the child stops this request, and continues.
+        Raises a ChildError when there is none in ``timeout`` seconds, and ends the child. When the
+        work was cancelled, the child stops this request, and continues.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()

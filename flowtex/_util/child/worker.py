@@ -59,10 +59,7 @@ def spawned(entry: str, memory: int, lasting: bool) -> None:  # noqa: FBT001 by 
 
 
 def settle(memory: int, *, lasting: bool) -> None:
-    """Limit the memory of this process, and let the system end it first where memory runs out.
-
-    Nothing is read or printed; a ``lasting`` process may print on the standard error.
-    """
+    """Limit memory, and let the system end it first; only ``lasting`` processes print errors."""
     device = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1) if lasting else (0, 1, 2):  # output of C libraries is dropped
         os.dup2(device, standard)
@@ -84,11 +81,7 @@ def settle(memory: int, *, lasting: bool) -> None:
 
 
 def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
-    """Answer requests, one after another, until the other end is closed; then end the process.
-
-    ``entry`` is the ``"module:name"`` of a function without arguments that returns a
-    :data:`Handler`.
-    """
+    """Answer requests until the other end is closed; ``entry`` names what returns the handler."""
     requests: SimpleQueue[tuple[int, Any]] = SimpleQueue()
     cancelled: set[int] = set()
     threading.Thread(target=_listen, args=(reads, requests, cancelled), daemon=True).start()
@@ -98,7 +91,9 @@ def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
         arrays: Sequence[AnyArray] = ()
         try:
             with stoppable(lambda number=number: number in cancelled):  # type: ignore[misc]
-                handler = handler or _handler(entry)
+                if handler is None:
+                    module, _, name = entry.partition(":")
+                    handler = getattr(import_module(module), name)()
                 value, arrays = handler(value)
             answer: dict[str, Any] = {"number": number, "value": value}
         except Exception as error:
@@ -110,12 +105,6 @@ def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
             write_message(writes, answer, arrays)
         except MemoryError:
             write_message(writes, {"number": number, "error": "MemoryError", "text": ""})
-
-
-def _handler(entry: str) -> Handler:
-    module, _, name = entry.partition(":")
-    handler: Handler = getattr(import_module(module), name)()
-    return handler
 
 
 def _kind(error: Exception) -> str:

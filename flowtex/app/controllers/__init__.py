@@ -59,10 +59,7 @@ __all__ = ["Controllers"]
 
 
 class Controllers:
-    """All controllers of a page that first shows a flow of the library.
-
-    ``restore_state`` is called with the state that a link holds.
-    """
+    """All controllers of a page; ``restore_state`` is called with the state that a link holds."""
 
     def __init__(
         self, context: Context, name: str, choice: Choice, restore_state: Callable[[State], None]

@@ -47,10 +47,7 @@ STOPS_PER_STEP = 8
 
 
 def comparison(name: str, time: float) -> dict[str, Any]:
-    """Return the differences of a second pane by its label; ``time`` is that of another time.
-
-    They are empty for another file, which has to be opened first.
-    """
+    """Return the differences of a second pane by its label; none for another file, opened first."""
     if name == ANOTHER_TIME:
         return {"time": time}
     if name.startswith(COLOUR_BY):

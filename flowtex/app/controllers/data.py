@@ -302,10 +302,7 @@ def _are_of_one_formula(first: FlowField, second: FlowField) -> bool:
 
 
 class FileBeside(Controller):
-    """The flow of another file than ``data`` shows, in a second pane.
-
-    It shows the same part of its file as the first pane does, as far as that exists.
-    """
+    """The same part of another file than ``data`` shows, as far as it exists, in a second pane."""
 
     def __init__(self, context: Context, data: Data) -> None:
         super().__init__(context)

@@ -178,10 +178,7 @@ class Library:
         return Library({}, shared=self)
 
     def add(self, name: str, path: Path) -> str:
-        """Add a file; return the name by which it can be opened.
-
-        All pages share a library, but not its branches.
-        """
+        """Add a file to this branch; return the name by which it can be opened."""
         name = _free(name, self.names)
         self._named[name] = _Files((path,))
         return name

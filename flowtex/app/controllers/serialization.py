@@ -75,11 +75,7 @@ PLANE, CMAP = (
 
 
 def to_link(state: State) -> str:
-    """Return a state as the text of a link.
-
-    Values that are ``None`` or defaults are left out. The text is a query such as
-    ``file=post.vtk&plane=k=20&lod=off``, for behind a ``?`` or a ``#``.
-    """
+    """Return a state as the query of a link, such as ``plane=k=20&lod=off``, without defaults."""
     pairs = [
         (name, form.write(state[name]))
         for name, form in _FORMS.items()
@@ -99,11 +95,7 @@ def to_link(state: State) -> str:
 
 
 def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
-    """Return the state that a link holds, or the part of it behind the ``?`` or the ``#``.
-
-    Every value is checked, but not whether files and arrays of these names exist. Defaults are not
-    filled in. A sentence for each invalid part, which is left out, is added to ``faults``.
-    """
+    """Return the checked values of a link; ``faults`` gets a sentence for each invalid part."""
     messages: list[str] = [] if faults is None else faults
     state: dict[str, Any] = {}
     for name, value in _pairs(text, messages):

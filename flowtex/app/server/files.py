@@ -65,11 +65,7 @@ class Routes:
 
     @classmethod
     def of(cls, server: Any) -> Routes:
-        """Return the routes of a trame server, made when they are first requested.
-
-        They are served by :func:`flowtex.app.serve`, and as well where the server is started by
-        trame itself.
-        """
+        """Return the routes of a trame server, served by :func:`flowtex.app.serve` or by trame."""
         if not server.context.has(KEY):
             server.context[KEY] = cls()
             server.controller.on_server_bind.add(server.context[KEY].bind)
@@ -88,11 +84,7 @@ class Routes:
         return await (self.receive(name, request) if is_upload else self.answer(name))
 
     def give(self, name: str, content: Give) -> str:
-        """Serve a file, in place of an earlier one of that name; return its address.
-
-        The name has no slash; the content is called at each request, and may be a coroutine
-        function.
-        """
+        """Serve a file, whose content is called at each request; return its address."""
         if not name or "/" in name:
             msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
             raise FieldError(msg)
@@ -110,10 +102,7 @@ class Routes:
         return f"flowtex/{self.token}/{quote(stem)}."
 
     def take(self, name: str, taker: Take) -> str:
-        """Receive files that the page sends; return the address, to which ``?name=`` is added.
-
-        The taker raises a FieldError, which the page shows, for a file that cannot be used.
-        """
+        """Receive files at the address returned, with ``?name=``; a taker's FieldError is shown."""
         self._takers[name] = taker
         return f"flowtex/{self.token}/{quote(name)}"
 
@@ -261,13 +250,10 @@ def _cut(text: str, most: int) -> str:
 
 
 class Uploads:
-    """The files that one page has uploaded, in a folder that is removed with it.
+    """The uploads of one page, in a folder that is removed with it; ``arrived`` is called for each.
 
-    Only formats of a single file are accepted: others refer to further files, and could open any
-    that the server can read. The name is used for display and for its ending; the path is chosen
-    here.
-
-    ``arrived`` is called with the name and the path of each.
+    Only formats of a single file are accepted: others could open any file that the server can read.
+    The name is used for display and for its ending; the path is chosen here.
     """
 
     def __init__(self, routes: Routes, arrived: Callable[[str, Path], None]) -> None:
@@ -277,10 +263,7 @@ class Uploads:
         self.address = routes.take("upload", self.receive)
 
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
-        """Write a file, and report it.
-
-        Raises a FieldError when its format is not accepted, it is too large, or there are too many.
-        """
+        """Write a file, and report it; a FieldError if it is not accepted."""
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
             endings = ", ".join(UPLOAD_SUFFIXES)

@@ -71,11 +71,10 @@ class PageElement(AbstractElement):
 
 
 class PageState:
-    """The part of a trame server's state that belongs to one application.
+    """The part of the state of a trame server, which several may share, that is of one application.
 
-    Several applications may share a trame server, so each has its own prefix. A listener is called
-    after a change by Python as well as by the page; it compares with the present value before it
-    acts.
+    A listener is called after a change by Python as well as by the page; it compares with the
+    present value before it acts.
     """
 
     def __init__(self, server: Any) -> None:

@@ -91,11 +91,7 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
 
 
 def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> None:
-    """Limit times, refuse other sites' pages and unknown names, and write errors only to the log.
-
-    Each answer has :data:`HEADERS`. ``hosts`` are valid host names in lower case, besides numeric
-    addresses.
-    """
+    """Limit times, refuse other sites and unknown ``hosts``, and write errors only to the log."""
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -207,11 +203,7 @@ def keep(request: web.Request) -> None:
 
 
 class LimitedServer:
-    """A web application on a port.
-
-    It has ``most`` connections at one time; by default half of the files that the process may open
-    are left for others. Options are arguments of ``aiohttp.web.AppRunner``.
-    """
+    """A web application with ``most`` connections, by default half of the files of the process."""
 
     def __init__(
         self, application: web.Application, *, most: int | None = None, **options: Any

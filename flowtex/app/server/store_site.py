@@ -38,10 +38,7 @@ _NUMBER = re.compile(r"0|[1-9][0-9]{0,8}")
 
 
 class ServedStore:
-    """The objects of a pyramid by their names.
-
-    Raises a PyramidError when there is no pyramid, or it cannot be read.
-    """
+    """The objects of a pyramid by their names."""
 
     def __init__(self, place: str | Path) -> None:
         levels = Levels(place)
@@ -60,10 +57,7 @@ class ServedStore:
         self._metadata = frozenset((DOCUMENT, *names))
 
     async def get(self, name: str) -> bytes:
-        """Return an object.
-
-        Raises a LookupError when the object does not exist, and a ReadFault when reading fails.
-        """
+        """Return an object; a LookupError if it does not exist, a ReadFault when reading fails."""
         if name not in self._metadata:
             self._check(name)
         return await self._read(name)

@@ -411,10 +411,7 @@ class Player:
         return self._viewport.handle.time if self._requested is None else self._requested
 
     def go_to(self, time: float, page: str = "") -> None:
-        """Show a time, or the nearest one; the animation stops if that cannot be read.
-
-        Lazy steps are read in a thread: until then the time shown stays.
-        """
+        """Show a time, or the nearest one; lazy steps are first read in a thread."""
         times = self._viewport.field.times
         nearest = min(max(float(time), float(times[0])), float(times[-1]))
         if nearest == self.time:

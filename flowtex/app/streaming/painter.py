@@ -82,10 +82,7 @@ class ViewPainter:
             self.drafting = False
 
     def full(self) -> Generator[Bytes, None, None]:
-        """Draw the full picture over the quick one; yield the picture after each tile.
-
-        Drawing may be cancelled between two tiles.
-        """
+        """Draw the full picture over the quick one; yield it after each tile, to cancel there."""
         state, panes = self._state, list(self._viewport.panes)
         if len(self._last) != len(panes):
             self.quick()

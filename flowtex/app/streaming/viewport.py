@@ -65,11 +65,7 @@ class Pane:
 
 
 class Viewport:
-    """A flow texture, its camera, and pictures of them.
-
-    ``zoom`` and ``focus`` are those of the first view, ``options`` arguments and settings of
-    ``plotter.flowtex.add``.
-    """
+    """A flow texture, its camera, and pictures; options are those of ``plotter.flowtex.add``."""
 
     whole: Camera  #: The camera that shows the whole surface, from which zoom counts.
 
@@ -214,11 +210,7 @@ class Viewport:
             self.camera = camera
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
-        """Show a second pane that differs, or one pane again for ``None``.
-
-        ``changes`` are settings, and ``scalars``, ``time`` and ``field`` of the second pane. If
-        these cannot be shown, the panes stay as they are.
-        """
+        """Show a second pane that differs, or one pane again for ``None`` or after an error."""
         panes, first, changes = self.panes[:1], self.scene, dict(changes or {})
         if changes:
             looks = {n: value for n, value in changes.items() if n not in ("time", "field")}
@@ -425,10 +417,8 @@ def _fitting(
 class OffscreenWindow:
     """Draws the actors of a PyVista plotter, only on request, whole or a rectangle at a time.
 
-    Pictures are drawn into the lower left corner of a window that keeps its size: a draft is the
-    whole view in a small corner, a tile a part of the view at full size. Nothing is allocated from
-    one to the next, and a tile has the same pixels as the whole picture at its place. So the window
-    may be smaller than a picture that it draws in tiles.
+    Pictures are drawn into the lower left corner of a window that keeps its size, which may be
+    smaller than a picture in tiles: nothing is allocated from one to the next.
     """
 
     def __init__(self, width: int, height: int) -> None:

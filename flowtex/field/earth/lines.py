@@ -61,10 +61,7 @@ class MapLines:
         return _assembled(self.points[first], self.points[first + 1], first, first + 1)
 
     def thinned(self, spacing: float) -> MapLines:
-        """Return the lines with a point about every ``spacing`` metres, without short ones.
-
-        Small islands would be dots.
-        """
+        """Return lines with a point about every ``spacing`` metres, without small islands."""
         lines = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         steps = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
         first = np.zeros(len(self.points), dtype=bool)
@@ -81,10 +78,7 @@ class MapLines:
 
 
 def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
-    """Return the coasts of all land, the larger islands and lakes.
-
-    Lines outside of a box, the least and greatest shown position, (2, 3), are left out.
-    """
+    """Return the coasts of land, larger islands and lakes in a box of the map, (2, 3)."""
     lonlat, joined = _coasts()
     return _mapped(projection, lonlat, joined, box)
 
@@ -92,11 +86,7 @@ def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
 def graticule(
     projection: Projection, box: Floats | None = None, step: float | None = None
 ) -> MapLines:
-    """Return meridians and parallels, in a box as for :func:`coastlines`.
-
-    ``step`` is the distance of lines in degrees; by default a round number, so that some cross the
-    box.
-    """
+    """Return meridians and parallels in a box; the ``step`` is by default a round number."""
     lon, lat = _places(projection, box)
     if not len(lon):
         return MapLines(np.zeros((0, 3)), np.zeros(1, dtype=np.intp))

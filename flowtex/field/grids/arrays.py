@@ -30,10 +30,7 @@ from flowtex.field.validation import (
 
 @dataclass(frozen=True, eq=False)
 class GridNodes:
-    """Nodes that make a field, with the geometry between them.
-
-    ``moves`` is whether any node moves at the first time, or at any time if all are in memory.
-    """
+    """Nodes that make a field, their geometry, and if any ``moves`` at a time in memory."""
 
     surface: GridSurface
     velocity: Steps

@@ -196,10 +196,7 @@ class GridSurface(Surface):
 
     @cached_property
     def tangents(self) -> Floats:
-        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell.
-
-        Nodes without a position have those of the nearest one.
-        """
+        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
         good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]

@@ -30,10 +30,7 @@ if TYPE_CHECKING:
 def align(
     u: xr.DataArray, v: xr.DataArray, choice: Choice, record: Record
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return two components with the same axes beside those of the surface, by their labels.
-
-    Labels that one of them lacks are left out. Both then have the names of the first.
-    """
+    """Return two components on the labels that both have, with the axes of the first."""
     axes = [further_axes(array) for array in (u, v)]
     for kind in [k for k in (*axes[0], *axes[1]) if (k in axes[0]) != (k in axes[1])]:
         n = 0 if kind in axes[0] else 1

@@ -63,10 +63,7 @@ class Mask:
 def find_masks(
     velocity: Sequence[xr.DataArray], datasets: Sequence[xr.Dataset], wanted: Any
 ) -> Iterator[Mask]:
-    """Yield the masks of a velocity, by CF's names, flags beside it, and common names.
-
-    ``wanted`` is the name of the only mask, ``False`` for none, or ``None`` for all.
-    """
+    """Yield the masks of a velocity, or the one of a name; ``False`` wants none."""
     if wanted is False:
         return
     beside = {

@@ -81,10 +81,7 @@ def read_datasets(
     components: str | None = None,
     **selection: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself.
-
-    If the uncertainty is a dimension, the mean over it is read, and the spread as a scalar.
-    """
+    """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself."""
     if globe and projection not in (None, GLOBE):
         msg = f"globe=True and projection={projection!r} are given; omit one of them"
         raise FieldError(msg)

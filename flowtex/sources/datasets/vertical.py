@@ -50,10 +50,7 @@ def is_vertical(array: xr.DataArray) -> bool:
 
 
 def is_section(datasets: Sequence[xr.Dataset], v: str) -> bool:
-    """Return whether the components that are named lie in a vertical section.
-
-    Axes of one kind without units, as in a laboratory, are those of a plane.
-    """
+    """Return whether named components lie in a vertical section, not in a plane without units."""
     if not is_vertical(array := variable(datasets, v)):
         return False
     named = [c for c in array.coords.values() if c.dims and c.attrs.get("units")]

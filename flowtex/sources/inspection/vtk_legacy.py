@@ -181,7 +181,10 @@ class _Legacy:
                 _refuse(kind, f"the type of {label}")
             self._total += sizes[1] * values
             self._values(values, sizes[0] * values, label)
-        self._metadata_after(components)
+        # VTK writes metadata after the values.
+        if self._text.next_word().lower().startswith(b"metadata"):
+            self._text.word()
+            self._metadata(components)
 
     def _values(self, values: int, nbytes: int, label: str) -> None:
         if not self._binary:
@@ -206,12 +209,6 @@ class _Legacy:
                     check_count(self._text.skip(size), size, label)
             if not present:
                 check_count(number, values, label, "texts")
-
-    def _metadata_after(self, components: int) -> None:
-        """Skip the metadata that VTK writes after the values of an array."""
-        if self._text.next_word().lower().startswith(b"metadata"):
-            self._text.word()
-            self._metadata(components)
 
     def _metadata(self, components: int) -> None:
         self._text.line()

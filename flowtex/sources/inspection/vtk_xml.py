@@ -40,10 +40,7 @@ def is_xml(head: bytes) -> bool:
 
 
 def check_vtk_xml(path: Path) -> list[Path]:
-    """Return the files of a series or of blocks that a file names.
-
-    Raises a FieldError if its arrays do not fit into the file or into memory.
-    """
+    """Return the files that a file names, if its arrays fit into it and into memory."""
     with path.open("rb") as stream:
         if b"\0" in stream.read(4):
             msg = "the file is in UTF-16, which VTK does not write; convert it to UTF-8"

@@ -72,10 +72,7 @@ def find_vectors(
 
 
 def named_axes(parts: Sequence[str]) -> tuple[tuple[int, ...], bool]:
-    """Return the axes, 0 to 2, of components by their names, and if these say x, y or z.
-
-    The axes are empty where unknown: ``u`` and ``v`` are in any plane.
-    """
+    """Return the axes, 0 to 2, of named components, empty if unknown, and if these say x, y, z."""
     parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES)) if parts else ()
     for before, alphabet, after in parses:
         whole = [before + token + after for token in alphabet]

@@ -132,11 +132,7 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
 
 
 def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
-    """Return datasets whose mesh, if there is one, has dimensions of known names.
-
-    Levels and times get values where files have them elsewhere. Without faces, values along one
-    dimension are at scattered points.
-    """
+    """Return datasets whose mesh has dimensions of known names; without faces it is of points."""
     datasets = [_completed(ds) for ds in datasets]
     _check_classes(datasets)
     mesh = find_mesh(datasets)

@@ -26,10 +26,7 @@ KEPT = ("units", "grid_mapping", "mesh", "location")
 
 
 def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:
-    """Return the dataset of the components of an array, ``u`` and ``v``.
-
-    One of several arrays may be a single component, which keeps its name.
-    """
+    """Return the dataset of the components of an array; one of several may be a component."""
     dim = _axis(array)
     if dim is None:
         if not several or array.name is None:

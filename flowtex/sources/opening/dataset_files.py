@@ -43,10 +43,7 @@ def file_and_group(path: Path) -> tuple[Path, str]:
 
 
 def dataset_paths(path: Any) -> list[Path]:
-    """Return the path or paths of data of the Earth as a list, empty for anything else.
-
-    A path may continue to a group inside a file: ``model.nc/ocean``.
-    """
+    """Return the paths of data of the Earth, or of groups as ``model.nc/ocean``; else none."""
     items = path if isinstance(path, (list, tuple)) else [path]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
         msg = f"path is {brief(path)}; expected the path of a file, or a list of paths"

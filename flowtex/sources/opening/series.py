@@ -34,10 +34,7 @@ DAYS_AS_NUMBERS = "%Y%m%d"
 
 
 class Datasets(list["xr.Dataset"]):
-    """Datasets whose axes cf_xarray recognises, with times as dates.
-
-    ``opened`` close the files that flowtex opened, after each read.
-    """
+    """Datasets whose axes cf_xarray recognises, with times as dates."""
 
     def __init__(self, items: Iterable[xr.Dataset] = (), *, opened: Any = ()) -> None:
         super().__init__(items)
@@ -68,11 +65,7 @@ class Opened(list["xr.Dataset"]):
 
 
 def as_datasets(data: Any, record: Record | None = None) -> Datasets:
-    """Return datasets of xarray's with recognised axes, which takes long at first.
-
-    Steps of a series, and regions beside each other, become one dataset, and a tree the dataset of
-    its group with a velocity.
-    """
+    """Return datasets with recognised axes: series and regions joined, and of a tree one group."""
     if isinstance(data, Datasets):
         return data
     xarray, record = import_extra("xarray", "xarray"), record or Record()
@@ -120,10 +113,7 @@ def _apart(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
 
 
 def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:
-    """Return the dataset of the one group of a tree that has a velocity, or that of its root.
-
-    The error for several groups names the path of one in ``file``, if the tree is from one.
-    """
+    """Return the dataset of the one group of a tree (of a file) with a velocity, or of its root."""
     parts = {node.path: node.to_dataset() for node in tree.subtree}
     groups = [path for path, ds in parts.items() if find_pairs([ds])]
     if len(groups) > 1 and groups[0] != tree.path:

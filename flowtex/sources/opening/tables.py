@@ -46,10 +46,7 @@ TEXT_GROWTH = 24
 
 
 def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
-    """Return a dataset, or make one of an array with an axis of components, or of a table.
-
-    One of several arrays may be a single component.
-    """
+    """Return a dataset, or make one of a table or array, which is a component if ``several``."""
     xarray = import_extra("xarray", "xarray")
     if isinstance(item, xarray.Dataset):
         return item

@@ -36,10 +36,9 @@ WARNINGS = {kind.__name__: kind for kind in (Notice, DatasetNotice)}
 
 
 class RemoteSource(Source):
-    """A file, or several of data of the Earth, that another process reads and keeps open.
+    """A file, or several, that another process reads and keeps open, and may crash without harm.
 
-    That process may crash, hang or run out of memory without harm to this one. It ends with the
-    source, and with all fields of it whose time steps are read late. :func:`open_remote` makes one.
+    That process ends with the source, and with all fields of it whose time steps are read late.
     """
 
     def __init__(

@@ -177,11 +177,7 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
 
 
 def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floats:
-    """Return the sides of the first bins at the nodes, (N,), in proportion to edges there.
-
-    A triangle counts by twice its area: needles, as beside the hull of points at random, are not
-    edges.
-    """
+    """Return the sides of the first bins, (N,), in proportion to edges; needles are not counted."""
     size = np.sqrt(areas)
     share = np.bincount(triangles.ravel(), minlength=count)
     for _ in range(SMOOTHING):

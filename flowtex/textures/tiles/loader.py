@@ -138,10 +138,7 @@ class TileLoader:
         return key in self.errors
 
     def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
-        """Request tiles in this order, and drop those without a recent request.
-
-        A picture may be drawn in several parts, each of which requests its tiles.
-        """
+        """Request tiles in this order, and drop those without a recent request."""
         self._latest = self._clock()
         with self._lock:
             # Tiles that have not begun wait behind those requested now.

@@ -71,10 +71,7 @@ class TrianglePyramid(Pyramid):
         return (2 ** self._steps(0),) * 2
 
     def places(self, level: int) -> Floats:
-        """Return centre, radius, and size of the cells of each block of a level, (J, I, 5).
-
-        They enclose the triangles of level 0, some of which a coarser level may leave out.
-        """
+        """Return centre, radius, and cell size of blocks, (J, I, 5), of triangles of level 0."""
         low, high, size = self._extents
         for _ in range(level):
             low, high = (

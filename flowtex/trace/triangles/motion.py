@@ -234,10 +234,7 @@ class SteadyMotion(Motion):
     def _lead_along(
         self, triangle: Indices, metric: Floats, first: Floats, second: Floats, third: Floats
     ) -> None:
-        """Let particles on an attracting line move along it, in place.
-
-        Otherwise steps would be as short as the decay of the distance to the line is fast.
-        """
+        """Let particles on an attracting line, to which they decay fast, move along it."""
         at = np.flatnonzero(self._has_line[triangle])
         near, along = self.pulls[:, triangle[at]]
         slow = (second[:, at] - near * first[:, at]) / (along - near)

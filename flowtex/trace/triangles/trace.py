@@ -192,10 +192,7 @@ def _rates(field: FlowField, steps: Sequence[int], parameter: str) -> Floats:
 
 
 def direct_lags(lags: Floats, cells: float) -> int:
-    """Return how many of lags (M,), in units of ``cells`` small cells, are to be integrated.
-
-    These are all, unless each is twice the one before.
-    """
+    """Return how many of lags (M,) are integrated: all, unless each is twice the one before."""
     direct = int(np.searchsorted(lags * cells, DIRECT_CELLS, side="right"))
     direct = max(direct, LEAST_DIRECT)
     doubled = np.allclose(lags[1:], 2 * lags[:-1], rtol=ROUNDING, atol=0)

@@ -68,10 +68,7 @@ class LimitedMessages(UnChunker):
         super().set_max_message_size(min(size, MESSAGE_BYTES))
 
     def process_chunk(self, chunk: bytes) -> Any:
-        """Add a piece; return the message when it is the last one.
-
-        Raises a ValueError when a message is too long or malformed, or too many are incomplete.
-        """
+        """Return the message that a piece ends; a ValueError if it is malformed or too long."""
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:
             self.release_pending_messages()

@@ -41,11 +41,10 @@ ANSWER_HEADERS = (
 def process_opener(
     entry: str, preload: tuple[str, ...], request: dict[str, Any], opened: Callable[[Any], None]
 ) -> OpenSession:
-    """Return a function that opens sessions in separate processes.
+    """Return a function that opens sessions in separate processes, as for ``Child``.
 
-    Entry and preload are those of :class:`flowtex._util.child.Child`; the entry makes a
-    :class:`HostedSession`, which is asked to open the request. ``opened`` is called with the
-    messages of each session.
+    The entry makes a :class:`HostedSession`, which is asked to open the request; ``opened`` is
+    called with its messages.
     """
 
     async def open_session(*, again: bool = True) -> Session:
@@ -167,10 +166,7 @@ class _Files:
 
 
 class HostedSession:
-    """A session in its own process, which answers the requests of :class:`ProcessSession`.
-
-    ``open_site`` takes a request, and returns a site with one session, and its messages.
-    """
+    """A session in its own process; ``open_site`` returns a site for a request, and messages."""
 
     def __init__(self, open_site: Callable[[dict[str, Any]], tuple[Any, Any]]) -> None:
         self._open_site = open_site

@@ -81,10 +81,7 @@ class Session(ABC):
 
     @abstractmethod
     async def carry(self, socket: web.WebSocketResponse) -> None:
-        """Carry messages between a page and its application until one of them ends.
-
-        Raises an error for a message that no page of ours sends.
-        """
+        """Carry messages between page and application; raise for one that no page of ours sends."""
 
     async def connect(self, request: web.Request) -> web.StreamResponse:
         """Connect a page, in place of another one."""
@@ -150,10 +147,7 @@ def usual_limit() -> int:
 
 
 class Sessions:
-    """The sessions of one start, at most ``limit`` at one time.
-
-    One that is ``idle``, without a connection, for this many minutes ends.
-    """
+    """At most ``limit`` sessions; one without a connection for ``idle`` minutes ends."""
 
     def __init__(self, open_session: OpenSession, *, limit: int, idle: float) -> None:
         self.limit = limit
@@ -179,11 +173,7 @@ class Sessions:
         return next((s.routes for s in self if s.routes.token == token), None)
 
     async def prepare(self) -> dict[str, str]:
-        """Open the first session.
-
-        Errors of a mesh or a setting then appear early, and the first visitor does not wait.
-        Returns the folders that all pages need, by route.
-        """
+        """Open the first session, whose errors so appear early; return the folders of all pages."""
         self._ready = await self._begin()
         return self._ready.static
 
