@@ -39,7 +39,7 @@ def main() -> None:
     arguments = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
-    from flowtex.web.export import page_data, page_pieces
+    from flowtex.web.export import contents_of, page_data, page_pieces
     from flowtex.web.view import web_views
 
     names = ("page, MB", "bytes a node", "written in, s of processor", "drawn after, s")
@@ -57,7 +57,7 @@ def main() -> None:
                 start = time.process_time()
                 views = web_views(data, options)
                 scenes = page_data(views, traces=traces)
-                path.write_text("".join(page_pieces(views, scenes)), encoding="utf-8")
+                path.write_text("".join(page_pieces(contents_of(views, scenes))), encoding="utf-8")
                 written = time.process_time() - start
                 page = browser.new_page(viewport=SIZE)
                 start = time.perf_counter()

@@ -20,11 +20,10 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
-from flowtex.field.dates import as_seconds
 from flowtex.field.derived.methods import FieldQuantities
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
-from flowtex.field.gaps import filled_gaps
+from flowtex.field.gaps import Filled, filled_gaps
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
@@ -40,8 +39,8 @@ from flowtex.field.steps import (
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.units import factor, speed_unit, velocity_units
-from flowtex.field.validation import ALL_AT_REST, with_gaps
+from flowtex.field.units import factor, speed_unit
+from flowtex.field.validation import ALL_AT_REST
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
@@ -243,11 +242,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
         (31, 41)
         """
-        times, time_unit, start = as_seconds(times, time_unit)
-        t = None if times is None else with_gaps("times", times)
-        scale, time_unit, velocity_unit = velocity_units(length_unit, time_unit, velocity_unit)
-        unit = velocity_unit or speed_unit(length_unit, time_unit)
-        filled = filled_gaps(velocity, scalars, units, axes=2, unit=unit)
+        texts = length_unit, time_unit, velocity_unit
+        t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=2)
+        words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
         on_globe = projection is not None and projection.is_globe
         parts = points, filled.velocity, t, valid, periodic, filled.scalars
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
@@ -258,17 +255,9 @@ class FlowField(FieldConstructors, FieldQuantities):
             valid=nodes.valid,
             periodic=nodes.periodic,
             scalars=nodes.scalars,
-            name=name,
-            length_unit=length_unit,
-            time_unit=time_unit,
-            velocity_unit=velocity_unit,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
-            units=dict(filled.units),
-            long_names=dict(long_names or {}),
-            start=start,
-            projection=projection,
-            uncertainty=filled.uncertainty,
+            **words,
         )
         flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
         if not nodes.moves and not moves_later(nodes.velocity):
@@ -339,11 +328,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.from_triangles(points, [(0, 1, 2), (0, 2, 3)], velocity).size_text
         '4 nodes, 2 triangles'
         """
-        times, time_unit, start = as_seconds(times, time_unit)
-        t = None if times is None else with_gaps("times", times)
-        scale, time_unit, velocity_unit = velocity_units(length_unit, time_unit, velocity_unit)
-        unit = velocity_unit or speed_unit(length_unit, time_unit)
-        filled = filled_gaps(velocity, scalars, units, axes=1, unit=unit)
+        texts = length_unit, time_unit, velocity_unit
+        t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=1)
+        words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
         arrays = triangle_nodes(points, triangles, filled.velocity, t, valid, filled.scalars)
         count = len(arrays.velocity)
         flow = cls(
@@ -353,16 +340,8 @@ class FlowField(FieldConstructors, FieldQuantities):
             valid=arrays.valid,
             periodic=(False, False),
             scalars=arrays.scalars,
-            name=name,
-            length_unit=length_unit,
-            time_unit=time_unit,
-            velocity_unit=velocity_unit,
-            units=dict(filled.units),
-            long_names=dict(long_names or {}),
-            start=start,
-            projection=projection,
             triangles=arrays.triangles,
-            uncertainty=filled.uncertainty,
+            **words,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
             notify(ALL_AT_REST, UserWarning)
@@ -574,3 +553,20 @@ class FlowField(FieldConstructors, FieldQuantities):
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )
+
+
+def _prepared(
+    times: Any, texts: tuple[str, str, str], velocity: Any, scalars: Any, units: Any, *, axes: int
+) -> tuple[Floats | None, float, Filled, dict[str, Any]]:
+    """Return times, a factor of the velocity, data without gaps in time, and units of a field.
+
+    The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
+    """
+    times, time_unit, start = as_seconds(times, texts[1])
+    t = None if times is None else with_gaps("times", times)
+    scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
+    unit = velocity_unit or speed_unit(texts[0], time_unit)
+    filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
+    words = {"length_unit": texts[0], "time_unit": time_unit, "velocity_unit": velocity_unit}
+    words |= {"start": start, "units": dict(filled.units), "uncertainty": filled.uncertainty}
+    return t, scale, filled, words

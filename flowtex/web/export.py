@@ -30,18 +30,17 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
-from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.textures.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.linked import (
+    MAPLIBRE,
     StoreLink,
     check_basemap,
     first_parts,
     linked_data,
-    map_pieces,
     store_header,
 )
 from flowtex.web.view import TileSource, WebView, asset, browser_options, client_script, web_views
@@ -172,32 +171,32 @@ def write_page(
 ) -> Page:
     """Write a view, or two side by side, as a page.
 
-    ``store`` and ``basemap`` are those of :func:`export`, the options those of :func:`page_pieces`.
+    ``store`` and ``basemap`` are those of :func:`export`, the options those of :func:`contents_of`.
     """
     path, link = checked_target(path), None if store is None else StoreLink.of(store)
     if basemap is not None:
         check_basemap(basemap, path, views)
-    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
+    contents = _contents(views, link, **options)
     suffix = path.suffix.lower()
-    pieces: Any = module_pieces if suffix in MODULES else page_pieces
+    pieces = module_pieces if suffix in MODULES else page_pieces
     if basemap is not None:
-        pieces = partial(_map_pieces, basemap)
+        pieces = partial(map_pieces, basemap)
     elif suffix == ".json":
         pieces = scene_pieces
     with whole_file(path) as file:
-        file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
-    return Page(path, path.stat().st_size, scenes[0].steps)
+        file.writelines(text.encode() for text in pieces(contents))
+    return Page(path, path.stat().st_size, contents.steps)
 
 
 def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
-    """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`.
+    """Return views as the text of a page; the arguments are those of :func:`write_page`."""
+    link = None if store is None else StoreLink.of(store)
+    return "".join(page_pieces(_contents(views, link, **options)))
 
-    ``store`` is that of :func:`export`.
-    """
-    if store is None:
-        return "".join(page_pieces(views, page_data(views), **options))
-    scenes = [linked_data(view) for view in views]
-    return "".join(page_pieces(views, scenes, link=StoreLink.of(store), **options))
+
+def _contents(views: Sequence[WebView], link: StoreLink | None, **options: Any) -> Contents:
+    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
+    return contents_of(views, scenes, link, **options)
 
 
 def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientData]:
@@ -237,124 +236,114 @@ def _packed_bytes(parts: Parts) -> int:
     return sum(len(part_text(part)[1]) for part in parts.values())
 
 
-def page_pieces(
+@dataclass(frozen=True)
+class Contents:
+    """What a file has of views: headers, and parts, each packed when its turn comes."""
+
+    view: WebView  #: The first one.
+    headers: list[Header]
+    parts: Iterator[tuple[int, Header, str]]
+    steps: int
+    title: str
+    time: float | None
+    link: StoreLink | None
+    picture: bytes | None
+
+
+def contents_of(
     views: Sequence[WebView],
     scenes: Sequence[ClientData],
+    link: StoreLink | None = None,
     *,
-    camera: CameraValues | None = None,
-    time: float | None = None,
-    clock: float = 0.0,
     title: str | None = None,
     axes: str | None = None,
+    time: float | None = None,
     picture: bytes | None = None,
-    link: StoreLink | None = None,
-) -> Iterator[str]:
-    """Yield the text of a page piece by piece; each array is packed when its turn comes.
+    **shown: Any,
+) -> Contents:
+    """Return what a file has of views.
 
     ``axes`` is that of :class:`~flowtex.scene.options.ViewOptions`. Camera, time and clock are
     those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
     has drawn, by default a preview. ``link`` is the store that has the rest; ``scenes`` are then
     those of :func:`linked_data`.
     """
-    headers = _headers(views, scenes, link, title, axes=axes, camera=camera, time=time, clock=clock)
-    if picture is None:
-        picture = preview.preview_png(
-            views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
-        )
+    headers = []
+    for view, scene in zip(views, scenes, strict=True):
+        header = scene.header(view.scene.settings, time=time, **shown)
+        header["name"] = str(title or "") or header["name"]
+        if axes is not None:
+            header["axes"] = axes
+        if link is not None:
+            header["store"] = store_header(view, scene, link)
+        if len(views) > 1:
+            header["differs"] = list(views[1].own_settings)
+        headers.append(header)
+    name, parts = headers[0]["name"] or "Flow", _packed(scenes, link, time)
+    return Contents(views[0], headers, parts, scenes[0].steps, name, time, link, picture)
+
+
+def page_pieces(contents: Contents) -> Iterator[str]:
+    """Yield the text of a page piece by piece."""
     before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(headers, title or headers[0]["name"] or "Flow", picture, link)
+    values = _values(contents)
     yield string.Template(before).substitute(values)
-    for n, info, text in _packed(scenes, link, time):
+    for n, info, text in contents.parts:
         part = html.escape(json.dumps(info))
         yield f'<script type="text/plain" data-view="{n}" data-part="{part}">{text}</script>\n'
     yield string.Template(after).substitute(values)
 
 
-def module_pieces(
-    views: Sequence[WebView],
-    scenes: Sequence[ClientData],
-    *,
-    time: float | None = None,
-    title: str | None = None,
-    link: StoreLink | None = None,
-    **shown: Any,
-) -> Iterator[str]:
-    """Yield the text of a module piece by piece; the arguments are those of :func:`page_pieces`."""
-    headers = _headers(views, scenes, link, title, time=time, **shown)
+def module_pieces(contents: Contents) -> Iterator[str]:
+    """Yield the text of a module piece by piece."""
     before, after = asset("scene.mjs").read_text("utf-8").split("$parts\n")
     values = {
-        "script": client_script(with_store=link is not None),
-        "headers": _headers_text(headers),
-        "store": "" if link is None else ", flowtexStore.open",
+        "script": client_script(with_store=contents.link is not None),
+        "headers": _headers_text(contents.headers),
+        "store": "" if contents.link is None else ", flowtexStore.open",
     }
     yield string.Template(before).substitute(values)
-    for packed in _packed(scenes, link, time):
+    for packed in contents.parts:
         yield json_text(packed) + ",\n"
     yield string.Template(after).substitute(values)
 
 
-def scene_pieces(
-    views: Sequence[WebView],
-    scenes: Sequence[ClientData],
-    *,
-    time: float | None = None,
-    title: str | None = None,
-    link: StoreLink | None = None,
-    **shown: Any,
-) -> Iterator[str]:
-    """Yield the JSON text of a scene in pieces; the arguments are those of :func:`page_pieces`."""
-    headers = _headers(views, scenes, link, title, time=time, **shown)
-    yield f'{{"headers": {_headers_text(headers)}, "parts": ['
-    for n, packed in enumerate(_packed(scenes, link, time)):
+def scene_pieces(contents: Contents) -> Iterator[str]:
+    """Yield the JSON text of a scene in pieces."""
+    yield f'{{"headers": {_headers_text(contents.headers)}, "parts": ['
+    for n, packed in enumerate(contents.parts):
         yield (",\n" if n else "") + json_text(packed)
     yield "]}\n"
 
 
-def _map_pieces(
-    basemap: str | Mapping[str, object],
-    views: Sequence[WebView],
-    scenes: Sequence[ClientData],
-    *,
-    title: str | None = None,
-    **shown: Any,
-) -> Iterator[str]:
-    name = title or views[0].scene.field.name or "Flow"
-    return map_pieces(scene_pieces(views, scenes, title=title, **shown), basemap, name)
-
-
-def _headers(
-    views: Sequence[WebView],
-    scenes: Sequence[ClientData],
-    link: StoreLink | None,
-    title: str | None,
-    *,
-    axes: str | None = None,
-    **shown: Any,
-) -> list[Header]:
-    headers = [
-        scene.header(view.scene.settings, **shown)
-        for view, scene in zip(views, scenes, strict=True)
-    ]
-    for n, header in enumerate(headers):
-        header["name"] = str(title or "") or header["name"]
-        if axes is not None:
-            header["axes"] = axes
-        if link is not None:
-            header["store"] = store_header(views[n], scenes[n], link)
-        if len(views) > 1:
-            header["differs"] = list(views[1].own_settings)
-    return headers
+def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Iterator[str]:
+    """Yield the text of the page of a web map in pieces."""
+    before, after = asset("map.html").read_text("utf-8").split("$scene\n")
+    layer = asset("maplibre.js").read_text("utf-8")
+    values = {
+        "version": __version__,
+        "title": html.escape(contents.title),
+        "maplibre": MAPLIBRE,
+        "script": layer.replace("</script", r"<\/script").replace("<!--", r"<\!--"),
+        "style": json.dumps(basemap, allow_nan=False).replace("<", r"\u003c"),
+    }
+    yield string.Template(before).substitute(values)
+    yield from scene_pieces(contents)
+    yield string.Template(after).substitute(values)
 
 
 def _headers_text(headers: Sequence[Header]) -> str:
     return json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])])
 
 
-def _values(
-    headers: Sequence[Header], title: str, picture: bytes, link: StoreLink | None
-) -> dict[str, str]:
+def _values(contents: Contents) -> dict[str, str]:
     """Return the values of the placeholders in the page's template."""
+    headers, link, picture = contents.headers, contents.link, contents.picture
     ground = headers[0]["background"]
+    if picture is None:
+        picture = preview.preview_png(
+            contents.view, PREVIEW, camera=headers[0]["camera"], time=contents.time, coarser=1
+        )
     # A browser has its own colour for light and for dark pages.
     background = (
         "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
@@ -366,7 +355,7 @@ def _values(
     return {
         "policy": _policy(script, link),
         "version": __version__,
-        "title": html.escape(str(title)),
+        "title": html.escape(contents.title),
         "style": look,
         # Browsers recognise JPEG.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),

@@ -5,23 +5,19 @@ The page of a store has the root of its pyramid. MapLibre and the map come from 
 
 from __future__ import annotations
 
-import html
-import json
 import re
-import string
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from flowtex._util import __version__
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.tiles import shared_pyramid
-from flowtex.web.view import WebView, asset
+from flowtex.web.view import WebView
 
 #: Valid host names, which have no characters with a meaning in a page's policy.
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
@@ -132,11 +128,6 @@ def _stored(view: WebView) -> StoredPyramid:
     return pyramid
 
 
-def layer_script() -> str:
-    """Return the layer as the text of a module."""
-    return asset("maplibre.js").read_text("utf-8")
-
-
 def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None:
     """Raise a FieldError when a map has no style, or cannot show the views of a page."""
     if path.suffix.lower() not in (".html", ".htm"):
@@ -160,21 +151,3 @@ def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None
     if len(views) > 1:
         msg = "basemap is given, but beside makes two views; omit one of them"
         raise FieldError(msg)
-
-
-def map_pieces(
-    scene: Iterator[str], basemap: str | Mapping[str, object], title: str
-) -> Iterator[str]:
-    """Yield the text of a page piece by piece, from the pieces of a scene in JSON."""
-    before, after = asset("map.html").read_text("utf-8").split("$scene\n")
-    style = json.dumps(basemap, allow_nan=False).replace("<", r"\u003c")
-    values = {
-        "version": __version__,
-        "title": html.escape(title),
-        "maplibre": MAPLIBRE,
-        "script": layer_script().replace("</script", r"<\/script").replace("<!--", r"<\!--"),
-        "style": style,
-    }
-    yield string.Template(before).substitute(values)
-    yield from scene
-    yield string.Template(after).substitute(values)

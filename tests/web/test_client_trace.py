@@ -29,7 +29,7 @@ from flowtex.textures import TextureSet
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.textures.tiles import TileKey
 from flowtex.trace import SliceStore
-from flowtex.web.export import export, page_pieces
+from flowtex.web.export import contents_of, export, page_pieces
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
@@ -276,7 +276,9 @@ def test_tiles_around_a_pole_are_those_of_numpy(
     assert textures is not None and textures.grid.field.shape[1] < 601
     data, path = ClientData(textures, traces=True), tmp_path / "page.html"
     assert data.traced and len(data.surface()["rays"]) == 1
-    path.write_text("".join(page_pieces([view], [data], picture=b"")), encoding="utf-8")
+    path.write_text(
+        "".join(page_pieces(contents_of([view], [data], picture=b""))), encoding="utf-8"
+    )
     agree(textures, texels(browser, path), textures.layers(0).astype("<f2").astype(float))
 
 

@@ -157,7 +157,7 @@ def read_flow(
     choice = Choice(dict(sel or {}), dict(isel or {}))
     joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, components)
     if joined is not None:
-        datasets = Datasets(joined, opened=datasets.opened)
+        datasets = Datasets(joined, datasets.closers)
         pair = choose_pair(datasets, str(pair.u.name), str(pair.v.name))
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)

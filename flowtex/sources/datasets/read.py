@@ -227,7 +227,7 @@ def _averaged(
     others = [
         ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
     ]
-    kept = Datasets(others, opened=datasets.opened)
+    kept = Datasets(others, datasets.closers)
     changes: dict[str, Any] = {"mean": mean, "drawn": drawn, "datasets": kept}
     return replace(members[0], **changes), spread
 

@@ -33,24 +33,11 @@ LETTERS = ("Times", "xtime")
 DAYS_AS_NUMBERS = "%Y%m%d"
 
 
-class Datasets(list["xr.Dataset"]):
-    """Datasets whose axes cf_xarray recognises, with times as dates."""
-
-    def __init__(self, items: Iterable[xr.Dataset] = (), *, opened: Any = ()) -> None:
-        super().__init__(items)
-        self.opened = tuple(opened)
-
-    def close(self) -> None:
-        """Close the files; a later read opens them again."""
-        for close in self.opened:
-            close()
-
-
 class Opened(list["xr.Dataset"]):
     """Datasets of files that flowtex has opened, and functions that close these."""
 
     def __init__(
-        self, items: Iterable[xr.Dataset], closers: Iterable[Callable[[], None]] = ()
+        self, items: Iterable[xr.Dataset] = (), closers: Iterable[Callable[[], None]] = ()
     ) -> None:
         super().__init__(items)
         self.closers = tuple(closers)
@@ -62,6 +49,15 @@ class Opened(list["xr.Dataset"]):
         The method ``close`` of a dataset works only once, but xarray opens a file for each read.
         """
         return cls(items, [part._close for part in parts if part._close is not None])
+
+
+class Datasets(Opened):
+    """Datasets whose axes cf_xarray recognises, with times as dates."""
+
+    def close(self) -> None:
+        """Close the files; a later read opens them again."""
+        for close in self.closers:
+            close()
 
 
 def as_datasets(data: Any, record: Record | None = None) -> Datasets:
@@ -78,8 +74,8 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
-    opened = data.closers if isinstance(data, Opened) else ()
-    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), opened=opened)
+    closers = data.closers if isinstance(data, Opened) else ()
+    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers)
 
 
 def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
