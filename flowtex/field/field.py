@@ -20,6 +20,7 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
+from flowtex.field.dates import as_seconds
 from flowtex.field.derived.methods import FieldQuantities
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
@@ -39,8 +40,8 @@ from flowtex.field.steps import (
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.units import factor, speed_unit
-from flowtex.field.validation import ALL_AT_REST
+from flowtex.field.units import factor, speed_unit, velocity_units
+from flowtex.field.validation import ALL_AT_REST, with_gaps
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
@@ -567,6 +568,10 @@ def _prepared(
     scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
     unit = velocity_unit or speed_unit(texts[0], time_unit)
     filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
-    words = {"length_unit": texts[0], "time_unit": time_unit, "velocity_unit": velocity_unit}
+    words: dict[str, Any] = {
+        "length_unit": texts[0],
+        "time_unit": time_unit,
+        "velocity_unit": velocity_unit,
+    }
     words |= {"start": start, "units": dict(filled.units), "uncertainty": filled.uncertainty}
     return t, scale, filled, words
