@@ -114,7 +114,8 @@ sphinx_gallery_conf = {
 }
 
 html_theme = "pydata_sphinx_theme"
-html_sidebars: dict[str, list[str]] = {"*": []}  # pages at the top have no section beside them
+# Pages without further ones below them have no section beside them.
+html_sidebars: dict[str, list[str]] = {name: [] for name in ("index", "start")}
 html_title = "flowtex"
 html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
@@ -123,10 +124,10 @@ html_css_files = ["site.css"]
 html_js_files = ["site.js"]
 html_show_sourcelink = html_copy_source = False
 html_theme_options = {
-    "show_prev_next": False,
+    "show_prev_next": True,
     "secondary_sidebar_items": ["page-toc"],
     "navbar_align": "left",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 7,
     "footer_start": ["copyright"],
     "footer_end": ["theme-version"],
 }

@@ -53,8 +53,8 @@ SCENE_BYTES = 1_400_000
 #: Sections of the gallery, folders of docs/examples, in order.
 SECTIONS = ("grids", "surfaces", "earth", "time", "looks", "classics")
 HINT = (
-    "This picture is alive: drag it, click it to zoom with the wheel, pinch it, or use the arrow "
-    "keys, +, − and 0. A click on the flow shows a path."
+    "Interactive: drag to pan, click then scroll to zoom, or press +, − and 0. Click the flow to "
+    "trace a path."
 )
 
 #: What has been shown since the last block of an example.

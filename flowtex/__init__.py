@@ -34,7 +34,7 @@ if TYPE_CHECKING:
         separatrices,
     )
     from flowtex.web.export import export
-    from flowtex.widget import FlowWidget as FlowWidget
+    from flowtex.widget import FlowWidget
 
 __all__ = [
     "Camera",
@@ -42,6 +42,7 @@ __all__ = [
     "CriticalPoints",
     "FieldError",
     "FlowField",
+    "FlowWidget",
     "Separatrices",
     "Settings",
     "TraceSlices",
@@ -101,4 +102,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "FlowWidget"})
+    return sorted({*globals(), *__all__})

@@ -7,12 +7,15 @@ import inspect
 import json
 import os
 import re
+import sys
 from functools import partial
 from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 from pydoc import locate
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 import pyvista as pv
 from test_notebooks import smaller
@@ -26,9 +29,40 @@ PAGES += sorted(p for room in ("howto", "reference") for p in (ROOT / "docs" / r
 BEGIN, END = "<!-- settings: made from", "<!-- end of settings -->"
 
 
+#: Where a Python block that does not run here runs, or why it cannot.
+REASON = re.compile(r"<!-- (?:run by (?P<test>tests/[\w/]+\.py)|not run: .{10,}) -->")
+
+
+class Block(NamedTuple):
+    """A block of code on a page."""
+
+    above: str
+    language: str
+    code: str
+
+
+def code_blocks(page: Path) -> list[Block]:
+    """Return the blocks of code of a page; each must end."""
+    lines = page.read_text().splitlines()
+    found, mark, language, start = [], "", "", 0
+    for number, line in enumerate(lines, start=1):
+        match = re.match(r" *(`{3,})([^`]*)$", line)
+        if match and not mark:
+            mark, language, start = match[1], match[2].strip(), number
+        elif match and match[1] == mark and not match[2].strip():
+            code = "".join(f"{each}\n" for each in lines[start : number - 1])
+            found.append(Block(lines[start - 2], language, code))
+            mark = ""
+        else:
+            nested = match and len(match[1]) >= len(mark)
+            assert not nested, f"{page}:{start}: the block has not ended in line {number}"
+    assert not mark, f"{page}:{start}: the block does not end"
+    return found
+
+
 def blocks(page: Path) -> list[str]:
     """Python blocks of a page."""
-    return re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+    return [block.code for block in code_blocks(page) if block.language == "python"]
 
 
 def fewer(mesh: Any) -> Any:
@@ -55,28 +89,144 @@ def small_examples() -> dict[str, Any]:
     }
 
 
+def era5(path: Path) -> None:
+    """Write winds on levels, as the Climate Data Store does."""
+    import xarray as xr
+
+    lon, lat, hpa = (
+        np.arange(0.0, 360.0, 10.0),
+        np.arange(-60.0, 61.0, 10.0),
+        (1000.0, 500.0, 100.0),
+    )
+    dims, ones = ("pressure_level", "latitude", "longitude"), np.ones((3, len(lat), len(lon)))
+    winds = {"u": ("eastward_wind", "m s**-1"), "v": ("northward_wind", "m s**-1")}
+    winds["w"] = "lagrangian_tendency_of_air_pressure", "Pa s**-1"
+    axes = {"longitude": ("X", "degrees_east"), "latitude": ("Y", "degrees_north")}
+    places = {"longitude": lon, "latitude": lat, "pressure_level": np.array(hpa)}
+    axes["pressure_level"] = "Z", "hPa"
+    xr.Dataset(
+        {
+            name: (dims, ones * (n + 1), {"standard_name": standard, "units": unit})
+            for n, (name, (standard, unit)) in enumerate(winds.items())
+        },
+        {
+            name: (name, places[name], {"axis": axis, "units": unit})
+            for name, (axis, unit) in axes.items()
+        },
+    ).to_netcdf(path)
+
+
+def nemo(path: Path) -> None:
+    """Write the component of currents that a name ends with, or the positions of all."""
+    import xarray as xr
+
+    j, i = np.mgrid[0:12, 0:16]
+    places = {letter: (0.5 * (letter in "uf"), 0.5 * (letter in "vf")) for letter in "tuvf"}
+    data = xr.Dataset(attrs={"Conventions": "CF-1.6"})
+    if path.stem == "coordinates":
+        for letter, (right, up) in places.items():
+            data[f"glam{letter}"] = ("y", "x"), i + right - 20.0
+            data[f"gphi{letter}"] = ("y", "x"), j + up + 40.0
+    else:
+        letter = path.stem[-1].lower()
+        attrs = {"units": "m/s", "standard_name": f"sea_water_{'xy'[letter == 'v']}_velocity"}
+        data[f"{letter}o"] = (f"depth{letter}", "y", "x"), 1.0 + np.stack([i, j]) / 10, attrs
+        data[f"depth{letter}"] = f"depth{letter}", [0.5, 1.5], {"units": "m", "positive": "down"}
+    data.to_netcdf(path)
+
+
+def vortex(path: Path) -> None:
+    """Write a mesh with a flow."""
+    fewer(flowtex.examples.airfoil()).save(path)
+
+
+#: Files that pages name and readers have, and what writes them.
+STAND_INS = {
+    "era5.nc": era5,
+    **dict.fromkeys(("nemo_U.nc", "nemo_V.nc", "coordinates.nc"), nemo),
+    "vortex.vts": vortex,
+}
+
+
+@pytest.fixture
+def no_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Check calls that would serve a page until it is stopped, and return at once."""
+    app, server = import_module("flowtex.app"), import_module("trame_server")
+    signature = inspect.signature(app.serve)
+
+    def serve(*arguments: Any, **options: Any) -> None:
+        source = signature.bind(*arguments, **options).args[0]
+        if callable(source):
+            source(import_module("trame.app").get_server("a page of the docs"))
+
+    monkeypatch.setattr(app, "serve", serve)
+    monkeypatch.setattr(server.Server, "start", lambda *_, **__: None)
+
+
+def close_all(names: dict[str, Any]) -> None:
+    """Close figures, plotters and widgets, as the end of a session does."""
+    pv.close_all()
+    for name, call in (("matplotlib.pyplot", "close"), ("ipywidgets", "Widget.close_all")):
+        if name in sys.modules:
+            arguments = ("all",) if call == "close" else ()
+            attrgetter(call)(sys.modules[name])(*arguments)
+
+
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
 def test_the_blocks_of_a_page_run(
     page: Path,
     opengl: Any,
     small_examples: dict[str, Any],
     quick_export: None,
+    no_server: None,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(pv.global_theme, "window_size", [160, 120])
-    defaults = {**(flowtex.render.__kwdefaults__ or {}), "size": (160, 120)}
-    monkeypatch.setattr(flowtex.render, "__kwdefaults__", defaults)
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    for draws in (flowtex.render, flowtex.movie):
+        defaults = {**(draws.__kwdefaults__ or {}), "size": (160, 120)}
+        monkeypatch.setattr(draws, "__kwdefaults__", defaults)
     monkeypatch.setitem(flowtex.formula.__kwdefaults__ or {}, "resolution", 97)
     for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):
         made = partial(getattr(flowtex.examples, name), shape=shape)
         monkeypatch.setattr(flowtex.examples, name, made)
     for name, example in small_examples.items():
         monkeypatch.setattr(flowtex.examples, name, lambda example=example: example)
+    for name in STAND_INS:
+        if any(f'"{name}"' in block for block in blocks(page)):
+            STAND_INS[name](tmp_path / name)
     names: dict[str, Any] = {}
-    for number, block in enumerate(blocks(page), start=1):
-        exec(compile(smaller(block), f"{page.name}, block {number}", "exec"), names)
+    try:
+        for number, block in enumerate(blocks(page), start=1):
+            exec(compile(smaller(block), f"{page.name}, block {number}", "exec"), names)
+    finally:
+        close_all(names)
+
+
+def test_a_python_block_that_does_not_run_names_its_test_or_the_reason() -> None:
+    for page in PAGES:
+        for above, language, code in code_blocks(page):
+            if not re.match(r"py|ipython|\{code-block\} *i?py", language) or language == "python":
+                continue
+            reason = REASON.fullmatch(above)
+            assert reason, f"{page}: {code[:40]!r}"
+            test = reason["test"]
+            assert test is None or page.name in (ROOT / test).read_text(), f"{page}: {test}"
+
+
+@pytest.mark.parametrize("page", [*PAGES, *ROOT.glob("benchmarks/*.md")], ids=lambda p: p.stem)
+def test_rows_of_tables_are_whole(page: Path) -> None:
+    text = "".join(f"{line}\n" for line in page.read_text().splitlines())
+    for block in code_blocks(page):
+        text = text.replace(block.code, "")
+    tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
+    for table in tables:
+        head, rule, *rows = (re.sub(r"`[^`]*`|\\\|", "", row) for row in table.splitlines())
+        assert re.fullmatch(r"\|( *:?-+:? *\|)+", rule), f"{page}: {head}"
+        for row in (head, *rows):
+            assert row.endswith("|") and row.count("|") == rule.count("|"), f"{page}: {row}"
 
 
 def test_every_link_inside_the_project_leads_somewhere() -> None:

@@ -28,6 +28,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.pyramid import is_store
     from flowtex.pyramid.places import is_remote, place_text
     from flowtex.pyramid.source import has_parts
+    from flowtex.sources.files import one_path
     from flowtex.sources.opening.dataset_files import dataset_paths
     from flowtex.sources.summary import describe
 
@@ -45,10 +46,10 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
         console.print(_recognised_table(paths))
         console.print(_field_table(load_field(files, options), has_reading=True))
         return 0
-    if len(files) != 1:
-        msg = f"{len(files)} files are given; name one, or several only for data of the Earth"
+    if not files:
+        msg = "no input file; usage: flowtex info FILE"
         raise UsageError(msg)
-    file = files[0]
+    file = files[0] if len(files) == 1 else one_path(files)
     summary = describe(file, options.get("block"))
     console.print(Text(str(file), "bold"), soft_wrap=True)
     console.print(_file_table(summary))

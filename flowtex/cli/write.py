@@ -215,8 +215,8 @@ def _print_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
         return
     (low, high), (least, most) = scene.scalar_limits, scene.scalar_range(name)
     say(
-        f"The colours of {scene.title_of(name)} are from {low:.3g} to {high:.3g}, its values from "
-        f"{least:.3g} to {most:.3g}; --clim={least:.3g},{most:.3g} shows them all"
+        f"Colour range {low:.3g} to {high:.3g} clips {scene.title_of(name)} ({least:.3g} to "
+        f"{most:.3g}). Use --clim={least:.3g},{most:.3g} to show everything."
     )
 
 

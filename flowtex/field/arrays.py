@@ -33,7 +33,7 @@ class ReadingStep(NamedTuple):
     ('select', 'level: 250 hPa', '250 hPa')
     """
 
-    step: str  #: One of :data:`STEPS`.
+    step: str  #: One of ``STEPS``.
     text: str
     notable: bool = False  #: Whether it is a choice that users must know: it is issued as a notice.
     caption: str = ""  #: Text for captions, such as ``"500 hPa"``.

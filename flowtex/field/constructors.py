@@ -104,8 +104,7 @@ class FieldConstructors:
         Points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0 (PLOT3D), and points
         that a sampling filter marked in ``vtkValidPointMask`` are not drawn, and neither are
         vectors with a fill value, such as -999. Steps whose nodes are in another order are matched
-        by ``GlobalPointIds`` or by position. :attr:`reading` tells all of this. The mesh is not
-        changed.
+        by ``GlobalPointIds`` or by position. ``field.reading`` lists all. The mesh is not changed.
 
         Examples
         --------

@@ -96,7 +96,7 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     if not isinstance(date, str):
         return (float((date - start).total_seconds()),) * 2
     if (match := _DATE.fullmatch(date.strip())) is None:
-        msg = f"{date!r} is no date"
+        msg = f"{date!r} is not a valid date"
         raise FieldError(msg)
     *parts, fraction = match.groups()
     numbers = [int(part) for part in parts if part is not None]

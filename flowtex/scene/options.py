@@ -153,7 +153,7 @@ class FieldOptions:
     )
     isel: Mapping[str, Any] | None = _option(
         None,
-        'The same by index from 0: ``{"number": 2}``.',
+        'Like ``sel``, but by zero-based index: ``{"number": 2}``.',
         Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
     )
     mask: str | bool | None = _option(
@@ -169,10 +169,9 @@ class FieldOptions:
     )
     uncertainty: ArrayLike | None = _option(
         None,
-        "Uncertainty of the direction; where it is high, streaks are shorter and fainter: the "
-        "name of a scalar, or an array, of the standard deviation of the velocity over its "
-        'magnitude; or a dimension of a dataset, such as ``"number"``, over which the mean is '
-        "drawn.",
+        "Directional uncertainty, which shortens and fades streaks: a scalar name or array "
+        "(standard deviation ÷ speed), or an ensemble dimension to average over, such as "
+        '``"number"``.',
     )
 
     def __post_init__(self) -> None:
@@ -510,9 +509,12 @@ class Options:
                 near = elsewhere(name, known)
                 if not near and (close := closest(name, known)):
                     near = f"did you mean {' or '.join(map(repr, close))}?"
+                axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
                 if is_dataset(mesh) and "sel" in known and name in _axes_of(mesh):
-                    near = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
-                near = near or "help(flowtex.render) has all of them"
+                    near = axis
+                if not near:
+                    of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
+                    near = f"help(flowtex.render) has all of them{of_file}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)

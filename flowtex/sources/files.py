@@ -227,7 +227,7 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
     if missing := [str(each) for each in path if not Path(each).expanduser().exists()]:
-        msg = f"{', '.join(missing)} does not exist; check the path and the working directory"
+        msg = f"{', '.join(missing)}: no such file; check the path and the working directory"
         raise FieldError(msg)
     msg = (
         f"{len(path)} files are given, but several are read only as datasets; for the steps of a "
@@ -238,8 +238,7 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
 
 def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
     """Name a file, or the first of several, in errors until its field is made."""
-    paths = dataset_paths(path)
-    first = paths[0] if paths else path
+    first = next(iter(dataset_paths(path)), path)
     return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
 
 

@@ -30,6 +30,6 @@ def notify_section(section: Any) -> None:
     """Warn where a vertical section, as :attr:`FlowField.section` has it, is drawn without axes."""
     if section is not None:
         notify(
-            f"this is a vertical section, with {section.x} and {section.y}, drawn without "
-            "stretching an axis; draw it with flowtex.axes or ds.flowtex.plot"
+            f"this is a vertical section of {section.x} and {section.y}, which need independent "
+            "axis scales; use flowtex.axes or ds.flowtex.plot instead"
         )

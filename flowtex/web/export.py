@@ -98,7 +98,7 @@ def export(
 
     The file is an HTML page or, if its name ends in ``.mjs`` or ``.js``, a module that other pages
     import. The module exports ``mount(element, settings, height)``, and the ``render`` of an
-    anywidget module, which MyST's directive ``{{anywidget}}`` calls. A name that ends in ``.json``
+    anywidget module, which MyST's directive ``{anywidget}`` calls. A name that ends in ``.json``
     gives the scene alone, without a client: what ``flowtex-maplibre`` shows as a layer of a web map
     (``projection="mercator"``).
 

@@ -220,7 +220,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         Raises
         ------
         FieldError, SettingsError
-            When the mesh or a setting does not fit.
+            If the mesh or a setting is invalid.
         """
         chosen = {"vectors": vectors, "scalars": scalars, "cmap": cmap}
         shown, arguments = browser_options(mesh, **chosen, **options)

@@ -142,8 +142,8 @@ def test_values_beyond_the_colours_are_told(run: Run, tmp_path: Path, opengl: ob
     mesh.save(tmp_path / "spike.vti")
     base = ("render", tmp_path / "spike.vti", "-o", tmp_path / "p.png", "--scalars", "p")
     said = run(*base, "--size", "60x40")[1]
-    assert "The colours of p are from 0 to 1, its values from 0 to 50; --clim=0,50" in said
-    assert "The colours" not in run(*base, "--size", "60x40", "--clim", "0,50")[1]
+    assert "Colour range 0 to 1 clips p (0 to 50). Use --clim=0,50" in said
+    assert "Colour range" not in run(*base, "--size", "60x40", "--clim", "0,50")[1]
 
 
 def test_flow_that_leaves_the_surface_is_told(
@@ -212,6 +212,8 @@ def test_flow_that_leaves_the_surface_is_told(
         ("movie {gyre} -o {tmp}/a.gif --motion off", "motion is 'off'; expected"),
         ("movie {gyre} -o {tmp}/a.mp4 --size 95x64", "MP4 needs even sides"),
         ("info {tmp}/no.vts", "the file does not exist"),
+        ("info {tmp}/u.nc {tmp}/v.nc", "v.nc: no such file; check the path"),
+        ("info", "no input file; usage: flowtex info FILE"),
         ("info {tmp}", "this is a folder"),
         ("render {gyre} -o {tmp}/a.png --vmin 0", "no option --vmin; did you mean --clim?"),
         ("render {gyre} -o {tmp}/a.png --duration 3", "of a movie is --seconds 5"),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from test_docs import code_blocks, era5
 
 import flowtex
 
@@ -23,6 +25,22 @@ def seen(flow: Any, x: tuple[float, float], y: tuple[float, float], *time: Any) 
     ranges.event(x_range=x, y_range=y)
     size.event(width=SIZE[0], height=SIZE[1], scale=1.0)
     return flow[time] if time else flow[()]
+
+
+def test_the_lines_of_figures_md_run(
+    opengl: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyproj")
+    monkeypatch.chdir(tmp_path)
+    era5(tmp_path / "era5.nc")
+    flowtex.examples.ocean().isel(time=slice(2)).to_netcdf("currents.nc")
+    pages = Path(__file__).parents[2] / "docs" / "howto" / "figures.md"
+    (code,) = (block.code for block in code_blocks(pages) if "holoviews" in block.code)
+    page: dict[str, Any] = {"flowtex": flowtex}
+    exec(compile(code, pages.name, "exec"), page)
+    time = page["currents"].kdims[0].values[0]
+    assert len(np.unique(pixels(page["currents"][time])[..., :3])) > 50
+    assert hv.render(page["winds_on_tiles"]) is not None
 
 
 def pixels(element: Any) -> Any:

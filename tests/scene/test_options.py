@@ -221,6 +221,8 @@ def test_the_axis_of_a_dataset_is_selected_along() -> None:
         Scene.of(data, number=1)
     with pytest.raises(SettingsError, match=r"has all of them$"):
         Scene.of(data, member=1)
+    with pytest.raises(SettingsError, match=r"along an axis, use sel={'longitude': -30}$"):
+        Options.split(mesh="era5.nc", longitude=-30)
 
 
 def test_a_message_has_one_line_of_a_long_value() -> None:

@@ -33,7 +33,7 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
     Returns
     -------
     DynamicMap
-        HoloViews' own, of ``RGB`` elements, in the coordinates that :func:`flowtex.axes` has.
+        A HoloViews ``DynamicMap`` of ``RGB`` elements, in the coordinates of :func:`flowtex.axes`.
 
     Raises
     ------

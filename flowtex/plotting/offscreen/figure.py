@@ -81,7 +81,7 @@ def extent(
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        If the mesh or a setting is invalid.
         When the surface is curved, the camera does not look straight on, or there are two views.
 
     Examples

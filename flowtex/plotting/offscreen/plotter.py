@@ -302,7 +302,7 @@ def render(
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        If the mesh or a setting is invalid.
         When the picture would be too large to draw, or the margin is out of range.
     OpenGLMissingError
         When OpenGL is missing; the text names the command that installs it.

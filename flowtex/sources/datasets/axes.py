@@ -60,8 +60,8 @@ class Choice:
             msg = f"the axis {name!r} does not exist; {near_names(name, sorted(names))}"
             if name in drawn:
                 msg = (
-                    f"{name!r} is an axis of the surface, of which all is drawn; to draw a part, "
-                    f"cut it out before, as in data.sel({name}=slice(low, high))"
+                    f"{name!r} is one of the surface's own axes, so it cannot be selected here; "
+                    f"subset the data first: data.sel({name}=slice(low, high))"
                 )
             raise FieldError(msg)
 
@@ -384,13 +384,12 @@ def _drawn(
             choice.used.add(name)
             target = choice.sel[name]
             if line is None:
-                msg = (
-                    f"{name} has no coordinate values; select by index, as in isel={{{name!r}: 0}}"
-                )
+                msg = f"{name} has no coordinate values; select by index: isel={{{name!r}: 0}}"
                 raise FieldError(msg)
             if kind == TIME and isinstance(target, slice):
                 return _within(target, line, name)
-            return _nearest(target, line, name)
+            is_longitude = dim.lower().startswith("lon") or _unit(array, dim).endswith("_east")
+            return _nearest(target, line, name, is_longitude=is_longitude)
     if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
         return list(range(count))
     if kind == TIME and line is not None and count > 1:
@@ -453,10 +452,9 @@ def _pressure_unit(coordinate: xr.DataArray) -> str:
     return unit if named or declared or by_values else ""
 
 
-def _nearest(target: Any, line: AnyArray, name: str) -> int:
+def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> int:
     """Return the number of the value nearest to a target, within the ends of the axis."""
-    values = _texts(line)
-    listed = ", ".join(values[:8]) + (", ..." if len(line) > 8 else "")
+    listed = ", ".join(_texts(line)[:8]) + (", ..." if len(line) > 8 else "")
     msg = f"{name} is {target!r}; expected one of {listed}"
     try:
         at, (begin, end) = _places(line, target)
@@ -465,12 +463,13 @@ def _nearest(target: Any, line: AnyArray, name: str) -> int:
     within = np.flatnonzero((at >= begin) & (at < end))
     if len(within):  # the first of a day, though it is at noon
         return int(within[0])
-    at = at - begin
-    number = int(np.argmin(np.abs(at)))
     widest = float(np.abs(np.diff(at)).max()) if len(at) > 1 and np.isfinite(at).all() else 0.0
-    if not abs(at[number]) <= max(widest / 2, 1e-6 * np.abs(at).max()):
+    off = np.abs(at - begin)
+    if is_longitude:  # -30 and 330 are one
+        off = np.minimum(off, np.abs(off - 360.0))
+    if not off.min() <= max(widest / 2, 1e-6 * off.max(where=np.isfinite(off), initial=0.0)):
         raise FieldError(msg)
-    return number
+    return int(np.argmin(off))
 
 
 def _within(target: slice, line: AnyArray, name: str) -> list[int]:

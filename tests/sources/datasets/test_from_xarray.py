@@ -185,6 +185,9 @@ def test_the_level_nearest_the_surface_is_said() -> None:
     assert np.allclose(
         field.velocity, 3 * FlowField.from_xarray(levels(), globe=True, isel={"level": 0}).velocity
     )
+    runs = xr.concat([levels()] * 2, "run").assign_coords(run=["a", "b"])
+    with pytest.raises(FieldError, match="run is 'c'; expected one of a, b"):
+        FlowField.from_xarray(runs, sel={"run": "c"}, level=500)
     with pytest.raises(FieldError, match=r"level is 20; expected one of 200\.0, 500\.0, 850\.0"):
         FlowField.from_xarray(levels(), level=20)
     with pytest.raises(FieldError, match="the axis 'lvel' does not exist"):
@@ -263,7 +266,7 @@ def test_a_pair_in_another_unit_is_told_of() -> None:
 def test_a_region_is_cut_from_the_dataset() -> None:
     ds = winds(np.arange(0.0, 30.0), np.arange(60.0, 40.0, -1.0))
     with pytest.raises(
-        FieldError, match=r"'lon' is an axis of the surface.* as in data\.sel\(lon="
+        FieldError, match=r"'lon' is one of the surface's own axes, .*: data\.sel\(lon="
     ):
         FlowField.from_xarray(ds, sel={"lon": slice(5, 9)})
     with pytest.raises(FieldError, match=r"the axis may run the other way: slice\(high, low\)"):

@@ -77,6 +77,18 @@ def test_what_is_chosen_along_other_axes_is_a_section() -> None:
     np.testing.assert_allclose(field.velocity[0][0, :, 0], (2 + lon) / DEGREE / 0.5)
 
 
+@pytest.mark.parametrize("begin", [-180.0, 0.0])
+@pytest.mark.parametrize("chosen", [-30.0, 330.0, -31.0, 329.0])
+def test_a_longitude_is_selected_from_either_side(begin: float, chosen: float) -> None:
+    lon = begin + np.arange(0.0, 360.0, 30.0)
+    axis = {"units": "degrees_east", "axis": "X"}
+    ds = section(OMEGA, HPA).expand_dims(lon=lon).assign_coords(lon=("lon", lon, axis))
+    ds["v"] = ds["v"] + (ds["lon"] % 360)
+    ds["v"].attrs = section(OMEGA, HPA)["v"].attrs
+    field = FlowField.from_xarray(ds, "v", "w", sel={"lon": chosen})
+    assert (field.scalars["v"][0] == 332).all()
+
+
 def kilograms(ds: xr.Dataset) -> xr.Dataset:
     return ds.rename(lat="x").assign_coords(x=("x", LAT, {"units": "kg"}))
 
@@ -127,7 +139,7 @@ def test_axes_have_the_top_above_and_names(opengl: Any) -> None:
     series = FlowField.from_xarray(ds.expand_dims(time=times), "v", "w")
     scales, frame = AxesScales(log, framed=False), series.surface.frame
     assert frame is not None and isinstance(scales.field(series, frame).velocity, LazySteps)
-    with pytest.warns(DatasetNotice, match=r"vertical section, .* draw it with flowtex\.axes"):
+    with pytest.warns(DatasetNotice, match=r"vertical section of .* use flowtex\.axes"):
         flowtex.render(ds, u="v", v="w", size=(30, 20), samples=3)
 
 
