@@ -7,6 +7,7 @@ import inspect
 import json
 import os
 import re
+import shlex
 import sys
 from functools import partial
 from importlib import import_module
@@ -227,6 +228,21 @@ def test_rows_of_tables_are_whole(page: Path) -> None:
         assert re.fullmatch(r"\|( *:?-+:? *\|)+", rule), f"{page}: {head}"
         for row in (head, *rows):
             assert row.endswith("|") and row.count("|") == rule.count("|"), f"{page}: {row}"
+
+
+def test_commands_of_the_docs_have_flags_that_exist() -> None:
+    commands = import_module("flowtex.cli.commands")
+    lines = [
+        line
+        for page in PAGES
+        for block in code_blocks(page)
+        for line in block.code.replace("\\\n", " ").splitlines()
+        if block.language in ("", "sh") and line.startswith("flowtex ")
+    ]
+    assert len(lines) > 40
+    for line in lines:
+        words = shlex.split(re.split(r"\s#|\s{4,}", line.replace("FILE", "flow.vts"))[0])
+        commands.app.parse_args(words[1:], exit_on_error=False, print_error=False)
 
 
 def test_every_link_inside_the_project_leads_somewhere() -> None:
