@@ -2,8 +2,9 @@
 // the trees, and flowtex/rendering/webgl/velocity.py what else comes. As there is no finest level of a
 // formula, the source has tiles of every level, each a grid of nodes in the plane.
 
-import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Pair } from "./fixedpoints.ts";
-import { LINE, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
+import type { Camera } from "./camera.ts";
+import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Ends, type Pair } from "./fixedpoints.ts";
+import { LINE, stepOf, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
 import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
@@ -18,6 +19,8 @@ const [HALO, BEFORE] = [36, 8];
 const [LEVELS, PLACE, HALF_ONE] = [3, 5, 0x3c00];
 /** Saddles of which there are lines: as many as can be asked for. */
 const MOST_SADDLES = 50;
+/** Size of a window over that of the view, at least, and steps of its middle over its size: as in Python. */
+const [WINDOW_VIEWS, WINDOW_STEPS] = [2, 4];
 
 /** What operations do with two numbers or more; as OPERATIONS of Python. */
 const OPERATIONS = new Map<string, (...values: number[]) => number>(
@@ -68,10 +71,12 @@ class Grid {
   private readonly header: Header;
   private readonly formula: FormulaHeader;
   private readonly rates: Evaluate[];
+  private readonly gradients: Evaluate[];
 
   constructor(header: Header, formula: FormulaHeader) {
     [this.header, this.formula] = [header, formula];
     this.rates = formula.trees.map(compiled);
+    this.gradients = formula.gradient.map(compiled);
   }
 
   /** Coordinate of a line of nodes of a level; `axis` is 0 for rows. */
@@ -85,15 +90,16 @@ class Grid {
     return this.formula.ends;
   }
 
-  /** What computes the rates at a time. */
-  rate(time: number, parameters: Values): (x: number, y: number) => Pair {
+  /** What computes the rates at a time, and their derivatives. */
+  rate(time: number, parameters: Values): { rate: (x: number, y: number) => Pair; gradient: (x: number, y: number) => number[] } {
     const values: Values = { ...parameters, t: time };
     const [xName, yName] = this.formula.names;
-    return (x, y) => {
+    const at = (evaluates: Evaluate[]) => (x: number, y: number) => {
       values[xName] = x;
       values[yName] = y;
-      return [this.rates[0](values), this.rates[1](values)];
+      return evaluates.map((evaluate) => evaluate(values));
     };
+    return { rate: at(this.rates) as (x: number, y: number) => Pair, gradient: at(this.gradients) };
   }
 
   /** How many times a level is finer than the root. */
@@ -189,6 +195,8 @@ export class FormulaSource {
   private parameters: Values = {};
   /** Says which numbers belong to digests. */
   private state = "";
+  /** Where nullclines are as fine as the view. */
+  private window: Ends | null = null;
 
   constructor(header: Header, formula: FormulaHeader) {
     this.header = header;
@@ -205,6 +213,22 @@ export class FormulaSource {
     return before !== this.state;
   }
 
+  /** Follow a camera: the nullclines of these parts that it sees otherwise than before. */
+  look(camera: Camera, names: Iterable<string>): NamedPart[] {
+    const { ends } = this.grid;
+    const side = Math.max(...ends.map(([low, high]) => high - low));
+    const size = side / 2 ** Math.floor(Math.log2(side / (2 * WINDOW_VIEWS * camera.height * Math.max(camera.aspect, 1))));
+    const step = size / WINDOW_STEPS;
+    const window = ends.map(([low, high], k) => {
+      const middle = low + step * Math.round((camera.state.focal_point[k] - low) / step);
+      return [Math.max(middle - size / 2, low), Math.min(middle + size / 2, high)];
+    }) as Ends;
+    const isPart = size < side && window.every(([low, high]) => low < high);
+    if (String(this.window) === String(isPart ? window : null)) return [];
+    this.window = isPart ? window : null;
+    return [...names].filter((name) => name.startsWith("nullclines/")).map((name) => this.marks("nullclines", stepOf(name)));
+  }
+
   readonly load = (key: TileKey | null, steps: number[], _signal?: unknown, _has?: unknown, mark?: MarkKind) => {
     if (mark) return Promise.resolve(steps.map((step) => this.marks(mark, step)));
     return Promise.resolve(key ? this.tile(key, steps) : this.whole(steps));
@@ -213,38 +237,40 @@ export class FormulaSource {
   /** Fixed points, nullclines, or separatrices and closed orbits, at a step; flowtex/rendering/webgl/marks.py says in which form. */
   private marks(kind: MarkKind, step: number): NamedPart {
     const { grid, header } = this;
-    const rate = grid.rate(header.slices.times[step], this.parameters);
-    const points = fixedPoints(rate, grid.ends);
+    const { rate, gradient } = grid.rate(header.slices.times[step], this.parameters);
+    const points = kind === "nullclines" ? [] : fixedPoints(rate, gradient, grid.ends);
     const kinds = header.structure?.kinds.map(({ name }) => name) ?? [];
     const row = (at: Pair, number: number) => [...grid.localOf(at), number];
     const rows: number[][] = [];
     if (kind === "nullclines") {
-      nullclines(rate, grid.ends).forEach((pieces, component) => rows.push(...pieces.flat().map((at) => row(at, component))));
+      nullclines(rate, grid.ends, this.window).forEach((pieces, component) => rows.push(...pieces.flat().map((at) => row(at, component))));
     } else if (kind === "critical") rows.push(...points.map((point) => row(point.at, kinds.indexOf(point.kind))));
     else {
       closedOrbits(rate, grid.ends, points).forEach(({ path, isStable }, n) => {
         const number = LINE.orbit + LINE.leaving * Number(isStable) + (n % 2);
         rows.push(...path.map((at) => row(at, number)));
       });
-      const saddles = points.filter(({ ways }) => ways).slice(0, MOST_SADDLES);
-      separatrices(rate, grid.ends, points, saddles).forEach(({ path, orbit, saddle, leaves }, n) => {
+      const saddles = points.filter(({ ways }) => ways.length).slice(0, MOST_SADDLES);
+      separatrices(rate, gradient, grid.ends, points, saddles).forEach(({ path, orbit, saddle, leaves }, n) => {
         const number = LINE.saddle * saddles.indexOf(saddle) + LINE.leaving * Number(leaves) + (n % 2);
         rows.push(...path.map((at) => row(at, number)));
         rows.push(...(orbit ?? []).map((at) => row(at, number + LINE.orbit)));
       });
     }
-    return this.named(`${kind}/${step}`, { data: Float32Array.from(rows.flat()), shape: [rows.length, 4] });
+    const part = this.named(`${kind}/${step}`, { data: Float32Array.from(rows.flat()), shape: [rows.length, 4] });
+    return kind === "nullclines" ? { ...part, digest: `${part.digest} ${this.window}` } : part;
   }
 
   /** The trajectory through a point and the velocity there; none of a flow that varies. */
   trajectory([x, y]: Vector): { path: Vector[]; velocity: Vector } | null {
     const { grid, header } = this;
     if (header.slices.times.length > 1) return null;
-    const rate = grid.rate(header.slices.times[0], this.parameters);
+    const { rate, gradient } = grid.rate(header.slices.times[0], this.parameters);
     const inSpace = ([u, v]: Pair): Vector => [u, v, 0];
     const velocity = inSpace(rate(x, y));
     if (!velocity.every(Number.isFinite)) return null;
-    return { path: trajectory(rate, grid.ends, [x, y]).map(inSpace), velocity };
+    const points = fixedPoints(rate, gradient, grid.ends);
+    return { path: trajectory(rate, grid.ends, points, [x, y]).map(inSpace), velocity };
   }
 
   /** The flow and the values of the whole at some steps. */

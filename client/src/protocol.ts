@@ -276,6 +276,8 @@ export type Tree = number | string | Tree[];
 export interface FormulaHeader {
   /** The rates of the two coordinates, their names and ends. */
   trees: [Tree, Tree];
+  /** Their derivatives, row by row. */
+  gradient: Tree[];
   names: [x: string, y: string];
   ends: [x: [low: number, high: number], y: [low: number, high: number]];
 }

@@ -233,7 +233,7 @@ export class Viewer implements User, View {
 
   /** Have the flow computed again. */
   private renew(): void {
-    this.held.clear((name) => /^(flow|scalars|critical|separatrices)\//.test(name));
+    this.held.clear((name) => /^(flow|scalars|critical|separatrices|nullclines)\//.test(name));
     this.requests.stop();
     if (this.header) this.painter.open?.(this.header);
   }
@@ -384,6 +384,8 @@ export class Viewer implements User, View {
 
   /** Draw another picture when its turn comes. */
   change(cameraOnly = false): void {
+    const parts = this.camera && this.requests.formula?.look(this.camera, this.parts.keys());
+    for (const part of parts ?? []) this.setPart(part);
     this.painter.restart?.(cameraOnly);
     this.card.draw();
     this.panel.showAxes();

@@ -1,11 +1,66 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Ends, type Rate } from "../src/fixedpoints.ts";
-import { FormulaSource } from "../src/formula.ts";
-import { LINE, type FormulaHeader, type Header } from "../src/protocol.ts";
+import { closedOrbits, fixedPoints as found, nullclines, separatrices as lines, trajectory, type Ends, type FixedPoint, type Gradient, type Pair, type Rate } from "../src/fixedpoints.ts";
+import { compiled, FormulaSource } from "../src/formula.ts";
+import { LINE, type FormulaHeader, type Header, type Tree } from "../src/protocol.ts";
 
 const BOX: Ends = [[-2, 2], [-1, 1]];
+
+/** Derivatives of rates that have no tree. */
+const differences = (rate: Rate): Gradient => (x, y) => {
+  const h = 1e-4;
+  const weights = [[-2, 1 / 12], [-1, -2 / 3], [1, 2 / 3], [2, -1 / 12]];
+  const of = (k: number, m: number) => weights.reduce((sum, [n, w]) => sum + (w * rate(x + (m ? 0 : n * h), y + (m ? n * h : 0))[k]) / h, 0);
+  return [of(0, 0), of(0, 1), of(1, 0), of(1, 1)];
+};
+const fixedPoints = (rate: Rate, ends: Ends) => found(rate, differences(rate), ends);
+const separatrices = (rate: Rate, ends: Ends, points: FixedPoint[], saddles: FixedPoint[]) => lines(rate, differences(rate), ends, points, saddles);
+
+interface Case {
+  name: string;
+  x: Pair;
+  y: Pair;
+  parameters: Record<string, number>;
+  points: { kind: string; at: Pair; index: number; eigenvalues: [Pair, Pair] }[];
+  orbits: boolean[];
+  trees: Tree[];
+  gradient: Tree[];
+}
+
+test("the points of formulas are exact, as in Python", () => {
+  // tests/trace/formula_cases.json, with the trees of Python.
+  const cases = JSON.parse(readFileSync(new URL("fixedpoints.json", import.meta.url), "utf8")) as Case[];
+  assert.ok(cases.length > 50);
+  for (const { name, x, y, parameters, points, orbits, trees, gradient } of cases) {
+    const at = (some: Tree[]) => {
+      const evaluates = some.map(compiled);
+      return (a: number, b: number) => evaluates.map((evaluate) => evaluate({ ...parameters, x: a, y: b }));
+    };
+    const rate = at(trees) as Rate;
+    const own = found(rate, at(gradient), [x, y]);
+    assert.equal(own.length, points.length, name);
+    for (const expected of points) {
+      const distanceOf = (point: FixedPoint) => Math.hypot(point.at[0] - expected.at[0], point.at[1] - expected.at[1]);
+      const [point] = own.sort((one, two) => distanceOf(one) - distanceOf(two));
+      const isDegenerate = expected.kind === "degenerate";
+      assert.ok(distanceOf(point) < (isDegenerate ? 1e-3 : 1e-8), name);
+      assert.deepEqual([point.kind, point.index], [expected.kind, expected.index], name);
+      const values = point.eigenvalues.flat();
+      expected.eigenvalues.flat().forEach((value, n) => assert.ok(Math.abs(value - values[n]) < (isDegenerate ? 1e-2 : 1e-8), name));
+    }
+    const cycles = closedOrbits(rate, [x, y], own);
+    assert.deepEqual(cycles.map(({ isStable }) => isStable).sort(), orbits, name);
+  }
+});
+
+test("a degenerate point has the separatrices between its sectors", () => {
+  const ways = (rate: Rate) => fixedPoints(rate, BOX)[0].ways.map(({ way, leaves }) => `${Math.round((Math.atan2(way[1], way[0]) * 180) / Math.PI)} ${leaves}`).sort();
+  assert.deepEqual(ways((x, y) => [x * x - y * y, 2 * x * y]).map((way) => way.replace("-180", "180")), ["0 true", "180 false"]);
+  assert.deepEqual(ways((x, y) => [-x * x, -y]).map((way) => way.replace("-180", "180")), ["-90 false", "180 true", "90 false"]);
+  assert.equal(ways((x, y) => [x * x - y * y, -2 * x * y]).length, 6);
+  assert.deepEqual(ways((x, y) => [x ** 3, y]), []);
+});
 
 test("linear flows have one point of their kind, wherever it is", () => {
   const matrices: Record<string, number[]> = {
@@ -40,13 +95,13 @@ test("separatrices end at points and borders, and on closed orbits", () => {
   const straight: Rate = (x, y) => [0.25 - x * x, -y];
   const points = fixedPoints(straight, BOX);
   assert.deepEqual(points.map(({ kind }) => kind).sort(), ["saddle", "sink"]);
-  const lines = separatrices(straight, BOX, points, points.filter(({ ways }) => ways));
+  const lines = separatrices(straight, BOX, points, points.filter(({ ways }) => ways.length));
   const ends = lines.map(({ path, leaves }) => [leaves, ...path[path.length - 1].map((x) => Math.round(1e6 * x) / 1e6)].join());
   assert.deepEqual(ends.sort(), ["false,-0.5,-1", "false,-0.5,1", "true,-2,0", "true,0.5,0"]);
   const orbits: Rate = (x, y) => [y, x - x ** 3 + y * (0.85 - x * x)];
   const box: Ends = [[-2.2, 2.2], [-1.6, 1.6]];
   const found = fixedPoints(orbits, box);
-  const closed = separatrices(orbits, box, found, found.filter(({ ways }) => ways)).flatMap(({ orbit, leaves }) => (orbit ? [{ orbit, leaves }] : []));
+  const closed = separatrices(orbits, box, found, found.filter(({ ways }) => ways.length)).flatMap(({ orbit, leaves }) => (orbit ? [{ orbit, leaves }] : []));
   assert.equal(closed.length, 2);
   for (const { orbit, leaves } of closed) {
     assert.ok(!leaves);
@@ -93,14 +148,15 @@ test("a trajectory of a pendulum keeps its energy, closes, or ends at rest", () 
   const energy = ([x, y]: [number, number]) => y * y / 2 - Math.cos(x);
   const free: Rate = (x, y) => [y, -Math.sin(x)];
   for (const start of [[1, 0.5], [-4.849, 2.666], [0, -2.5]] as [number, number][]) {
-    const path = trajectory(free, ends, start);
+    const path = trajectory(free, ends, fixedPoints(free, ends), start);
     for (const at of path) assert.ok(Math.abs(energy(at) - energy(start)) < 1e-4);
     const [first, last] = [path[0], path[path.length - 1]];
     const isClosed = Math.hypot(first[0] - last[0], first[1] - last[1]) < 0.03;
     assert.equal(isClosed, energy(start) < 1);
     if (!isClosed) assert.deepEqual([Math.abs(first[0]), Math.abs(last[0])], [7, 7]);
   }
-  const damped = trajectory((x, y) => [y, -Math.sin(x) - 0.5 * y], ends, [1, 0.5]);
+  const braked: Rate = (x, y) => [y, -Math.sin(x) - 0.5 * y];
+  const damped = trajectory(braked, ends, fixedPoints(braked, ends), [1, 0.5]);
   assert.ok(Math.hypot(...damped[damped.length - 1]) < 1e-6);
   for (let n = 1; n < damped.length; n += 1) assert.ok(energy(damped[n]) < energy(damped[n - 1]) + 1e-9);
 });
@@ -113,7 +169,7 @@ test("no separatrix of a flow without divergence ends on a closed orbit", () => 
     return [0, 1].map((k) => parts.reduce((sum, part) => sum + part[k], 0)) as [number, number];
   };
   const points = fixedPoints(rate, box);
-  const lines = separatrices(rate, box, points, points.filter(({ ways }) => ways));
+  const lines = separatrices(rate, box, points, points.filter(({ ways }) => ways.length));
   assert.ok(lines.length > 20);
   assert.ok(lines.every(({ orbit }) => !orbit));
 });

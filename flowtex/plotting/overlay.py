@@ -334,7 +334,7 @@ class StructureOverlay(Overlay):
         self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
     ) -> None:
         super().__init__(actor, renderer, surface)
-        self._shown: tuple[int, ...] = ()
+        self._shown: tuple[object, ...] = ()
         self._notify: Callable[[], None] | None = None
         self._request: tuple[object, ...] = ()
         self._found: Future[None] | None = None
@@ -351,10 +351,19 @@ class StructureOverlay(Overlay):
         return self._found is not None and not self._found.done()
 
     @property
-    def _key(self) -> tuple[int, ...]:
+    def _key(self) -> tuple[object, ...]:
         scene, settings = self._scene, self._scene.settings
         counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
-        return id(scene.field), scene.step, *counts
+        window = self._window
+        return id(scene.field), scene.step, *counts, None if window is None else window.tobytes()
+
+    @property
+    def _window(self) -> Floats | None:
+        """The part of the plane in which nullclines are drawn, or ``None`` for all of it."""
+        view, renderer = self._surface.view, self._renderer()
+        if not self._scene.settings.nullclines or renderer is None:
+            return None
+        return self._scene.structure.window(view.focus, view.pixel * max(renderer.GetSize()))
 
     def show(self, scene: Scene) -> None:
         """Follow the settings and the time of a scene."""
@@ -366,6 +375,7 @@ class StructureOverlay(Overlay):
 
     def _before_frame(self) -> None:
         if self._shown != self._key:
+            self._clear()
             self._show()
         super()._before_frame()
 
@@ -381,7 +391,7 @@ class StructureOverlay(Overlay):
             return
         self._shown = self._key
         if settings.nullclines:
-            self._add_nullclines(scene.structure.nullclines(scene.step))
+            self._add_nullclines(scene.structure.nullclines(scene.step, self._window))
         if settings.separatrices:
             self._add_paths(scene.structure.paths(scene.step, settings.separatrices))
         if settings.critical_points:

@@ -47,8 +47,8 @@ let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8A
 scalars.name,name].map(each=>scalars.choices.find(one=>one.name===each)),cmap=after?.cmap!==before?.cmap&&scalars.cmap===
 before?.cmap?after?.cmap:void 0;return{scalars:name,clim:null,...cmap&&{cmap}}}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
-unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
+choice.scalars);if(number>=0){let{name,label,unit:unit3,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
+unit:unit3,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
 high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
 low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.
 includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
@@ -372,8 +372,8 @@ size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{dat
 slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.length-
 1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+1];return[
 ...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;if(!trace?.
-pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,lagOf=n=>side*
-(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);
+pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit3}=trace.timed,lagOf=n=>side*
+(times2[n]-times2[step])/unit3;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);
 if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*to;result2.push(
 {from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),from=isWhole?to:end}return result2}function programsOf({
 programs,floats:floats2},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
@@ -398,9 +398,9 @@ return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}ta
 context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
 gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
 1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.numbers(`flow/${step}`),unit2=this.data("unit"),channels=data.
-length/unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=data[at+
-2],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=data[at]*speed/size,flow[4*n+1]=data[at+1]*speed/size,flow[4*n+2]=speed,flow[4*
+gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.numbers(`flow/${step}`),unit3=this.data("unit"),channels=data.
+length/unit3.length,flow=new Float32Array(4*unit3.length);for(let n=0,at=0;n<unit3.length;n+=1,at+=channels){let speed=data[at+
+2],size=HALVES[unit3[n]]*trace.unit;flow[4*n]=data[at]*speed/size,flow[4*n+1]=data[at+1]*speed/size,flow[4*n+2]=speed,flow[4*
 n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.fastest=Math.max(this.
 fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){let data=this.numbers(
 `flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,unknown=Number(this.trace.uncertain??!1),whole=new Float32Array(
@@ -476,8 +476,8 @@ M6 14.5l6-6 6 6"};function icon(name){let space="http://www.w3.org/2000/svg",svg
 setAttribute("viewBox","0 0 24 24"),svg.setAttribute("aria-hidden","true");let path=document.createElementNS(space,"path");
 return path.setAttribute("d",ICONS[name]),name==="play"&&path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){
 if(!Number.isFinite(x))return"–";let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace(
-"e+","e"):String(Number(x.toPrecision(digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
-UNIT_LENGTH?`${text} ${unit2}`:text}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(
+"e+","e"):String(Number(x.toPrecision(digits)))}var UNIT_LENGTH=12;function withUnit(text,unit3){return unit3&&unit3.length<=
+UNIT_LENGTH?`${text} ${unit3}`:text}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(
 Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.
 reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())
 pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(format)}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
@@ -649,13 +649,13 @@ left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
 "keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():
 element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";element=dom(
-"div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.
+"div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit3,bar}=header.
 scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom(
 "div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2);let[isBelow,isAbove]=beyondEnds(
 header.scalars);ramp.classList.toggle("below",isBelow),ramp.classList.toggle("above",isAbove),this.mark.hidden=!0;let placeOf=shareOf(
 header.scalars),ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),
 0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX\
-(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:
+(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit3?`${label} (${unit3})`:
 label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
 shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns,isLine})=>{
 let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*
@@ -789,8 +789,8 @@ map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,
 "point")]}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;place;constructor(header,places){
-this.header=header;let start=0,starts=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
-typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts[level]+row2*header.blocks[level][1]+column);
+this.header=header;let start=0,starts2=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
+typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts2[level]+row2*header.blocks[level][1]+column);
 return places.subarray(at,at+PLACE)}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
 ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends2=[Math.min(size*(row2+1),rows),Math.min(size*(column+
 1),columns)];return[size*row2,size*column,...ends2]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
@@ -880,13 +880,13 @@ return;let now={...exact,sampled:[],directed:!0};return this.tell({...point,valu
 position,[])}let at={scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},
 eastNorth2=velocityOnEarth(at,this.host.parts.get("lonlat"))??void 0;this.tell({...point,values:valuesAt(scene,shown,cornersOn(
 scene,place)),eastNorth:eastNorth2},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.
-explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{unit:unit2}=header.
+explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{unit:unit3}=header.
 speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),
 lines=new Map,where=placeText(point.position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;
-lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(
-numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));
-lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(
-size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
+lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(
+numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));
+lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit3))}lines.set(label,withUnit(numberText(
+size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
 each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.
 set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(...[...lines].
 flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){
@@ -1271,8 +1271,8 @@ let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),thi
 header,settings,parts.get("cmap")?.data)}showKinds(kinds){this.legend.showKinds(kinds)}read(point,ground=null){let{header}=this.
 viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
 return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
-return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit2}=header.scalars,value=point.values[name??
-""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(
+return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit3}=header.scalars,value=point.values[name??
+""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.legend.point(
 header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=
 shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{
 header,options,root}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.
@@ -1354,91 +1354,131 @@ camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="far
 camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],NULLCLINE_CELLS=256,[NULLCLINE_HALVINGS,LEFT]=[12,.25],[ZERO_SHARE2,SINGULAR,
-SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.01,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[
-8,.08,2],[MOST_AROUND,RATIO,APART]=[8,1.2,.03],[MOVED,HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
-a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
-let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
-(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
-2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned2=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sou\
-rce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned2:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
-[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
-"saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;return{at,kind,steepness,ways}}function fixedPoints(rate,[
-xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),
-8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+
-1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),
-corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.
-some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(
-rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),isInside=found&&[xs,ys].every(([least,most],k)=>found.
-at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);!found||!isInside||points.some(({at})=>distance(at,
-found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.sort((one,two)=>two.steepness-one.steepness)}
-function nullclines(rate,[xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(
-NULLCLINE_CELLS*side/Math.max(...sides)),8)),nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>{let at=[xs[0]+sides[0]*
-(n%(columns+1))/columns,ys[0]+sides[1]*Math.floor(n/(columns+1))/rows];return{at,value:rate(...at)}});return[0,1].map(k=>{
-let pieces=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+
-2].map(node=>nodes[node]);for(let corners of[[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===
-1,above=corners.map(({value})=>isSide?value[k]!==0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==
-above[(m+2)%3]);if(alone<0||!corners.every(({value})=>Number.isFinite(value[k])))continue;let one=corners[alone],others=[
-1,2].map(m=>corners[(alone+m)%3]);if(!others.every(other=>vanishes(at=>rate(...at)[k],one.at,other.at)))continue;let[start,
-end]=others.map(other=>along(one.at,difference(other.at,one.at),one.value[k]/(one.value[k]-other.value[k])));pieces.push(
-[start,end])}}return pieces})}function vanishes(rate,one,two){let size=()=>Math.max(Math.abs(rate(one)),Math.abs(rate(two))),
-[first,isAbove]=[size(),rate(one)>0];for(let n=0;n<NULLCLINE_HALVINGS;n+=1){let middle=along(one,difference(two,one),.5);
-rate(middle)>0===isAbove?one=middle:two=middle}return size()<LEFT*first}function zero(rate,start,cell,speed){let small=[
-1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,at,small),
-[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-
-d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),
-1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;
-if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?described(
-at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){let step=Math.hypot(...ends2.map(([low,
-high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?[!0,!1].flatMap(leaves=>[1,-1].map(
-side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),path=followed(rate,ends2,points,
-[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),turn=closed&&path.slice(closed[0],closed[1]+1),ended=points.
-some(({at})=>at===path[path.length-1]),wound=turnOf(path,step,WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+
-1):path,saddle,leaves,orbit:turn&&!ended&&isIsolated(rate,turn)?turn:null}})):[]})}function isIsolated(rate,turn){let growth=0;
-for(let n=1;n<turn.length;n+=1){let length3=distance(turn[n],turn[n-1]),[a,,,d]=gradient(rate,turn[n],[.001*length3,.001*
-length3]);growth+=(a+d)*length3/Math.hypot(...rate(...turn[n]))}return Math.abs(growth)>MOVED}function closedOrbits(rate,ends2,points){
-let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/STEPS2,found=[];for(let{at:[x,y]}of points.filter(
-({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{
-let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.
-length-1][0]>x},path=followed(rate,ends2,points,[[x+place,y]],way*step,isBack);if(path.length<2||!isBack(path))return null;
-let[before,after]=path.slice(-2);return[...path.slice(0,-1),along(before,difference(after,before),(y-before[1])/(after[1]-
-before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=
-Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;
-if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){let way=Math.sign(last.out),[low,high]=[
-last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let path=turn(
-low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(other=>other.path.some(at=>distance(at,path[0])<2*step));path&&
-isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:
-{place,out}}}}return found}function trajectory(rate,ends2,at){let points=fixedPoints(rate,ends2),step=Math.hypot(...ends2.
-map(([low,high])=>high-low))/STEPS2,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(ahead,step,CLOSED);return closed?
-ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.slice(1)]}function windsAround(path,[
-x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(at=>difference(at,[x,y]));turned2+=
-Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
-let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
-MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
-2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
-Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:
-NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),
-share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[
-...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,LEAST_CELLS]=[160,8],[NEWTON_STEPS,FAR]=[100,3],[LAST_STEP,REMAINS,BEYOND2]=[1e-6,1e-11,1e-6],[SAME2,SAME_DEGENERATE]=[
+1e-6,.05],[CHANGE,DEGENERATE]=[.01,1e-5],[SINGULAR,ROUNDING2,REAL_SHARE]=[1e-13,1e-9,1e-6],[AROUND,ON_LINE]=[.1,.02],[RADIUS,
+CIRCLE,MOST_DIRECTIONS]=[.05,720,24],[TURN_RADIUS,TURN_STEPS,RETURNED]=[2,400,1e-7],NULLCLINE_CELLS=256,[NULLCLINE_HALVINGS,
+LEFT]=[12,.25],[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,RATIO,APART]=[
+8,1.2,.03],[MOVED,HALVINGS]=[1e-5,28],FINER=1/16,GROWTH=.001,difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
+a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]),larger=a=>Math.max(Math.abs(a[0]),Math.
+abs(a[1])),clipped=(at,ends2)=>at.map((x,k)=>Math.min(Math.max(x,ends2[k][0]),ends2[k][1]));function fixedPoints(rate,gradient,ends2){
+let sides=ends2.map(([low,high])=>high-low),counts=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),LEAST_CELLS)),
+cell=[sides[0]/counts[0],sides[1]/counts[1]],search=new Search(rate,gradient,cell),apart=(one,other)=>larger([(one[0]-other[0])/
+cell[0],(one[1]-other[1])/cell[1]]),found=[];for(let{at:start,scale:scale3}of starts(rate,ends2,counts,cell)){let zero=search.
+zero(start,scale3);!zero||apart(zero.at,clipped(zero.at,ends2))>BEYOND2||found.push({...zero,at:clipped(zero.at,ends2),isDegenerate:search.
+isDegenerate(zero.at,scale3)})}found.sort((one,two)=>Number(two.isDegenerate)-Number(one.isDegenerate)||one.left-two.left);
+let kept=[];for(let zero of found)kept.every(({at,isDegenerate})=>apart(zero.at,at)>=(isDegenerate?SAME_DEGENERATE:SAME2))&&
+kept.push(zero);let isOnLine=({at,scale:scale3,isDegenerate})=>isDegenerate&&search.sides(AROUND,at).some(near=>{let other=search.
+zero(near,scale3);return other&&apart(other.at,at)>ON_LINE}),zeros2=kept.filter(zero=>!isOnLine(zero));for(let{at}of zeros2)
+at.forEach((x,k)=>{Math.abs(x)<REMAINS*cell[k]&&(at[k]=0)});return zeros2.map(zero=>{let free=other=>Math.hypot((other.at[0]-
+zero.at[0])/cell[0],(other.at[1]-zero.at[1])/cell[1]);return search.point(zero,Math.min(1/0,...zeros2.filter(other=>other!==
+zero).map(free)))}).sort((one,two)=>two.steepness-one.steepness)}function starts(rate,[xs,ys],[columns,rows],cell){let nodes=[
+0,1].map(()=>new Float64Array((columns+1)*(rows+1)));for(let n=0;n<nodes[0].length;n+=1)rate(xs[0]+cell[0]*(n%(columns+1)),
+ys[0]+cell[1]*Math.floor(n/(columns+1))).forEach((value,k)=>nodes[k][n]=Number.isFinite(value)?value:NaN);let found=[];for(let j=0;j<
+rows;j+=1)for(let i=0;i<columns;i+=1){let scale3=[0,0];![0,1].every(k=>{let[least,top,bottom]=[1/0,-1/0,1/0];for(let m=0;m<
+16;m+=1){let[column,row2]=[i-1+m%4,j-1+(m>>2)];if(column<0||row2<0||column>columns||row2>rows)continue;let value=nodes[k][row2*
+(columns+1)+column];Number.isNaN(value)||([top,bottom]=[Math.max(top,value),Math.min(bottom,value)],[5,6,9,10].includes(
+m)&&(least=Math.min(least,Math.abs(value))))}return scale3[k]=Math.max(Math.abs(top),Math.abs(bottom)),scale3[k]<1/0&&least<=
+top-bottom})||!(larger(scale3)>0)||found.push({at:[xs[0]+cell[0]*(i+.5),ys[0]+cell[1]*(j+.5)],scale:[scale3[0]||1,scale3[1]||
+1]})}return found}var Search=class{rate;gradient;cell;constructor(rate,gradient,cell){[this.rate,this.gradient,this.cell]=
+[rate,gradient,cell]}sides(cells,at){let{cell}=this;return[[1,0],[1,1],[0,1],[-1,1],[-1,0],[-1,-1],[0,-1],[1,-1]].map(([
+x,y])=>[at[0]+cells*cell[0]*x,at[1]+cells*cell[1]*y])}matrix(at,scale3){return this.gradient(...at).map((value,n)=>value*
+this.cell[n%2]/scale3[n>>1])}step(at,scale3){let[u,v2]=this.rate(...at).map((value,k)=>value/scale3[k]),[a,b,c,d]=this.matrix(
+at,scale3),[size,determinant2]=[a*a+b*b+c*c+d*d,a*d-b*c],share=Math.abs(determinant2)/size,step=share>.1*SINGULAR?[(b*v2-
+d*u)/determinant2,(c*u-a*v2)/determinant2]:[-(a*u+c*v2)/size,-(b*u+d*v2)/size];return{left:larger([u,v2]),step,share}}zero(start,scale3){
+let{cell}=this,[at,best,least]=[start,start,1/0];for(let n=0;n<NEWTON_STEPS;n+=1){let{left:left2,step:step2}=this.step(at,
+scale3);left2<least&&([best,least]=[at,left2]);let length3=larger(step2),share2=1/Math.max(length3,1);if(at=[at[0]+cell[0]*
+step2[0]*share2,at[1]+cell[1]*step2[1]*share2],!at.every((x,k)=>Math.abs(x-start[k])<=FAR*cell[k])||!(length3>SINGULAR))
+break}let{left,step,share}=this.step(best,scale3);return left<=REMAINS||larger(step)<LAST_STEP&&share>SINGULAR?{at:best,
+scale:scale3,left}:null}isDegenerate(at,scale3){let[here,...near]=[at,...this.sides(CHANGE,at)].map(place=>{let[a,b,c,d]=this.
+matrix(place,scale3);return{determinant:a*d-b*c,size:a*a+b*b+c*c+d*d}}),changes=near.map(({determinant:determinant3})=>Math.
+abs(determinant3-here.determinant)).filter(Number.isFinite),determinant2=Math.abs(here.determinant);return!(determinant2>
+SINGULAR*here.size&&determinant2*CHANGE>=DEGENERATE*Math.max(0,...changes))}point({at,isDegenerate},free){let[a,b,c,d]=this.
+gradient(...at),[trace,determinant2]=[a+d,a*d-b*c],[square,size]=[trace**2/4-determinant2,Math.max(...[a,b,c,d].map(Math.
+abs))],root=Math.sqrt(Math.abs(square)),eigenvalues=square>0?[[trace/2+root,0],[trace/2-root,0]]:[[trace/2,root],[trace/
+2,-root]],result2={at,eigenvalues,steepness:Math.abs(determinant2),ways:[],kind:"degenerate",index:Math.sign(determinant2)};
+if(isDegenerate)return{...result2,index:this.turns(at,Math.min(RADIUS,.3*free)),ways:this.directions(at)};if(determinant2<
+0){let way=value=>{let[one,two]=[[b,value-a],[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.
+hypot(x,y),y/Math.hypot(x,y)]},ways=[root,-root].flatMap(part=>{let[x,y]=way(trace/2+part);return[[x,y],[-x,-y]].map(each=>({
+way:each,leaves:part>0}))});return{...result2,kind:"saddle",ways}}if(!(square<0&&root>REAL_SHARE*Math.sqrt(determinant2)))
+return{...result2,kind:trace>0?"source":"sink"};let growth=Math.abs(trace)<=ROUNDING2*size?this.growth(at,[a,b,c,d],Math.
+min(TURN_RADIUS,.2*free)):trace;return{...result2,kind:growth>0?"spiral source":growth<0?"spiral sink":"centre"}}turns(at,radius){
+let angles=circle().map(angle=>{let[u,v2]=this.rate(at[0]+radius*this.cell[0]*Math.cos(angle),at[1]+radius*this.cell[1]*
+Math.sin(angle));return Math.atan2(v2,u)}),turned2=angles.slice(1).reduce((sum,angle,n)=>sum+folded(angle-angles[n]),0);
+return Math.round(turned2/(2*Math.PI))||0}directions(at){let radius=RADIUS*Math.max(...this.cell),wayOf=angle=>[Math.cos(
+angle),Math.sin(angle)],radial=angle=>{let way=wayOf(angle),[u,v2]=this.rate(...along(at,way,radius));return{across:way[0]*
+v2-way[1]*u,out:way[0]*u+way[1]*v2}},angles=circle(),across=angles.map(angle=>radial(angle).across),found=angles.flatMap(
+(low,n)=>{if(!(across[n]*across[n+1]<0))return[];let high=angles[n+1];for(let k=0;k<50;k+=1){let middle=.5*(low+high);radial(
+middle).across*across[n]>0?low=middle:high=middle}return[{way:wayOf(low),leaves:radial(low).out>0}]});return found.length>
+MOST_DIRECTIONS?[]:found.filter(({leaves},n)=>[-1,1].some(m=>found.at((n+m)%found.length)?.leaves!==leaves))}growth(at,[
+a,b,c],cells){let turn=Math.sqrt(-a*a-b*c),radius=cells/Math.max(1/this.cell[0],(turn+Math.abs(a))/Math.abs(b)/this.cell[1]),
+rate=(x,y)=>{let[u,v2]=this.rate(at[0]+x,at[1]+(turn*y-a*x)/b);return[u,(a*u+b*v2)/turn]},w=[radius,0];for(let n=0;n<TURN_STEPS+
+4;n+=1)w=stepped(rate,w,n<TURN_STEPS?2*Math.PI/TURN_STEPS/turn:w[1]/(turn*w[0]));let growth=w[0]/radius-1;return Math.abs(
+growth)>RETURNED?growth:0}},folded=angle=>angle-2*Math.PI*Math.round(angle/(2*Math.PI));function circle(){return Array.from(
+{length:CIRCLE+1},(_,n)=>.3+2*Math.PI*n/CIRCLE)}function stepped(rate,at,step){let one=rate(...at),two=rate(...along(at,
+one,step/2)),three=rate(...along(at,two,step/2)),four=rate(...along(at,three,step));return along(at,[0,1].map(k=>(one[k]+
+2*two[k]+2*three[k]+four[k])/6),step)}function nullclines(rate,ends2,window2=null){let coarse=piecesIn(rate,ends2);if(!window2)
+return coarse;let isOutside=([one,two])=>window2.some(([low,high],k)=>Math.abs(one[k]+two[k]-low-high)>high-low),fine=piecesIn(
+rate,window2);return coarse.map((pieces,k)=>[...pieces.filter(isOutside),...fine[k]])}function piecesIn(rate,[xs,ys]){let sides=[
+xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(NULLCLINE_CELLS*side/Math.max(...sides)),8)),
+nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>{let at=[xs[0]+sides[0]*(n%(columns+1))/columns,ys[0]+sides[1]*Math.
+floor(n/(columns+1))/rows];return{at,value:rate(...at)}});return[0,1].map(k=>{let pieces=[];for(let n=0;n<rows*columns;n+=
+1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);for(let corners of[
+[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===1,above=corners.map(({value})=>isSide?value[k]!==
+0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==above[(m+2)%3]);if(alone<0||!corners.every(({
+value})=>Number.isFinite(value[k])))continue;let one=corners[alone],[start,end]=[1,2].map(m=>crossing(at=>rate(...at)[k],
+one.at,corners[(alone+m)%3].at));start&&end&&pieces.push([start,end])}}return pieces})}function crossing(rate,one,two){let size=()=>Math.
+max(Math.abs(rate(one)),Math.abs(rate(two))),[first,isAbove]=[size(),rate(one)>0];for(let n=0;n<NULLCLINE_HALVINGS;n+=1){
+let middle=along(one,difference(two,one),.5);rate(middle)>0===isAbove?one=middle:two=middle}let share=rate(one)/(rate(one)-
+rate(two));return size()<LEFT*first?along(one,difference(two,one),Number.isFinite(share)?share:.5):null}function separatrices(rate,gradient,ends2,points,saddles){
+let step=Math.hypot(...ends2.map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>saddle.ways.map(({way,leaves})=>{
+let begin=along(saddle.at,way,BEGIN*step),path=followed(rate,ends2,points,[saddle.at,begin],leaves?step:-step),closed=turnOf(
+path,step,CLOSED),turn=closed&&path.slice(closed[0],closed[1]+1),ended=points.some(({at})=>at===path[path.length-1]),wound=turnOf(
+path,step,WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:turn&&!ended&&isIsolated(
+rate,gradient,turn)?turn:null}}))}function isIsolated(rate,gradient,turn){let growth=0;for(let n=1;n<turn.length;n+=1){let[
+a,,,d]=gradient(...turn[n]);growth+=(a+d)*distance(turn[n],turn[n-1])/Math.hypot(...rate(...turn[n]))}return Math.abs(growth)>
+GROWTH}function closedOrbits(rate,ends2,points){let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/
+STEPS2,found=[];for(let{at:[x,y]}of points.filter(({index})=>index>0).slice(0,MOST_AROUND)){let turn=(place,way)=>{let length3=Math.
+min(step,FINER*place),side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{let[before2,after2]=path2.slice(-2).map(at=>side*
+(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.length-1][0]>x},path=followed(rate,ends2,points,
+[[x+place,y]],way*length3,isBack);if(path.length<2||!isBack(path))return null;let[before,after]=path.slice(-2),rest=way*
+length3*(y-before[1])/(after[1]-before[1]);for(let n=0;n<3;n+=1){let at=stepped(unit2(rate),before,rest);rest+=(y-at[1])/
+unit2(rate)(...at)[1]}return[...path.slice(0,-1),stepped(unit2(rate),before,rest)]},moved=(place,way)=>(turn(place,way)?.
+at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=Math.min((RATIO-1)*place,APART*diagonal)){
+let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;if(!(Math.abs(out)<=MOVED*place)){if(last&&
+last.out*out<0){let way=Math.sign(last.out),[low,high]=[last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/
+2;moved(middle,way)>0?low=middle:high=middle}let path=turn(low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(other=>other.
+path.some(at=>distance(at,path[0])<2*step));path&&isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({
+path,isStable:way>0})}last=Number.isNaN(out)?null:{place,out}}}}return found}function trajectory(rate,ends2,points,at){let step=Math.
+hypot(...ends2.map(([low,high])=>high-low))/STEPS2,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(ahead,step,
+CLOSED);return closed?ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.slice(1)]}
+function windsAround(path,[x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(
+at=>difference(at,[x,y]));turned2+=Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function unit2(rate){return(x,y)=>{
+let[u,v2]=rate(x,y),size=Math.hypot(u,v2);return[u/size,v2/size]}}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+let near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],next=stepped(unit2(rate),
+at,step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>
+high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(
+at,difference(next,at),share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);
+if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
 let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf2=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
 length;n+=1){let[i,j]=cellOf2(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
 1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(
 path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/
 Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??
-[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
-entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
-b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
-max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
-sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
-if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(String(name));if(!call)
-throw new Error(`the formula has the operation "${name}", which this client does not support`);let[first,second,...rest]=parts.
-map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):rest[0](values):values=>rest.
-reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
-values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
-header,formula],this.rates=formula.trees.map(compiled)}at(axis,level,line){let[low,high]=this.formula.ends[1-axis],cells=(this.
-header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}get ends(){return this.
-formula.ends}rate(time,parameters){let values={...parameters,t:time},[xName,yName]=this.formula.names;return(x,y)=>(values[xName]=
-x,values[yName]=y,[this.rates[0](values),this.rates[1](values)])}doublings(level){return(this.header.pyramid?.depth??0)-
+[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,[WINDOW_VIEWS,WINDOW_STEPS]=[
+2,4],OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),"\
+>":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?
+b:c,min:(a,b)=>Math.min(a,b),max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh\
+ exp log log2 log10 sqrt abs sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree==
+"number")return()=>tree;if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(
+String(name));if(!call)throw new Error(`the formula has the operation "${name}", which this client does not support`);let[
+first,second,...rest]=parts.map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):
+rest[0](values):values=>rest.reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(
+first(values),second(values)):values=>call(first(values))}var Grid=class{header;formula;rates;gradients;constructor(header,formula){
+[this.header,this.formula]=[header,formula],this.rates=formula.trees.map(compiled),this.gradients=formula.gradient.map(compiled)}at(axis,level,line){
+let[low,high]=this.formula.ends[1-axis],cells=(this.header.geometry.shape[axis]-1)*2**this.doublings(level);return line===
+cells?high:low+(high-low)*line/cells}get ends(){return this.formula.ends}rate(time,parameters){let values={...parameters,
+t:time},[xName,yName]=this.formula.names,at=evaluates=>(x,y)=>(values[xName]=x,values[yName]=y,evaluates.map(evaluate=>evaluate(
+values)));return{rate:at(this.rates),gradient:at(this.gradients)}}doublings(level){return(this.header.pyramid?.depth??0)-
 level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(level)+1)}local(level,row2,column){return this.
 localOf([this.at(1,level,column),this.at(0,level,row2)])}localOf([x,y]){let{center,frame}=this.header.geometry;return toFrame(
 frame,subtract2([x,y,0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-from[1]+
@@ -1455,47 +1495,54 @@ return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let s
 local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
 corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
 (x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
-0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
+0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
 this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
 settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
 slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
-header.geometry,this.parameters]),before!==this.state}load=(key,steps,_signal,_has,mark)=>mark?Promise.resolve(steps.map(
-step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){let{grid:grid2,
-header}=this,rate=grid2.rate(header.slices.times[step],this.parameters),points=fixedPoints(rate,grid2.ends),kinds=header.
-structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="nullclines")
-nullclines(rate,grid2.ends).forEach((pieces,component)=>rows.push(...pieces.flat().map(at=>row2(at,component))));else if(kind===
-"critical")rows.push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).
-forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,
-number)))});let saddles=points.filter(({ways})=>ways).slice(0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).
-forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;
-rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}return this.
-named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}trajectory([x,y]){let{grid:grid2,header}=this;
-if(header.slices.times.length>1)return null;let rate=grid2.rate(header.slices.times[0],this.parameters),inSpace=([u,v2])=>[
-u,v2,0],velocity=inSpace(rate(x,y));return velocity.every(Number.isFinite)?{path:trajectory(rate,grid2.ends,[x,y]).map(inSpace),
-velocity}:null}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
-{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
-state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
-window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
-1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
-s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
-{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
-if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
-mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
-to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
-pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
-shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
-sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
-trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
-unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
-parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
-`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
-this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
-map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),
-place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[
-Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.
-set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+header.geometry,this.parameters]),before!==this.state}look(camera,names){let{ends:ends2}=this.grid,side=Math.max(...ends2.
+map(([low,high])=>high-low)),size=side/2**Math.floor(Math.log2(side/(2*WINDOW_VIEWS*camera.height*Math.max(camera.aspect,
+1)))),step=size/WINDOW_STEPS,window2=ends2.map(([low,high],k)=>{let middle=low+step*Math.round((camera.state.focal_point[k]-
+low)/step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),isPart=size<side&&window2.every(([low,high])=>low<
+high);return String(this.window)===String(isPart?window2:null)?[]:(this.window=isPart?window2:null,[...names].filter(name=>name.
+startsWith("nullclines/")).map(name=>this.marks("nullclines",stepOf(name))))}load=(key,steps,_signal,_has,mark)=>mark?Promise.
+resolve(steps.map(step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){
+let{grid:grid2,header}=this,{rate,gradient}=grid2.rate(header.slices.times[step],this.parameters),points=kind==="nullcli\
+nes"?[]:fixedPoints(rate,gradient,grid2.ends),kinds=header.structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.
+localOf(at),number],rows=[];if(kind==="nullclines")nullclines(rate,grid2.ends,this.window).forEach((pieces,component)=>rows.
+push(...pieces.flat().map(at=>row2(at,component))));else if(kind==="critical")rows.push(...points.map(point=>row2(point.
+at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).forEach(({path,isStable},n)=>{let number=LINE.
+orbit+LINE.leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,number)))});let saddles=points.filter(({ways})=>ways.
+length).slice(0,MOST_SADDLES);separatrices(rate,gradient,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{
+let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),
+rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}let part=this.named(`${kind}/${step}`,{data:Float32Array.
+from(rows.flat()),shape:[rows.length,4]});return kind==="nullclines"?{...part,digest:`${part.digest} ${this.window}`}:part}trajectory([
+x,y]){let{grid:grid2,header}=this;if(header.slices.times.length>1)return null;let{rate,gradient}=grid2.rate(header.slices.
+times[0],this.parameters),inSpace=([u,v2])=>[u,v2,0],velocity=inSpace(rate(x,y));if(!velocity.every(Number.isFinite))return null;
+let points=fixedPoints(rate,gradient,grid2.ends);return{path:trajectory(rate,grid2.ends,points,[x,y]).map(inSpace),velocity}}whole(steps){
+let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-
+1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
+shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
+start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
+{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
+missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
+cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
+(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
+shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
+-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
+size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
+shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
+unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
+n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
+e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
+return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
+unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
+...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
+size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
+tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
+columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1534,12 +1581,12 @@ timeOf(shown),clock:player.clock,still:!player.playing,density,pixel:2*camera.he
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
-a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING2=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
+a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING3=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
 0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],
 m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
-abs((a*x+c*y+e)/w-1)<1+ROUNDING2&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING2,covers=[[0,0],[width,0],[0,height],[width,height]].
-every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING2;if(shifts)
+abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,covers=[[0,0],[width,0],[0,height],[width,height]].
+every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;if(shifts)
 for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(
 0,0,picture.width,picture.height),pen?.drawImage(picture,0,0)}var penOf=(canvas,alpha)=>canvas.getContext("2d",{alpha}),
 ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
@@ -2084,50 +2131,51 @@ this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES]
 this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
 requests.follow(this.settings)&&(this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){this.held.clear(
-name=>/^(flow|scalars|critical|separatrices)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
-copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
-firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(
-state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
-camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
-first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
-keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
-return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
-this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
-null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
-let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
-player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
-this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
-time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
-this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
-varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
-this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
-playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
-this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
-return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(cameraOnly),this.card.draw(),this.panel.
-showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.
-frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&(this.
-frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&(this.header?.slices.times.length??
-1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}setSharp(sharp){
-sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
-!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
-1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),
-1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(
-width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.
-state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,
-1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.painter.scene??null}get tiles(){
-return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
-frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
-let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
-(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("no scene is \
-shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
-shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
-header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
-x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(
+this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
+this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
+this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
+!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
+let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
+let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
+x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
+this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
+clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
+let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
+first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
+player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
+options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
+setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
+player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
+playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
+this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
+pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
+performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){let parts=this.camera&&
+this.requests.formula?.look(this.camera,this.parts.keys());for(let part of parts??[])this.setPart(part);this.painter.restart?.(
+cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
+setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&
+(this.header?.slices.times.length??1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),
+this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&
+(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
+let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
+map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
+painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
+this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
+Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
+painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
+return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
+if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
+not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
+!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
+this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
+!camera)throw new Error("no scene is shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,
+player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
+find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

@@ -25,6 +25,7 @@ from flowtex._util.colours import colour_table
 from flowtex.field.dates import date_text
 from flowtex.field.earth import MapLines, Projection
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
+from flowtex.field.formula.rates import gradient_trees
 from flowtex.rendering.arrow_seeds import ArrowSeeds, seed_limits
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.noise import noise_lattice, octave
@@ -577,6 +578,18 @@ def test_samples_for_the_client() -> None:
     sums = {name: samples_of(name) for name in SAMPLED}
     parts = parts_of(ClientData(Scene(bend()).textures))
     check("samples.json", {"parts": parts, "sums": sums, "noise": noise_of(5)})
+
+
+def test_trees_of_the_fixed_points() -> None:
+    """Cases of fixed points, with the trees that the client computes them from."""
+    path = Path(__file__).parents[1] / "trace" / "formula_cases.json"
+    cases = json.loads(path.read_text(encoding="utf-8"))
+    for case in cases:
+        ends = {"x": case["x"], "y": case["y"], "resolution": 9}
+        made = flowtex.formula(*case.pop("rates"), **ends, **case["parameters"]).formula
+        case |= {"trees": [each.tree for each in made.expressions]}
+        case |= {"gradient": gradient_trees(made)}
+    check("fixedpoints.json", cases)
 
 
 def test_what_a_formula_gives() -> None:

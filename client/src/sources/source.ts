@@ -162,7 +162,8 @@ export class Requests {
   private readonly wholes: Queue;
   private readonly marks: Queue;
   private readonly given: Source | null;
-  private formula: FormulaSource | null = null;
+  /** What computes the parts here. */
+  formula: FormulaSource | null = null;
 
   constructor(source: Source | null, taker: Taker) {
     this.given = source;

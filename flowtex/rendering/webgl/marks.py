@@ -49,6 +49,7 @@ KIND_MARKS = {
     "centre": KindMark("#35c46a", turns=True),
     "spiral sink": KindMark("#3b8bff", turns=True),
     "sink": KindMark("#3b8bff"),
+    "degenerate": KindMark("#b36bff"),
 }
 #: Lines along which the flow leaves saddles and comes to them, and closed orbits to which lines
 #: come or which they leave, in the order of legends.

@@ -19,6 +19,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex._util.vectors import norm
 from flowtex.field.formula import Formula
+from flowtex.field.formula.rates import gradient_trees
 from flowtex.field.grids.poles import Poles
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
@@ -292,6 +293,7 @@ def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
     return {
         "formula": {
             "trees": [each.tree for each in formula.expressions],
+            "gradient": gradient_trees(formula),
             "names": list(formula.ranges),
             "ends": [list(ends) for ends in formula.ranges.values()],
         },

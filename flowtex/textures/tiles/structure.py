@@ -19,6 +19,7 @@ from flowtex.trace.structure import (
     nullclines,
     orbits_around,
     separatrices_between,
+    view_window,
 )
 
 T = TypeVar("T")
@@ -94,9 +95,13 @@ class Structure:
                 by_kind["stable orbit" if line.forward else "unstable orbit"].append(line.orbit)
         return by_kind
 
-    def nullclines(self, step: int) -> tuple[Floats, Floats]:
+    def nullclines(self, step: int, window: Floats | None = None) -> tuple[Floats, Floats]:
         """Return the pieces of the nullclines of a step, as :func:`nullclines` does."""
-        return nullclines(self._field.at_step(step))
+        return nullclines(self._field.at_step(step), window)
+
+    def window(self, focus: Floats, visible: float) -> Floats | None:
+        """Return the part of the plane around a view, as :func:`view_window` does."""
+        return view_window(self._field, focus, visible)
 
     def find(self, step: int, points: int, saddles: int) -> None:
         """Compute this many points of a step, and the lines of this many saddles."""

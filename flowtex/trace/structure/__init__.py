@@ -8,7 +8,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
-from flowtex.trace.structure.nullclines import nullclines
+from flowtex.trace.structure.nullclines import nullclines, view_window
 from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits, orbits_around
 from flowtex.trace.structure.separatrices import (
     Separatrices,
@@ -30,4 +30,5 @@ __all__ = [
     "orbits_around",
     "separatrices",
     "separatrices_between",
+    "view_window",
 ]

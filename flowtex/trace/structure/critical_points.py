@@ -10,30 +10,42 @@ import numpy as np
 import scipy
 
 from flowtex._util.arguments import check_field, checked_count
-from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.derived.gradient import node_gradient
+from flowtex.field.formula.rates import Rates
 from flowtex.field.grids.poles import Pole
+from flowtex.field.locate import surface_point
 from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.structure.cells import (
+    bilinear_zeros,
+    folded,
+    linear_zeros,
+    triangle_indices,
+)
+from flowtex.trace.structure.formula_points import Zeros, directions, zeros
 from flowtex.trace.structure.records import Records, steady_parts
+from flowtex.trace.structure.strength import strengths
 
 if TYPE_CHECKING:
     import pyvista as pv
 
 #: Kinds of critical points, for tables and legends.
-KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink")
-#: Growth of a spiral, as a share of its rotation, up to which it is a centre.
-CENTRE_SHARE = 0.01
+KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink", "degenerate")
+#: Real or imaginary part of an eigenvalue that is zero, as a share of the eigenvalue, and growth as
+#: a share of the rotation from which a point on a grid is a spiral whatever the grid.
+ROUNDING, REAL_SHARE, SPIRAL_SHARE = 1e-9, 1e-6, 0.25
+#: Error of the velocity's gradient, in its change over a cell: in a cell the interpolated gradient
+#: is that of its middle, half a cell away.
+ERROR_CELLS = 0.5
 #: Points closer than this, in cells, that have the same index are one.
 SAME_POINT_CELLS = 1e-3
 #: Speed as a share of the largest at which a node is at rest.
 REST_SHARE = 1e-12
 #: Share of a neighbour's velocity that replaces one that is zero.
 LEAST_SHARE = 1e-7
-#: Speeds at which regions are compared, by the share of the nodes that are slower.
-SHARES = np.geomspace(1e-3, 1.0, 32)
-#: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
-ROUNDING_CELLS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +57,8 @@ class CriticalPoint:
     position
         Where it lies, (3,), in the mesh's units.
     kind
-        ``"saddle"``, ``"source"``, ``"sink"``, ``"centre"``, ``"spiral source"`` or
-        ``"spiral sink"``.
+        ``"saddle"``, ``"source"``, ``"sink"``, ``"centre"``, ``"spiral source"``, ``"spiral sink"``
+        or ``"degenerate"``: the determinant of the velocity gradient is zero.
     eigenvalues
         Of the velocity gradient there, (2,), complex, in 1 over the unit of time, the one with the
         larger real part first.
@@ -61,6 +73,12 @@ class CriticalPoint:
     strength
         Change of the velocity, as a speed, with which it vanishes together with others: little
         for points of noise. It is known to a few per cent.
+    poincare_index
+        Turns of the velocity on a small circle around the point: -1 for a saddle, any number for a
+        degenerate point, and 1 for other kinds. On a sphere they sum to 2.
+    directions
+        Unit vectors along which separatrices of a degenerate point begin, (3,) each, and whether
+        the flow leaves it there.
     """
 
     position: Floats
@@ -71,11 +89,15 @@ class CriticalPoint:
     index: tuple[float, float]
     lonlat: tuple[float, float] | None = None
     strength: float = np.nan
+    poincare_index: int = 1
+    directions: tuple[tuple[Floats, bool], ...] = ()
 
-    @property
-    def poincare_index(self) -> int:
-        """-1 for a saddle, 1 for any other kind; on a sphere they sum to 2."""
-        return -1 if self.kind == "saddle" else 1
+    def ways(self, *, forward: bool) -> list[Floats]:
+        """Return unit vectors along which separatrices leave the point, or come to it."""
+        if self.kind == "saddle":
+            way = self.eigenvectors[0 if forward else 1].real
+            return [way, -way]
+        return [way for way, leaves in self.directions if leaves == forward]
 
 
 class CriticalPoints(Records, Sequence[CriticalPoint]):
@@ -197,9 +219,50 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
         raise FieldError(msg)
     points: list[CriticalPoint] = []
     for part in steady_parts(field, steps, "Finding critical points"):
-        search = _on_grid if part.triangles is None else _on_triangles
-        points += _with_strength(search(part), part)
+        rates = formula_rates(part)
+        if rates is not None:
+            found = _of_formula(part, rates)
+        else:
+            found = (_on_grid if part.triangles is None else _on_triangles)(part)
+        points += _with_strength(found, part)
     return CriticalPoints(points)
+
+
+def formula_rates(field: FlowField) -> Rates | None:
+    """Return the rates of the formula from which a steady field was made, if they are known."""
+    formula, valid = field.formula, field.valid
+    if formula is None or field.triangles is not None:
+        return None
+    u, v = formula.coordinates(field.shape)
+    points, velocity = formula.points(u, v), formula.velocity(u, v, float(field.times[0]))
+    for own, other in ((field.points, points), (field.velocity[0], velocity)):
+        if not np.allclose(own[valid][:, : other.shape[-1]], other[valid]):
+            return None
+    rates = Rates(formula, float(field.times[0]))
+    return rates if rates.is_known else None
+
+
+def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
+    """Find the critical points of a formula."""
+    found = zeros(rates)
+    if found.lines:
+        notify(f"{field.name}: the velocity is zero along lines; points there are not marked")
+    places, low = found.places, rates.ends[:, 0]
+    index = (places - low) / np.ptp(rates.ends, axis=1) * np.subtract(field.shape[::-1], 1)
+    position, tangents = rates.positions(places), rates.tangents(places)
+    points = _points(field, position, found.gradient, tangents, index, found=found)
+    for n in np.flatnonzero(found.is_degenerate):
+        ways, leaves = directions(rates, places[n])
+        ways = ways @ tangents[n]
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        pairs = tuple(zip(ways, leaves.tolist(), strict=True))
+        points[n] = replace(points[n], directions=pairs)
+    for pole in field.surface.poles or ():
+        away = np.abs(index[:, pole.component] - pole.line) > 1
+        points = [point for point, is_kept in zip(points, away, strict=True) if is_kept]
+        points += _at_pole(field, pole)
+        index = np.array([point.index[::-1] for point in points]).reshape(-1, 2)
+    return _distinct(points, field) if any(field.periodic) else points
 
 
 def _on_grid(field: FlowField) -> list[CriticalPoint]:
@@ -232,7 +295,7 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     found = _points(field, position, gradient, np.stack(tangents, axis=1), index)
     for pole in poles:
         found += _at_pole(field, pole)
-    return _distinct(found, field)
+    return _resolved(_distinct(found, field), field)
 
 
 def _blend(nodal: Floats, j: Indices, i: Indices, s: Floats, t: Floats) -> Floats:
@@ -315,7 +378,9 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     weights = np.clip(weights, 0, None)
     weights /= weights.sum(axis=1, keepdims=True)
     position = np.einsum("mk,mkc->mc", weights, corners)
-    return _points(field, position, gradient, frame, surface.index_of(number, weights))
+    index = surface.index_of(number, weights)
+    found = _points(field, position, gradient, frame, index)
+    return _resolved(found, field)
 
 
 def _turned(vectors: Floats, normals: Floats, normal: Floats) -> Floats:
@@ -330,10 +395,17 @@ def _turned(vectors: Floats, normals: Floats, normal: Floats) -> Floats:
 
 
 def _points(
-    field: FlowField, position: Floats, gradient: Floats, tangents: Floats, index: Floats
+    field: FlowField,
+    position: Floats,
+    gradient: Floats,
+    tangents: Floats,
+    index: Floats,
+    found: Zeros | None = None,
 ) -> list[CriticalPoint]:
     """Make records of points (K, 3), gradients (K, 2, 2) and tangents (K, 2, 3) there."""
-    finite = np.isfinite(gradient).all(axis=(1, 2)) & (np.abs(gradient).max(axis=(1, 2)) > 0)
+    finite = np.isfinite(gradient).all(axis=(1, 2))
+    if found is None:
+        finite &= np.abs(gradient).max(axis=(1, 2)) > 0
     values, vectors = np.linalg.eig(np.where(finite[:, None, None], gradient, np.eye(2)))
     lonlat = None if field.projection is None else field.projection.lonlat(position)
     result = []
@@ -342,44 +414,123 @@ def _points(
         value, directions = values[n][order].astype(complex), vectors[n].T[order] @ tangents[n]
         size = np.linalg.norm(directions, axis=1, keepdims=True)
         place = None if lonlat is None else (float(lonlat[0][n]), float(lonlat[1][n]))
+        kind = _kind(value, 0.0 if found is None else float(found.growth[n]))
+        if found is not None and found.is_degenerate[n]:
+            kind = "degenerate"
         result.append(
             CriticalPoint(
                 position=position[n],
-                kind=_kind(value),
+                kind=kind,
                 eigenvalues=value,
                 eigenvectors=directions / np.maximum(size, np.finfo(float).tiny),
                 time=float(field.times[0]),
                 index=(float(index[n, 1]), float(index[n, 0])),
                 lonlat=place,
+                poincare_index=_sign(kind) if found is None else int(found.indices[n]),
             )
         )
     return result
 
 
-def _kind(values: AnyArray) -> str:
-    real, imaginary = values.real, abs(values[0].imag)
-    if not imaginary:
+def _kind(values: AnyArray, growth: float = 0.0, error: float = 0.0) -> str:
+    """Return the kind by eigenvalues known to an error, else by the growth in a turn."""
+    real, imaginary, size = values.real, abs(values[0].imag), np.abs(values).max()
+    if imaginary <= REAL_SHARE * size:
+        if np.abs(values).min() <= ROUNDING * size:
+            return "degenerate"
         return "saddle" if real[0] * real[1] < 0 else "source" if real.sum() > 0 else "sink"
-    if abs(real[0]) <= CENTRE_SHARE * imaginary:
-        return "centre"
-    return "spiral source" if real[0] > 0 else "spiral sink"
+    if abs(real[0]) > max(error, ROUNDING * size):
+        growth = float(real[0])
+    return "spiral source" if growth > 0 else "spiral sink" if growth < 0 else "centre"
+
+
+def _sign(kind: str) -> int:
+    return {"saddle": -1, "degenerate": 0}.get(kind, 1)
+
+
+def gradient_and_error(field: FlowField) -> tuple[Floats, Floats]:
+    """Return the velocity gradient of a steady field at the nodes, (2, 2, J, I), and its error."""
+    surface = field.surface
+    gradient = node_gradient(surface, None)
+    first = gradient.of_vectors(field.velocity[0])
+    second = gradient.derivative(first.reshape(4, *surface.shape))
+    return first, ERROR_CELLS * surface.cell_size * np.sqrt((second**2).sum(axis=(0, 1)))
+
+
+def _resolved(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
+    """Return points on a grid as far as it resolves them.
+
+    A spiral that grows by less than the error of the gradient is a centre, and points of the same
+    index in one cell are a degenerate point.
+    """
+    weak = [
+        n
+        for n, point in enumerate(points)
+        if abs(point.eigenvalues[0].real) <= SPIRAL_SHARE * abs(point.eigenvalues[0].imag)
+    ]
+    if weak:
+        _, error = gradient_and_error(field)
+        for n in weak:
+            near = surface_point(field.surface, points[n].index).interpolate(error)
+            points[n] = replace(points[n], kind=_kind(points[n].eigenvalues, error=float(near)))
+    if len(points) < 2:
+        return points
+    size = np.array([field.surface.cell_size[field.surface.node_near(p.index)] for p in points])
+    positions = np.array([point.position for point in points])
+    pairs = scipy.spatial.KDTree(positions).query_pairs(size.max(), output_type="ndarray")
+    lengths = np.asarray(np.linalg.norm(np.subtract(*positions[pairs.T]), axis=1))
+    pairs = pairs[lengths < size[pairs[:, 0]]]
+    graph = scipy.sparse.coo_array((np.ones(len(pairs), bool), pairs.T), shape=2 * (len(points),))
+    group = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    total = np.bincount(group, [point.poincare_index for point in points])
+    result = []
+    for n, point in enumerate(points):
+        turns = round(total[group[n]])
+        if abs(turns) < 2:
+            result.append(point)
+        elif n == np.argmax(group == group[n]):
+            result.append(replace(point, kind="degenerate", poincare_index=turns))
+    return result
 
 
 def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
-    """Drop points that were found in two cells, or at both ends of a closed axis."""
-    if len(points) < 2:
-        return points
+    """Drop points that were found in two cells, or at both ends of a closed axis.
+
+    Where cells around a node disagree, or a determinant is zero, the point is degenerate.
+    """
     size = field.surface.cell_size
-    at = (
-        tuple(np.minimum(np.rint(p.index).astype(int), np.subtract(size.shape, 1))) for p in points
-    )
-    near = SAME_POINT_CELLS * np.array([size[node] for node in at])
-    positions = np.array([point.position for point in points])
+    near = SAME_POINT_CELLS * np.array([size[field.surface.node_near(p.index)] for p in points])
     kept = np.ones(len(points), dtype=bool)
-    for first, second in sorted(scipy.spatial.KDTree(positions).query_pairs(near.max())):
-        if kept[first] and points[first].poincare_index == points[second].poincare_index:
-            kept[second] &= np.linalg.norm(positions[first] - positions[second]) >= near[second]
-    return [point for point, is_kept in zip(points, kept, strict=True) if is_kept]
+    pairs: set[tuple[int, int]] = set()
+    if points:
+        positions = np.array([point.position for point in points])
+        pairs = scipy.spatial.KDTree(positions).query_pairs(near.max())
+    for first, second in sorted(pairs):
+        apart = np.linalg.norm(positions[first] - positions[second])
+        if kept[first] and kept[second] and apart < near[second]:
+            kept[second] = False
+            if points[first].poincare_index != points[second].poincare_index:
+                points[first] = replace(points[first], kind="degenerate")
+    result = [point for point, is_kept in zip(points, kept, strict=True) if is_kept]
+    for n, point in enumerate(result):
+        if point.kind == "degenerate":
+            result[n] = replace(point, poincare_index=_ring_index(field, point))
+    return result
+
+
+def _ring_index(field: FlowField, point: CriticalPoint) -> int:
+    """Return the turns of the velocity around the node at a point, 0 at a border."""
+    j, i = field.surface.node_near(point.index)
+    rows, columns = np.array(
+        [(-1, -1), (-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1)]
+    ).T
+    rows, columns = rows + j, columns + i
+    inside = (rows >= 0) & (rows < field.shape[0]) & (columns >= 0) & (columns < field.shape[1])
+    if not inside.all():
+        return 0
+    u, v = field.index_velocity.components[0][rows, columns].T
+    angle = np.arctan2(v, u)
+    return round(float(folded(np.roll(angle, -1) - angle).sum()) / (2 * np.pi))
 
 
 def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
@@ -388,166 +539,9 @@ def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[Critic
     nodes = [int(j * columns + i) for j, i in (field.surface.node_near(p.index) for p in points)]
     signs = np.array([point.poincare_index for point in points], dtype=np.intp)
     steepness = np.array([abs(np.prod(point.eigenvalues)) for point in points])
-    found = strengths(field, np.array(nodes, dtype=np.intp), signs, steepness)
-    return [replace(p, strength=float(s)) for p, s in zip(points, found, strict=True)]
-
-
-def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Floats) -> Floats:
-    """Return the strengths of critical points of a steady field as speeds, (K,).
-
-    The strength is the change of velocity that makes a point vanish. Two points of opposite index
-    vanish together once the velocity between them is changed by as much as the speed there (their
-    robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So it is the least speed below
-    which a region contains the point and a partner. Points of noise are pairs separated by a low
-    speed. A partner may lie beyond a border: without one, the least speed below which a region
-    contains the point and any other remaining one.
-
-    ``nodes`` are nodes beside the points, counted row by row, and ``signs`` their Poincare indices.
-    Where several have one partner, the steepest remain.
-    """
-    speed, valid = field.index_velocity.speed[0].ravel(), field.valid.ravel()
-    result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
-    if len(nodes) < 2:
-        return result
-    edges = _edges(field)
-    edges = edges[valid[edges].all(axis=1)]
-    needed = speed[edges].max(axis=1)
-    order = np.argsort(needed)
-    edges, needed = edges[order], needed[order]
-    remaining, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
-    for level in np.quantile(speed[valid], SHARES):
-        slower = edges[: int(np.searchsorted(needed, level, side="right"))]
-        graph = scipy.sparse.coo_array(
-            (np.ones(len(slower), bool), slower.T), shape=(speed.size, speed.size)
-        )
-        region = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-        regions = region[nodes[remaining]].astype(np.intp)
-        paired = _paired(regions, signs[remaining])
-        result[remaining[paired]] = level
-        remaining, regions = remaining[~paired], regions[~paired]
-        meets = (np.bincount(regions, minlength=1)[regions] > 1) & ~met[remaining]
-        result[remaining[meets]], met[remaining[meets]] = level, True
-    return result
-
-
-def _paired(region: Indices, signs: Indices) -> Bools:
-    """Return which points (K,) have a partner in their region; surplus ones are the first."""
-    kind = 2 * region + (signs > 0)
-    counts = np.bincount(kind, minlength=2 * int(region.max(initial=0)) + 2)
-    order = np.argsort(kind, kind="stable")
-    rank = np.empty(len(kind), dtype=np.intp)
-    rank[order] = np.arange(len(kind)) - (np.cumsum(counts) - counts)[kind[order]]
-    return np.asarray(rank >= counts[kind] - counts[kind ^ 1])
-
-
-def _edges(field: FlowField) -> Indices:
-    """Return pairs of neighbouring nodes, (E, 2), counted row by row."""
-    if field.triangles is not None:
-        corners = np.asarray(field.triangles)
-        return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    number = np.arange(field.valid.size).reshape(field.shape)
-    pairs = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
-    if field.periodic[1]:
-        pairs.append((number[:, :1], number[:, -1:]))
-    if field.periodic[0]:
-        pairs.append((number[:1], number[-1:]))
-    return np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
-
-
-def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
-    """Find the zeros of a velocity in cells.
-
-    ``corners`` are velocities at (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2).
-    Returns the number of each cell with a zero, (K,), and its place in the cell, (K, 2) from 0 to 1
-    as (i, j). A cell may have two.
-    """
-    near = ROUNDING_CELLS * np.abs(corners).max(axis=(1, 2), initial=0)[:, None]
-    crossed = ((corners.max(axis=1) >= -near) & (corners.min(axis=1) <= near)).all(axis=1)
-    cells = np.flatnonzero(crossed)
-    v = corners[cells]
-    v = v / np.maximum(np.abs(v).max(axis=(1, 2), keepdims=True), np.finfo(float).tiny)
-    a, b, c = v[:, 0], v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]
-    d = v[:, 3] - v[:, 2] - b
-    numbers, places = [], []
-    # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
-    for s in _roots(_cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)):
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            first, slope = a + b * s[:, None], c + d * s[:, None]
-            square = np.einsum("nc,nc->n", slope, slope)
-            t = -np.einsum("nc,nc->n", first, slope) / square
-        inside = _inside(s) & _inside(t)
-        numbers.append(cells[inside])
-        places.append(np.clip(np.stack([s[inside], t[inside]], axis=-1), 0.0, 1.0))
-    return np.concatenate(numbers), np.concatenate(places)
-
-
-def linear_zeros(points: Floats, vectors: Floats) -> tuple[Floats, Floats]:
-    """Return where a linear velocity is zero, and its gradient.
-
-    Corners of triangles in a plane, and velocities there, are (N, 3, 2). The zero is given as
-    shares of the corners, (N, 3), not finite where there is no single one; the gradient is the
-    change of component m along direction n, (N, 2, 2).
-    """
-    edges = np.swapaxes(points[:, 1:] - points[:, :1], 1, 2)
-    change = np.swapaxes(vectors[:, 1:] - vectors[:, :1], 1, 2)
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        gradient = change @ _inverse(edges)
-        shares = -np.einsum("nmk,nk->nm", _inverse(change), vectors[:, 0])
-    return np.concatenate([1 - shares.sum(axis=1, keepdims=True), shares], axis=1), gradient
-
-
-def triangle_indices(
-    points: Floats, normals: Floats, velocity: Floats, triangles: Indices
-) -> Indices:
-    """Return the Poincare index of each triangle, (M,): 1, 0, or -1 for a saddle.
-
-    Positions, unit normals and tangent velocities of nodes are (N, 3) each, triangles (M, 3), in
-    the sense of the normals. Angles are measured at each node against the edges in its tangent
-    plane, so two triangles agree about the edge they share, and on a closed surface the indices sum
-    to its Euler characteristic.
-    """
-    turned = np.full(len(triangles), 2 * np.pi)
-    for k in range(3):
-        start, end, last = (triangles[:, (k + n) % 3] for n in range(3))
-        edge = points[end] - points[start]
-        at_start, at_end = (_angle(velocity[n], edge, normals[n]) for n in (start, end))
-        turned += _folded(at_end - at_start)
-        # The edges themselves turn once; what is missing from that is curvature.
-        turned -= _folded(_angle(points[last] - points[end], edge, normals[end]))
-    return np.rint(turned / (2 * np.pi)).astype(np.intp)
-
-
-def _angle(vector: Floats, reference: Floats, normal: Floats) -> Floats:
-    """Return the angle (N,) from one vector to another about normals, (N, 3) each."""
-    along = np.einsum("nc,nc->n", vector, reference) - np.einsum(
-        "nc,nc,nd,nd->n", vector, normal, reference, normal
+    # A point of index 0 needs no partner to vanish.
+    found, paired = np.zeros(len(points)), signs != 0
+    found[paired] = strengths(
+        field, np.array(nodes, dtype=np.intp)[paired], signs[paired], steepness[paired]
     )
-    across = np.einsum("nc,nc->n", np.cross(reference, vector), normal)
-    return np.asarray(np.arctan2(across, along))
-
-
-def _folded(angle: Floats) -> Floats:
-    return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))
-
-
-def _roots(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
-    """Return the real roots of a x^2 + b x + c, NaN or infinite where there are fewer."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
-        return q / a, c / q
-
-
-def _inside(share: Floats) -> Bools:
-    with np.errstate(invalid="ignore"):
-        return np.asarray((share >= -ROUNDING_CELLS) & (share <= 1 + ROUNDING_CELLS))
-
-
-def _cross(one: Floats, two: Floats) -> Floats:
-    return np.asarray(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
-
-
-def _inverse(matrix: Floats) -> Floats:
-    """Return the inverses of matrices (N, 2, 2), not finite for singular ones."""
-    (a, b), (c, d) = np.moveaxis(matrix, 0, -1)
-    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=1)
-    return np.asarray(adjugate / (a * d - b * c)[:, None, None])
+    return [replace(p, strength=float(s)) for p, s in zip(points, found, strict=True)]

@@ -15,9 +15,9 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import CriticalPoint, CriticalPoints, critical_points
+from flowtex.trace.structure.formula_lines import follower, plane_rates
 from flowtex.trace.structure.orbits import Isolation
 from flowtex.trace.structure.records import Records, steady_parts
-from flowtex.trace.trace import paths
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -181,7 +181,7 @@ def separatrices_between(
 
     They have at most ``most`` points; the other arguments are those of :func:`separatrices`.
     """
-    saddles = points.of_kind("saddle")
+    saddles = points.of_kind("saddle", "degenerate")
     if strongest is not None:
         saddles = saddles.strongest(strongest)
     lines = Separatrices()
@@ -201,11 +201,12 @@ def _lines(
     forward: bool,
 ) -> list[Separatrix]:
     """Return the lines that leave saddles, or those that come to them."""
-    cells = np.array([_cell(field, saddle) for saddle in saddles])
-    directions = [saddle.eigenvectors[0 if forward else 1].real for saddle in saddles]
-    centers = np.array([saddle.position for saddle in saddles])
-    offsets = BEGIN_CELLS * cells[:, None] * np.array(directions)
-    begin, _ = locator(field).nearest(np.concatenate([centers + offsets, centers - offsets]))
+    starts = [(saddle, way) for saddle in saddles for way in saddle.ways(forward=forward)]
+    if not starts:
+        return []
+    cells = np.array([_cell(field, saddle) for saddle, _ in starts])
+    offsets = BEGIN_CELLS * cells[:, None] * np.array([way for _, way in starts])
+    begin, _ = locator(field).nearest(np.array([s.position for s, _ in starts]) + offsets)
     begin = np.array(begin[:, ::-1], dtype=float)
     spacing = POINT_CELLS * float(np.median(cells))
     lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
@@ -213,7 +214,7 @@ def _lines(
     ends = scipy.spatial.KDTree([point.position for point in points])
     isolation, result = Isolation(field), []
     for n, first in enumerate(begin):
-        saddle, cell = saddles[n % len(saddles)], cells[n % len(saddles)]
+        saddle, cell = starts[n][0], cells[n]
         shown = positions[: int(np.searchsorted(lags, reach[n])), n]
         if not len(shown):  # it points out of the surface
             continue
@@ -243,7 +244,7 @@ def _followed(
     field: FlowField, points: CriticalPoints, begin: Floats, lags: Floats, *, forward: bool
 ) -> tuple[Floats, Floats]:
     """Follow paths from (N, 2); return positions (M, N, 2), and how far they lead, (N,)."""
-    follow = partial(paths, field, parameter="arclength", forward=forward)
+    follow = partial(follower(field, plane_rates(field)), forward=forward)
     first = follow(begin, lags[:FIRST_POINTS])
     positions, reach = np.repeat(first.positions[-1:], len(lags), axis=0), first.reach.copy()
     positions[:FIRST_POINTS] = first.positions

@@ -1,0 +1,101 @@
+"""The rates of a formula's two coordinates at one time, with their exact gradient."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.field.formula.derivative import derivative, filled, simple
+from flowtex.field.formula.flow import COMPONENTS, Formula
+from flowtex.field.formula.grammar import Tree, evaluate
+
+#: Step of the differences for functions as a share of a range, and their weights.
+FUNCTION_SHARE = 1e-4
+WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
+
+
+class Rates:
+    """The rates of both coordinates; places are (N, 2).
+
+    Functions have no trees, so their gradient is that of differences of fourth order. A velocity in
+    space gives the rates times the metric of the surface, which vanish at the same places.
+    """
+
+    def __init__(self, formula: Formula, time: float) -> None:
+        self._formula, self._time = formula, time
+        self.ends = np.array(list(formula.ranges.values()))
+        self._values = {name: each.value for name, each in formula.parameters.items()} | {"t": time}
+        self.trees, self._tangents = _trees(formula)
+        self._gradient = gradient_trees(formula)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the rates can be computed: not those of functions on a surface."""
+        return bool(self.trees) or not self._formula.surface
+
+    def at(self, places: Floats) -> Floats:
+        """Return the rates, (N, 2)."""
+        if not self.trees:
+            x, y = places.T
+            return self._formula.velocity(x, y, self._time)
+        return self._of(self.trees, places)
+
+    def gradient(self, places: Floats) -> Floats:
+        """Return the change of rate k along coordinate m, (N, 2, 2)."""
+        if self.trees:
+            return self._of(self._gradient, places).reshape(-1, 2, 2)
+        steps = FUNCTION_SHARE * np.diag(np.ptp(self.ends, axis=1))
+        sides = [sum(w * self.at(places + n * h) for n, w in WEIGHTS) / h.sum() for h in steps]
+        return np.stack(sides, axis=-1)
+
+    def positions(self, places: Floats) -> Floats:
+        """Return the positions, (N, 3)."""
+        points = self._formula.points(places[:, 0], places[:, 1])
+        return np.pad(points, ((0, 0), (0, 3 - points.shape[-1])))
+
+    def tangents(self, places: Floats) -> Floats:
+        """Return the derivatives of the position along the coordinates, (N, 2, 3)."""
+        if not self._tangents:
+            return np.broadcast_to(np.eye(2, 3), (len(places), 2, 3))
+        return self._of([each for row in self._tangents for each in row], places).reshape(-1, 2, 3)
+
+    def area(self, places: Floats) -> Floats:
+        """Return the area of a unit of both coordinates, (N,)."""
+        one, other = np.moveaxis(self.tangents(places), 1, 0)
+        return np.asarray(np.linalg.norm(np.cross(one, other), axis=1))
+
+    def lowered(self, values: Floats, places: Floats) -> Floats:
+        """Return rates or gradients (N, 2, ...) divided by the metric, if they contain it."""
+        if len(self._formula.expressions) != COMPONENTS:
+            return values
+        tangents = self.tangents(places)
+        metric = np.einsum("nkc,nmc->nkm", tangents, tangents)
+        return np.asarray(np.einsum("nkm,nm...->nk...", np.linalg.pinv(metric), values))
+
+    def _of(self, trees: Sequence[Tree], places: Floats) -> Floats:
+        """Return the values of trees, (N, number of trees)."""
+        values = self._values | dict(zip(self._formula.ranges, places.T, strict=True))
+        with np.errstate(all="ignore"):
+            columns = [np.broadcast_to(evaluate(tree, values), len(places)) for tree in trees]
+        return np.stack(columns, axis=-1).astype(float)
+
+
+def _trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:
+    """Return the trees of the rates and of the tangents; both are empty for functions."""
+    trees = [each.tree for each in formula.expressions if each.tree is not None]
+    places = [each.tree for each in formula.surface if each.tree is not None]
+    if len(trees) < len(formula.expressions) or len(places) < len(formula.surface):
+        return [], []
+    trees = [filled(tree, dict(zip("xyz", places, strict=False))) for tree in trees]
+    tangents = [[derivative(place, name) for place in places] for name in formula.ranges]
+    if len(trees) == COMPONENTS:
+        along = [[simple("*", a, b) for a, b in zip(row, trees, strict=True)] for row in tangents]
+        trees = [simple("+", *row) for row in along]
+    return trees, tangents if places else []
+
+
+def gradient_trees(formula: Formula) -> list[Tree]:
+    """Return the trees of the derivatives of the rates, row by row; none for functions."""
+    return [derivative(tree, name) for tree in _trees(formula)[0] for name in formula.ranges]

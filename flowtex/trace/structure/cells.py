@@ -1,0 +1,110 @@
+"""Zeros of a velocity that is interpolated in cells and triangles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+
+#: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
+ROUNDING_CELLS = 1e-9
+
+
+def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
+    """Find the zeros of a velocity in cells.
+
+    ``corners`` are velocities at (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2).
+    Returns the number of each cell with a zero, (K,), and its place in the cell, (K, 2) from 0 to 1
+    as (i, j). A cell may have two.
+    """
+    near = ROUNDING_CELLS * np.abs(corners).max(axis=(1, 2), initial=0)[:, None]
+    crossed = ((corners.max(axis=1) >= -near) & (corners.min(axis=1) <= near)).all(axis=1)
+    cells = np.flatnonzero(crossed)
+    v = corners[cells]
+    v = v / np.maximum(np.abs(v).max(axis=(1, 2), keepdims=True), np.finfo(float).tiny)
+    a, b, c = v[:, 0], v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]
+    d = v[:, 3] - v[:, 2] - b
+    numbers, places = [], []
+    # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
+    for s in _roots(_cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)):
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            first, slope = a + b * s[:, None], c + d * s[:, None]
+            square = np.einsum("nc,nc->n", slope, slope)
+            t = -np.einsum("nc,nc->n", first, slope) / square
+        inside = _inside(s) & _inside(t)
+        numbers.append(cells[inside])
+        places.append(np.clip(np.stack([s[inside], t[inside]], axis=-1), 0.0, 1.0))
+    return np.concatenate(numbers), np.concatenate(places)
+
+
+def linear_zeros(points: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+    """Return where a linear velocity is zero, and its gradient.
+
+    Corners of triangles in a plane, and velocities there, are (N, 3, 2). The zero is given as
+    shares of the corners, (N, 3), not finite where there is no single one; the gradient is the
+    change of component m along direction n, (N, 2, 2).
+    """
+    edges = np.swapaxes(points[:, 1:] - points[:, :1], 1, 2)
+    change = np.swapaxes(vectors[:, 1:] - vectors[:, :1], 1, 2)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        gradient = change @ _inverse(edges)
+        shares = -np.einsum("nmk,nk->nm", _inverse(change), vectors[:, 0])
+    return np.concatenate([1 - shares.sum(axis=1, keepdims=True), shares], axis=1), gradient
+
+
+def triangle_indices(
+    points: Floats, normals: Floats, velocity: Floats, triangles: Indices
+) -> Indices:
+    """Return the Poincare index of each triangle, (M,): 1, 0, or -1 for a saddle.
+
+    Positions, unit normals and tangent velocities of nodes are (N, 3) each, triangles (M, 3), in
+    the sense of the normals. Angles are measured at each node against the edges in its tangent
+    plane, so two triangles agree about the edge they share, and on a closed surface the indices sum
+    to its Euler characteristic.
+    """
+    turned = np.full(len(triangles), 2 * np.pi)
+    for k in range(3):
+        start, end, last = (triangles[:, (k + n) % 3] for n in range(3))
+        edge = points[end] - points[start]
+        at_start, at_end = (_angle(velocity[n], edge, normals[n]) for n in (start, end))
+        turned += folded(at_end - at_start)
+        # The edges themselves turn once; what is missing from that is curvature.
+        turned -= folded(_angle(points[last] - points[end], edge, normals[end]))
+    return np.rint(turned / (2 * np.pi)).astype(np.intp)
+
+
+def _angle(vector: Floats, reference: Floats, normal: Floats) -> Floats:
+    """Return the angle (N,) from one vector to another about normals, (N, 3) each."""
+    along = np.einsum("nc,nc->n", vector, reference) - np.einsum(
+        "nc,nc,nd,nd->n", vector, normal, reference, normal
+    )
+    across = np.einsum("nc,nc->n", np.cross(reference, vector), normal)
+    return np.asarray(np.arctan2(across, along))
+
+
+def folded(angle: Floats) -> Floats:
+    """Return angles as ones from -pi to pi."""
+    return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))
+
+
+def _roots(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """Return the real roots of a x^2 + b x + c, NaN or infinite where there are fewer."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
+        return q / a, c / q
+
+
+def _inside(share: Floats) -> Bools:
+    with np.errstate(invalid="ignore"):
+        return np.asarray((share >= -ROUNDING_CELLS) & (share <= 1 + ROUNDING_CELLS))
+
+
+def _cross(one: Floats, two: Floats) -> Floats:
+    return np.asarray(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+
+
+def _inverse(matrix: Floats) -> Floats:
+    """Return the inverses of matrices (N, 2, 2), not finite for singular ones."""
+    (a, b), (c, d) = np.moveaxis(matrix, 0, -1)
+    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=1)
+    return np.asarray(adjugate / (a * d - b * c)[:, None, None])
