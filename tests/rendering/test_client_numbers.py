@@ -587,6 +587,7 @@ def test_trees_of_the_fixed_points() -> None:
     for case in cases:
         ends = {"x": case["x"], "y": case["y"], "resolution": 9}
         made = flowtex.formula(*case.pop("rates"), **ends, **case["parameters"]).formula
+        assert made is not None
         case |= {"trees": [each.tree for each in made.expressions]}
         case |= {"gradient": gradient_trees(made)}
     check("fixedpoints.json", cases)

@@ -6,6 +6,7 @@ The browser client passes the cases of ``formula_cases.json`` as well.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,8 @@ from flowtex.field.formula.derivative import derivative
 from flowtex.field.formula.grammar import OPERATIONS, evaluate, parse
 
 CASES = json.loads((Path(__file__).parent / "formula_cases.json").read_text(encoding="utf-8"))
+#: Some where lines turn around a point, and none closes but around a centre.
+WITHOUT_ORBITS = ("Hopf", "weak repelling focus", "Lotka-Volterra", "damped Duffing")
 
 
 def field_of(case: dict[str, Any], resolution: int = 65) -> FlowField:
@@ -64,15 +67,13 @@ def test_eigenvalues_are_those_of_sympy(case: dict[str, Any]) -> None:
     for point in case["points"]:
         at = dict(zip((x, y), point["at"], strict=True))
         values = np.linalg.eigvals(np.array(matrix.subs(at), dtype=float))
-        expected = sorted((complex(*value) for value in point["eigenvalues"]), key=str)
-        assert sorted(values, key=str) == pytest.approx(expected, abs=1e-8) or np.allclose(
-            np.sort_complex(values), np.sort_complex(expected), atol=1e-8
-        )
+        expected = np.array([complex(*value) for value in point["eigenvalues"]])
+        assert np.sort_complex(values) == pytest.approx(np.sort_complex(expected), abs=1e-8)
 
 
 @pytest.mark.parametrize(
     "case",
-    [case for case in CASES if case["orbits"] or "spiral" in str(case["points"])],
+    [case for case in CASES if case["orbits"] or case["name"] in WITHOUT_ORBITS],
     ids=lambda case: case["name"],
 )
 def test_periods_of_closed_orbits_are_those_of_scipy(case: dict[str, Any]) -> None:
@@ -99,7 +100,7 @@ def test_periods_of_closed_orbits_are_those_of_scipy(case: dict[str, Any]) -> No
         periods = [abs(t) for t in found.t_events[0] if abs(t) > 0.5 * orbit.period]
         assert orbit.period == pytest.approx(periods[0], rel=1e-6)
         end = solve_ivp(rate, (0, way * orbit.period), start, rtol=1e-10, atol=1e-12).y[:, -1]
-        assert np.abs(end - start).max() < 1e-5
+        assert np.abs(end - start).max() < 1e-4
         assert np.array_equal(orbit.points[0], orbit.points[-1])
 
 
@@ -237,8 +238,6 @@ def test_a_field_that_was_changed_is_searched_itself() -> None:
     field = flowtex.formula("y", "-sin(x)", x=(-2, 2), y=(-2, 2), resolution=33)
     moved = field.velocity[0] + [0.5, 0, 0]
     changed = FlowField.from_arrays(field.points, moved)
-    from dataclasses import replace
-
     kept = replace(field, velocity=changed.velocity)
     assert kept.formula is not None
     (point,) = flowtex.critical_points(kept)

@@ -111,3 +111,82 @@ def test_a_page_has_the_marks_that_it_was_exported_with(
         names = rows.evaluate_all("(a) => a.map((e) => e.dataset.setting)")
         assert "critical_points" in names and "separatrices" not in names
         assert page.locator(".kinds span").count() == 1
+
+
+#: Kinds, and x where the first component of a saddle-node is zero, by its parameter.
+SADDLE_NODE: dict[float, tuple[list[str], list[float]]] = {
+    -1.0: (["saddle", "sink"], [-1.0, 1.0]),
+    -0.25: (["saddle", "sink"], [-0.5, 0.5]),
+    0.0: (["degenerate"], [0.0]),
+    0.5: ([], []),
+    -2.0: (["saddle", "sink"], [-(2**0.5), 2**0.5]),
+}
+MARKED = """() => {
+  const { first } = document.querySelector("flowtex-view");
+  const { center } = first.header.geometry;
+  const rowsOf = (name) => {
+    const { data = [] } = first.parts.get(name) ?? {};
+    const row = (n) => [0, 1, 3].map((k) => data[4 * n + k] + (center[k] ?? 0));
+    return Array.from({ length: data.length / 4 }, (_, n) => row(n));
+  };
+  return [rowsOf("critical/0"), rowsOf("nullclines/0").filter((row) => !row[2])];
+}"""
+#: Colours of the canvas around a place of the mesh, 5 x 5 pixels.
+AROUND = """([x, y]) => {
+  const { camera, canvas } = document.querySelector("flowtex-view").first;
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const pen = copy.getContext("2d");
+  pen.drawImage(canvas, 0, 0);
+  const [u, v] = camera.project([x, y, 0]);
+  const at = [((u + 1) / 2) * canvas.width - 2, ((1 - v) / 2) * canvas.height - 2];
+  return [...pen.getImageData(...at.map(Math.round), 5, 5).data];
+}"""
+
+
+def test_marks_on_a_page_are_right_at_five_positions_of_a_slider(
+    browser: Browser, tmp_path: Path, quick_export: None
+) -> None:
+    field = flowtex.formula("saddle_node")
+    look: dict[str, Any] = {
+        "critical_points": True,
+        "nullclines": True,
+        "scalars": False,
+        "samples": 3,
+    }
+    path = flowtex.export(field, tmp_path / "page.html", **look).path
+    with opened_page(browser, 480, 320) as page:
+        page.goto(path.as_uri())
+        page.wait_for_selector(COMPLETE)
+        slider = page.locator('[data-setting="formula.r"] input')
+        for r, (kinds, places) in SADDLE_NODE.items():
+            if r != -1:  # where it begins
+                with acted(page):
+                    slider.fill(str(r))
+            lines = ["u = 0", "v = 0"]
+            assert page.locator(".kinds span").all_inner_texts() == [*kinds, *lines], r
+            points, zeros = page.evaluate(MARKED)
+            assert sorted(x for x, *_ in points) == pytest.approx(places, abs=1e-6)
+            found = sorted({round(x, 6) for x, *_ in zeros})
+            assert found == pytest.approx(places, abs=1e-5), r
+            for x in places:  # a line through it, off the point
+                seen = np.array(page.evaluate(AROUND, [x, 0.7])).reshape(-1, 4)[:, :3]
+                assert (seen[:, 0] - seen[:, 2]).max() > 120, r  # orange on grey
+
+
+def test_nullclines_on_a_page_are_as_fine_as_its_view(
+    browser: Browser, tmp_path: Path, quick_export: None
+) -> None:
+    field = flowtex.formula("x^2 + y^2 - 1", "y - x", x=(-2, 2), y=(-2, 2))
+    look: dict[str, Any] = {"nullclines": True, "samples": 3, "zoom": 300, "focus": (0.6, 0.8)}
+    path = flowtex.export(field, tmp_path / "page.html", **look).path
+    with opened_page(browser, 320, 240) as page:
+        page.goto(path.as_uri())
+        page.wait_for_selector(COMPLETE)
+        rows = np.array(page.evaluate(MARKED)[1])[:, :2]
+    one, other = rows[::2], rows[1::2]
+    near = np.hypot(*(one - (0.6, 0.8)).T) < 4 / 300
+    assert near.sum() > 50
+    # Middles of chords, whose error is that of a pixel at most: 4 / 300 / 240.
+    middles = (one + other)[near] / 2
+    assert np.abs(np.hypot(*middles.T) - 1).max() < 1e-6

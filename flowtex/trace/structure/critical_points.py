@@ -404,8 +404,7 @@ def _points(
 ) -> list[CriticalPoint]:
     """Make records of points (K, 3), gradients (K, 2, 2) and tangents (K, 2, 3) there."""
     finite = np.isfinite(gradient).all(axis=(1, 2))
-    if found is None:
-        finite &= np.abs(gradient).max(axis=(1, 2)) > 0
+    finite &= (np.abs(gradient).max(axis=(1, 2)) > 0) | (found is not None)
     values, vectors = np.linalg.eig(np.where(finite[:, None, None], gradient, np.eye(2)))
     lonlat = None if field.projection is None else field.projection.lonlat(position)
     result = []
@@ -471,8 +470,10 @@ def _resolved(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
     if weak:
         _, error = gradient_and_error(field)
         for n in weak:
-            near = surface_point(field.surface, points[n].index).interpolate(error)
-            points[n] = replace(points[n], kind=_kind(points[n].eigenvalues, error=float(near)))
+            values = points[n].eigenvalues
+            near = float(surface_point(field.surface, points[n].index).interpolate(error))
+            near = max(near, REAL_SHARE * abs(values[0]))
+            points[n] = replace(points[n], kind=_kind(values, error=near))
     if len(points) < 2:
         return points
     size = np.array([field.surface.cell_size[field.surface.node_near(p.index)] for p in points])

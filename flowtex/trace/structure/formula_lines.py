@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.integrate import simpson, solve_ivp
+import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
@@ -101,11 +101,11 @@ def formula_orbit(
     crosses.terminal, crosses.direction = True, 1.0  # type: ignore[attr-defined]
     options: Any = {"method": "LSODA", "rtol": TOLERANCE, "dense_output": True}
     options["atol"] = TOLERANCE * diagonal
-    at = start
+    solve, at = scipy.integrate.solve_ivp, start
     for _ in range(TURNS):
-        most: Any = solve_ivp(rate, (0, ALMOST * period), at, **options)
+        most: Any = solve(rate, (0, ALMOST * period), at, **options)
         begin = most.y[:, -1]
-        rest: Any = solve_ivp(rate, (most.t[-1], 3 * period), begin, events=crosses, **options)
+        rest: Any = solve(rate, (most.t[-1], 3 * period), begin, events=crosses, **options)
         if not len(rest.t_events[0]):
             return None
         period = float(rest.t_events[0][0])
@@ -113,7 +113,7 @@ def formula_orbit(
         is_first = times <= most.t[-1]
         points = np.concatenate([most.sol(times[is_first]).T, rest.sol(times[~is_first]).T])
         divergence = way * np.trace(rates.gradient(points), axis1=1, axis2=2)
-        growth = float(simpson(divergence, x=times))
+        growth = float(scipy.integrate.simpson(divergence, x=times))
         if not abs(growth) > LEAST_GROWTH:
             return None
         moved = float((points[-1] - at) @ section)
