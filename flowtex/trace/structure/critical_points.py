@@ -203,8 +203,11 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
 
     Notes
     -----
-    The velocity is bilinear in the cells of a structured surface and linear in triangles. Regions
-    at rest, and walls where the velocity is zero, contain no critical points.
+    The velocity is bilinear in the cells of a structured surface and linear in triangles. A point
+    is a centre if the real part of its eigenvalues vanishes within the interpolation error. For a
+    field from :func:`flowtex.formula` the points are roots of the formula itself, with its exact
+    gradient; a centre also needs lines that close. Regions at rest, walls and lines where the
+    velocity is zero contain no critical points.
 
     Examples
     --------
