@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -13,6 +14,8 @@ from flowtex.errors import FieldError
 
 #: Colour maps by default: of most values, and of those around zero.
 DEFAULT_CMAP, SIGNED_CMAP = "viridis", "RdBu_r"
+#: Luminance from which black has more contrast than white.
+LIGHT_FROM = 0.18
 #: Entries of a colour map.
 ENTRIES = 256
 #: Colour maps to choose from: even steps of lightness first, those that diverge after them.
@@ -56,6 +59,11 @@ def rgb(colour: Any) -> tuple[float, float, float]:
         )
         raise FieldError(msg) from error
     return red, green, blue
+
+
+def is_light(colour: Sequence[float]) -> bool:
+    """Return whether black has more contrast than white to a colour, (3,) from 0 to 1."""
+    return float(np.power(colour, 2.2) @ (0.2126, 0.7152, 0.0722)) >= LIGHT_FROM
 
 
 def colour_table(cmap: Any | None) -> Bytes:

@@ -103,6 +103,7 @@ class FieldArrays:
     reading: Reading = NOTHING
     #: Share of the flow normal to the surface from which on a notice says so.
     notable_normal: float = 0.5
+    volume_values: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -46,6 +46,8 @@ from flowtex.field.validation import ALL_AT_REST, with_gaps
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
 
+#: Attributes that a field takes from its source as they are.
+KEPT = ("section", "reading", "volume_values")
 #: Attributes that are computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
 
@@ -99,6 +101,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         lists it.
     velocity_unit
         Unit of the velocity of the data, and of :attr:`speed`; empty for length per time.
+    volume_values
+        Values (N,) of scalars in the volume of a slice, at all times: the extremes, and a sample.
+        Colours have their range.
 
     Examples
     --------
@@ -131,6 +136,7 @@ class FlowField(FieldConstructors, FieldQuantities):
     section: SectionAxes | None = None
     reading: Reading = NOTHING
     velocity_unit: str = ""
+    volume_values: Mapping[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -147,7 +153,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         make: Any = cls.from_triangles if hasattr(arrays, "triangles") else cls.from_arrays
         arguments = dict(vars(arrays))
         notable = arguments.pop("notable_normal")
-        kept = {name: arguments.pop(name, None) for name in ("section", "reading")}
+        kept = {k: arguments.pop(k) for k in KEPT if k in arguments}
         field: FlowField = make(**arguments).same_flow(**kept)
         if isinstance(field.velocity, LazySteps) or arrays.projection is not None:
             return field

@@ -22,7 +22,7 @@ from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import look, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
-from flowtex.scene.options import Appearance, FieldOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, accepts_options
 from flowtex.scene.scene import Scene
 from flowtex.textures.images import as_image
 
@@ -62,6 +62,12 @@ class FlowtexComponent:
         *,
         scalar_bar_args: Mapping[str, Any] | None = None,
         reset_camera: bool | None = None,
+        name: str | None = None,
+        label: str | None = None,
+        pickable: bool | None = None,
+        show_edges: bool | None = None,
+        edge_color: Any = None,
+        line_width: float | None = None,
         **options: Any,
     ) -> FlowHandle:
         """Draw the flow on a mesh as a texture.
@@ -76,6 +82,9 @@ class FlowtexComponent:
         reset_camera
             Whether to move the camera so that it shows everything; by default for the first mesh
             only.
+        name, label, pickable, show_edges, edge_color, line_width
+            As for ``plotter.add_mesh``: a flow or mesh of the same name is replaced, and
+            ``plotter.add_legend()`` shows the label. Edges are those of the drawn triangles.
         {options}
 
         Returns
@@ -99,8 +108,24 @@ class FlowtexComponent:
         >>> handle = plotter.flowtex.add(flowtex.examples.delta_wing(), scalars="height")
         >>> plotter.close()
         """
-        scene = Scene.of(mesh, vectors=vectors, scalars=scalars, cmap=cmap, **options)
-        return self.add_scene(scene, scalar_bar_args=scalar_bar_args, reset_camera=reset_camera)
+        options |= {"vectors": vectors, "scalars": scalars, "cmap": cmap}
+        chosen = Options.split("field", "appearance", mesh=mesh, **options)
+        scene = Scene.from_options(mesh, chosen)
+        actor: dict[str, Any] = {
+            "name": name,
+            "pickable": pickable,
+            "label": label,
+            "show_edges": show_edges,
+        }
+        actor |= {"edge_color": edge_color, "line_width": line_width}
+        handle = self.add_scene(
+            scene,
+            scalar_bar_args=scalar_bar_args,
+            reset_camera=reset_camera,
+            **{name: value for name, value in actor.items() if value is not None},
+        )
+        handle.follow_mesh(mesh, chosen.field)
+        return handle
 
     def add_scene(
         self,
@@ -108,10 +133,11 @@ class FlowtexComponent:
         *,
         scalar_bar_args: Mapping[str, Any] | None = None,
         reset_camera: bool | None = None,
+        **actor_options: Any,
     ) -> FlowHandle:
         """Draw a scene; the parameters are those of :meth:`add`."""
         first = not self._plotter.renderer.actors
-        handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args)
+        handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args, **actor_options)
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
             look(self._plotter, scene.whole)
@@ -228,8 +254,7 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
 def _actors(plotter: pv.BasePlotter, shown: FlowHandle) -> Iterator[tuple[str, Any]]:
     """Yield the visible actors of a plotter, except the flow and its legend."""
     flows = {id(handle.actor) for handle in plotter.flowtex}
-    bars, title = dict(plotter.scalar_bars.items()), shown._bar_title
-    bar = None if title is None else bars.get(title)
+    bar = dict(plotter.scalar_bars.items()).get(shown.bar.key)
     for renderer in plotter.renderers:
         for name, actor in renderer.actors.items():
             if actor in (shown.actor, bar) or not actor.GetVisibility():

@@ -4,57 +4,46 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
+from flowtex._util.notices import notify
+from flowtex.errors import FieldError
+from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk.layer import weak_callback
+from flowtex.rendering.vtk.mesh import Ends
 from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.scene.scene import Change, Scene, share_field
+from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
 _count = itertools.count(1)
-#: A scalar bar at the left border of the picture.
-SCALAR_BAR: dict[str, Any] = {
-    "fmt": "%.3g",
-    "n_labels": 3,
-    "vertical": True,  # labels of a level bar would hang over its ends
-    "width": 0.08,
-    "height": 0.28,
-    "position_x": 0.02,
-    "position_y": 0.04,
-    "color": "black",
-    "title_font_size": 16,
-    "label_font_size": 14,
-    "unconstrained_font_size": True,
-}
-#: Arguments by which users set the position or size of a bar.
-BY_HAND = (
-    *("width", "height", "position_x", "position_y", "vertical", "interactive"),
-    *("title_font_size", "label_font_size"),
-)
-#: Arguments by which users set the background of a bar, and the default plate behind its texts:
-#: one behind the whole bar would cover as much as the title is wide.
-BEHIND, PLATE, PLATE_OPACITY = ("fill", "background_color", "color"), (1.0, 1.0, 1.0), 0.8
-#: Height of the text: a share of the view's, within limits in points; a title's is larger.
-TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 34, 10, 14, 1.15
-#: Height of a bar without its title: a share of the view's, and at least this many lines.
-HEIGHT_SHARE, LEAST_LINES = 0.28, 5
-#: Lengths in heights of the text: the width of the colours, and the room around texts.
-THICKNESS, TEXT_PAD = 1.1, 0.4
-#: Points in an inch.
-POINTS = 72
-#: Name of the bars that are arranged.
-BARS_NAME = "flowtex"
+#: Observers of a frame run by falling priority: this one before those that draw it.
+FIRST = 1.0
+
+
+class Source(NamedTuple):
+    """What a flow was read from, how, and the state in which that was."""
+
+    mesh: Any
+    reading: FieldOptions
+    state: tuple[int, ...]
+
+
+def _state(mesh: Any) -> tuple[int, ...]:
+    """Return the time of the last change of meshes, which VTK counts; empty for other data."""
+    meshes = mesh if isinstance(mesh, (list, tuple)) else [mesh]
+    blocks = (block for one in meshes if isinstance(one, pv.DataObject) for _, block in leaves(one))
+    return tuple(block.GetMTime() for block in blocks)
 
 
 class FlowHandle(AppearanceAttributes):
@@ -96,23 +85,23 @@ class FlowHandle(AppearanceAttributes):
         scene: Scene,
         forget: Callable[[FlowHandle], None],
         scalar_bar_args: Mapping[str, Any] | None = None,
+        **actor_options: Any,
     ) -> None:
         self._plotter = plotter
         self._forget = forget
         self.scene = scene
         mesh = surface_mesh(scene.textures)
+        actor_options = {"name": f"flowtex {next(_count)}", **actor_options}
         self.actor = plotter.add_mesh(
             mesh,
-            name=f"flowtex {next(_count)}",
             color=scene.appearance.color,
             show_scalar_bar=False,
             reset_camera=False,
+            **actor_options,
         )
-        use_flow_mapper(self.actor, mesh)
-        self._place = plotter.renderers.active_index
-        self._bar_title: str | None = None
-        self._bar_options = scalar_bar_args or {}
-        self._end_arranging: Callable[[], None] = lambda: None
+        mapper = use_flow_mapper(self.actor, mesh)
+        self._place, self._renderer = plotter.renderers.active_index, plotter.renderer
+        self.bar = FlowBar(plotter, mapper, scalar_bar_args or {})
         self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
@@ -124,6 +113,15 @@ class FlowHandle(AppearanceAttributes):
         self._show_appearance()
         self._shown_time = scene.time
         self._end = scene.observe(self._changed)
+        self._source: Source | None = None
+        drawn: list[tuple[Any, str, Callable[[], None], float]] = [
+            (plotter.renderer, "StartEvent", self._before_frame, FIRST),
+            (plotter.renderer.GetViewProps(), "ModifiedEvent", self._check_actor, 0.0),
+        ]
+        self._observed = [
+            (subject, subject.AddObserver(event, weak_callback(method), priority))
+            for subject, event, method, priority in drawn
+        ]
         self._is_made = True
 
     @property
@@ -226,9 +224,28 @@ class FlowHandle(AppearanceAttributes):
             When the mesh does not contain a flow, or lacks the scalar that colours the surface;
             nothing is changed then.
         """
-        self.show_scene(self.scene.showing(share_field(FieldOptions(**options).field(mesh))))
+        reading = FieldOptions(**options)
+        self.show_scene(self.scene.showing(share_field(reading.field(mesh))))
+        self.follow_mesh(mesh, reading)
 
-    def show_scene(self, scene: Scene) -> None:
+    def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
+        """Read a PyVista mesh again before a frame if it has been changed in place."""
+        self._source = Source(mesh, reading, _state(mesh))
+
+    def _read_changes(self) -> None:
+        """Draw the mesh again if it has changed; a warning says why it cannot be drawn."""
+        if self._source is None or self._source.state == (state := _state(self._source.mesh)):
+            return
+        self._source = source = self._source._replace(state=state)
+        try:
+            field = share_field(source.reading.field(source.mesh))
+            if field is not self.scene.field:
+                self.show_scene(self.scene.showing(field), render=False)
+        except FieldError as error:
+            text = "the mesh has changed and cannot be drawn, so the image shows it as it was"
+            notify(f"{text}: {error}", UserWarning)
+
+    def show_scene(self, scene: Scene, *, render: bool = True) -> None:
         """Show another scene with the same settings; if tracing fails, nothing changes."""
         try:
             textures = scene.textures
@@ -243,10 +260,13 @@ class FlowHandle(AppearanceAttributes):
             self._map.close()
         self._map = self._map_of(scene)
         self._structure.show(scene)
-        self._show_appearance("scalars", "lighting")
+        self._show_appearance("lighting")
+        self._show_colours()
+        self._show_bar()
         scene.follow(old)
         self._end = scene.observe(self._changed)
-        self._draw()
+        if render:
+            self._draw()
 
     def _map_of(self, scene: Scene) -> MapOverlay | None:
         if scene.field.projection is None:
@@ -265,22 +285,34 @@ class FlowHandle(AppearanceAttributes):
         if self._plotter is None:
             return
         plotter, self._plotter = self._plotter, None
+        for subject, tag in self._observed:
+            subject.RemoveObserver(tag)
         self._end()
         self.scene.close()
         if self._map is not None:
             self._map.close()
         self._structure.close()
         self._surface.close()
-        self._remove_bar(plotter)
+        self.bar.remove()
         plotter.remove_actor(self.actor, render=False)
         self._forget(self)
         if render:
             plotter.render()
 
+    def _before_frame(self) -> None:
+        """Follow changes of the mesh, and of others that share the colour bar."""
+        self._read_changes()
+        self._look_at_bar()
+
+    def _check_actor(self) -> None:
+        """Remove the rest when the actor is removed, as by ``plotter.clear_actors()``."""
+        if self._plotter is not None and not self._renderer.HasViewProp(self.actor):
+            self.remove(render=False)
+
     def _changed(self, affects: Change) -> None:
         if self._bar_look != (look := self._settings_of_bar):
             self._bar_look = look
-            self._show_bar_colours()
+            self._look_at_bar(anew=True)
         self._structure.show(self.scene)
         if affects == "uniform":
             self._show_moment()
@@ -325,9 +357,14 @@ class FlowHandle(AppearanceAttributes):
             self._map.show()
         if differs("color"):
             prop.color = new.color
-        if differs("scalars", "cmap", "clim", "log_scale"):
+        if differs("scalars", "cmap", "log_scale"):
+            self.bar.remove()
             self._show_colours()
-        if differs("scalars", "visible", "show_scalar_bar"):
+            self.actor.mapper.scalar_range = self.actor.mapper.ends.limits
+        elif differs("clim"):
+            self._show_colours()
+            self.bar.set_range(new.clim if isinstance(new.clim, tuple) else None)
+        if differs("scalars", "cmap", "clim", "log_scale", "visible", "show_scalar_bar"):
             self._show_bar()
 
     def _show_colours(self) -> None:
@@ -338,56 +375,29 @@ class FlowHandle(AppearanceAttributes):
         table = pv.LookupTable(values=colour_table(appearance.cmap))
         table.nan_color = NO_VALUE_COLOR
         table.log_scale = appearance.log_scale
-        table.scalar_range = mapper.scalar_range = self.scene.scalar_limits
         mapper.lookup_table = table
+        mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name))
         mapper.SelectColorArray(name)
         self._surface.set_scalars(name, lambda field: self.scene.scalar(name, field))
-        self._show_bar_colours()
 
     def _show_bar(self) -> None:
         """Show a legend of the current colours, or none."""
-        plotter, name = self._plotter, self.scene.scalar_name
-        self._remove_bar(plotter)
+        name = self.scene.scalar_name
         if name is None or not self.scene.appearance.has_bar:
+            self.bar.remove()
             return
         title = self.scene.title_of(name)
-        arguments = {"title": title, **SCALAR_BAR, **self._bar_options}
-        renderers = plotter.renderers
-        active = renderers.active_index
-        renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
-        bar_actor = plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **arguments)
-        if bar_actor is not None:  # None if a bar with this title exists
-            self._end_arranging = arrange_with(bar_actor, plotter.renderer, self._bar_options)
-        renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
-        self._bar_title = arguments["title"]
-        self._show_bar_colours()
+        # The name alone is that of PyVista's bars; the speed is no array of theirs.
+        self.bar.show(name if name in self.field.scalars else title, title)
+        self._look_at_bar(anew=True)
+
+    def _look_at_bar(self, *, anew: bool = False) -> None:
+        """Show the mean colours of the picture in the bar, which the texture changes."""
+        self.bar.look(lambda: self.scene.legend_colours, anew=anew)
 
     @property
     def _settings_of_bar(self) -> tuple[float, float, str]:
         return self.settings.strength, self.settings.contrast, self.settings.noise
-
-    def _show_bar_colours(self) -> None:
-        """Show the mean colours of the picture in the bar, which the texture changes."""
-        if self._bar_title is None or self._bar_title not in self._plotter.scalar_bars:
-            return
-        shown = self.actor.mapper.lookup_table
-        table = pv.LookupTable(values=self.scene.legend_colours)
-        table.scalar_range, table.log_scale = self.scene.legend_limits, shown.log_scale
-        bar = self._plotter.scalar_bars[self._bar_title]
-        bar.SetLookupTable(table)
-        below, above = self.scene.beyond
-        table.below_range_color = table.values[0] if below else None
-        table.above_range_color = table.values[-1] if above else None
-        bar.SetDrawBelowRangeSwatch(below)
-        bar.SetDrawAboveRangeSwatch(above)
-        bar.DrawAnnotationsOff()  # marks without a text
-
-    def _remove_bar(self, plotter: Any) -> None:
-        self._end_arranging()
-        self._end_arranging = lambda: None
-        if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
-            plotter.remove_scalar_bar(self._bar_title, render=False)
-        self._bar_title = None
 
     def _draw(self) -> None:
         if self._plotter is not None:
@@ -396,75 +406,3 @@ class FlowHandle(AppearanceAttributes):
     def __repr__(self) -> str:
         state = "removed" if self.closed else f"time {self.time:g}"
         return f"FlowHandle({self.field!r}, {state})"
-
-
-def arrange_with(
-    bar: vtkScalarBarActor, renderer: Any, options: Mapping[str, Any]
-) -> Callable[[], None]:
-    """Place a bar beside the others of a renderer whenever it draws, unless options place it.
-
-    Returns a function that ends this.
-    """
-    if not any(name in options for name in BEHIND):
-        for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-            text.SetBackgroundColor(*PLATE)
-            text.SetBackgroundOpacity(PLATE_OPACITY)
-    if any(name in options for name in BY_HAND):
-        return lambda: None
-    bar.SetObjectName(BARS_NAME)
-    observer = renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
-    return lambda: renderer.RemoveObserver(observer)
-
-
-def _arrange(renderer: Any) -> None:
-    """Place bars from left to right, and in a row above where there is no room."""
-    width, height = renderer.GetSize()
-    dpi = renderer.GetRenderWindow().GetDPI()
-    x = y = row = 0.0
-    for bar in renderer.GetViewProps():
-        if bar.GetObjectName() != BARS_NAME:
-            continue
-        points = min(max(height * TEXT_SHARE * POINTS / dpi, LEAST_TEXT), MOST_TEXT)
-        wide, high, title = _fit(bar, points, (width, height), dpi)
-        line = points * dpi / POINTS
-        gap = TEXT_PAD * line
-        if x and x + wide + 2 * gap > width:
-            x, y, row = 0.0, y + row + gap, 0.0
-        # The lowest label hangs over the end of the bar.
-        bar.SetPosition((x + gap) / width, (y + gap + line / 2) / height)
-        bar.SetWidth(wide / width)
-        bar.SetHeight((high + title) / height)
-        # VTK keeps room for the title in the bar, and yet writes it above.
-        x, row = x + gap + wide, max(row, high + 2 * title + line / 2)
-
-
-def _fit(
-    bar: vtkScalarBarActor, points: float, view: tuple[int, int], dpi: int
-) -> tuple[float, float, float]:
-    """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
-    title, labels = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
-    labels.SetFontSize(round(points))
-    title.SetFontSize(round(TITLE_SHARE * points))
-    em = points * dpi / POINTS
-    pad = round(TEXT_PAD * em)
-    room = view[0] - 6 * pad
-    title_width, title_height = _size(title, bar.GetTitle(), dpi)
-    if title_width > room:
-        title.SetFontSize(max(int(title.GetFontSize() * room / title_width), 1))
-        title_width, title_height = _size(title, bar.GetTitle(), dpi)
-    low, high = bar.GetLookupTable().GetRange()
-    form = bar.GetLabelFormat()
-    texts = [form % v if "%" in form else form.format(v) for v in (low, (low + high) / 2, high)]
-    label_width = max(_size(labels, text, dpi)[0] for text in texts)
-    thick = THICKNESS * em
-    bar_width = max(title_width, thick + label_width + 2 * pad) + 2 * pad
-    bar.SetTextPad(pad)
-    bar.SetBarRatio(thick / bar_width)
-    return bar_width, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), title_height
-
-
-def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:
-    """Return the width and height of a text in pixels."""
-    box = [0, 0, 0, 0]
-    vtkTextRenderer.GetInstance().GetBoundingBox(text, words, box, dpi)
-    return box[1] - box[0] + 1, box[3] - box[2] + 1

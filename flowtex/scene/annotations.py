@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw, ImageFont
 
-from flowtex._util.array_types import Bytes
-from flowtex._util.colours import rgb
+from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.colours import is_light, rgb
 from flowtex.field import FlowField
 from flowtex.field.dates import DAY_S, date_text
 from flowtex.rendering.camera import Camera
@@ -48,8 +48,8 @@ MOST_COVER = 0.125
 SCALE_BAR_WIDTH = 0.2
 #: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
 PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
-#: How opaque a plate is, and the luminance from which black has more contrast than white.
-OPACITY, LIGHT_FROM = 0.8, 0.18
+#: How opaque a plate is.
+OPACITY = 0.8
 #: Digits of the values of a legend: the fewest that distinguish them.
 DIGITS = range(3, 9)
 #: Number from which on the text of one has a power of ten.
@@ -178,8 +178,8 @@ class _Writer:
         self._line = sum(self._font.getmetrics())
         self._thin, closer = self._px(LINE), CLOSER if self.small else 1.0
         self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
-        is_light = float(np.array(rgb(background)) ** 2.2 @ (0.2126, 0.7152, 0.0722)) >= LIGHT_FROM
-        self._plate, self._ink = ("white", "black") if is_light else ("black", "white")
+        light = is_light(rgb(background))
+        self._plate, self._ink = ("white", "black") if light else ("black", "white")
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
         """Yield a plate with one line, with room for the widest of ``room``."""
@@ -359,26 +359,31 @@ def _number_text(value: float, digits: int) -> str:
     return re.sub(r"e(-?)\+?0?", r"e\1", text)
 
 
-def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
-    """Return three or more round values in a range, or its ends, and their shares of it."""
+def round_values(low: float, high: float, *, log_scale: bool, steps: Sequence[float]) -> Floats:
+    """Return three or more round values in a range, or its ends."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
-    scaled = np.log10 if log_scale else np.asarray
     slack = 0.0 if log_scale else BEYOND * (high - low)
     values = np.empty(0)
     for most in (3, 4, 5):
-        even_locator = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+        even_locator = MaxNLocator(most, steps=steps)
         locator = LogLocator(numticks=4) if log_scale else even_locator
         values = np.asarray(locator.tick_values(low, high))
         values = values[(values >= low - slack) & (values <= high + slack)]
         if len(values) >= 3:
             break
-    values = values[:: 1 + len(values) // 6] if len(values) > 1 else np.unique([low, high])
+    return values[:: 1 + len(values) // 6] if len(values) > 1 else np.unique([low, high])
+
+
+def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
+    """Return three or more round values in a range, or its ends, and their shares of it."""
+    values = round_values(low, high, log_scale=log_scale, steps=(1, 2, 2.5, 5, 10))
     texts: list[str] = []
     for digits in DIGITS:
         texts = [_number_text(value, digits) for value in values]
         if len(set(texts)) == len(texts):
             break
+    scaled = np.log10 if log_scale else np.asarray
     ends = scaled([low, high])
     shares = (scaled(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
     return list(zip(map(float, shares), texts, strict=True))

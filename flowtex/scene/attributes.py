@@ -18,6 +18,8 @@ def _attribute(name: str) -> property:
         return getattr(self.scene.appearance, name)
 
     def change(self: AppearanceAttributes, value: Any) -> None:
+        if name == "clim":
+            self.scene.fit_range()
         self.scene.appearance = self.scene.appearance.changed(**{name: value})
 
     return property(get, change, doc=option_text(Appearance, name))

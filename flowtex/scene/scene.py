@@ -90,6 +90,7 @@ class Scene:
         check_structure(field, self.settings)
         self._structure: Structure | None = None
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
+        self._kept: dict[tuple[str, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
         self._sliced = slices is not None
         self._check_colours(self._appearance)
@@ -137,7 +138,9 @@ class Scene:
         options = Options.split("appearance", **{**settings, **changes})
         chosen = {n: v for n, v in vars(options.appearance).items() if n in changes}
         look, image = _look_beside(self, chosen, field), None if "image" in chosen else self.image
-        return Scene(field, options.make_settings(), look, image=image)
+        scene = Scene(field, options.make_settings(), look, image=image)
+        scene._kept = self._kept
+        return scene
 
     @property
     def appearance(self) -> Appearance:
@@ -202,11 +205,7 @@ class Scene:
     @property
     def legend_limits(self) -> tuple[float, float]:
         """The same as a legend shows them: an end that is 0 up to rounding is 0."""
-        low, high = self.scalar_limits
-        if self.appearance.log_scale:
-            return low, high
-        least = ZERO_SHARE * max(abs(low), abs(high))
-        return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
+        return rounded_ends(*self.scalar_limits, log_scale=self.appearance.log_scale)
 
     @property
     def lines(self) -> str:
@@ -324,12 +323,16 @@ class Scene:
         if name is None:
             return 0.0, 1.0
         if chosen == ROBUST or appearance.log_scale:
-            low, high = self.scalar_range(name, robust=chosen == ROBUST)
+            low, high = self._common_range(name, robust=chosen == ROBUST)
         else:
             low, high = self.usual_range(name)
         if (low < 0 < high or name in SIGNED) and is_diverging(appearance.cmap):
             return -max(-low, high), max(-low, high)
         return low, high
+
+    def fit_range(self) -> None:
+        """Colour by the range of the data from now on, unless the appearance has limits."""
+        self._kept = {}
 
     def _check_colours(self, appearance: Appearance) -> None:
         """Raise a FieldError if the scalar does not exist, or has no logarithm."""
@@ -346,7 +349,11 @@ class Scene:
 
     def usual_range(self, name: str) -> tuple[float, float]:
         """Return the default range of colours: all values, or robust if there are outliers."""
-        return usual_ends(self.scalar_range(name), self.scalar_range(name, robust=True))
+        return usual_ends(self._common_range(name), self._common_range(name, robust=True))
+
+    def _common_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
+        """Return the range that scenes before this one had, or that of the data."""
+        return self._kept.get((name, robust)) or self.scalar_range(name, robust=robust)
 
     @property
     def beyond(self) -> tuple[bool, bool]:
@@ -374,8 +381,10 @@ class Scene:
         return widened(ends, self.field, name)
 
     def _range_values(self, name: str) -> Floats:
-        """Values of the valid nodes at all times."""
+        """Values of the valid nodes, or of the volume that they cut, at all times."""
         typical, valid = self.field.typical, self.field.valid
+        if (values := typical.volume_values.get(name)) is not None:
+            return values
         if self.pyramid is None or name in self.field.scalars:
             return np.asarray(np.asarray(steps_of(typical, name))[:, valid])
         return drawn_speeds(typical, self.whole)
@@ -385,7 +394,7 @@ class Scene:
         scene = Scene(self.field)
         scene.settings, scene._appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise, scene._time = self.image, self._noise, self._time
-        scene._sliced, scene._pyramid = self._sliced, self._pyramid
+        scene._sliced, scene._pyramid, scene._kept = self._sliced, self._pyramid, self._kept
         scene._store, scene._textures = self.store, self.textures
         return scene
 
@@ -412,11 +421,15 @@ class Scene:
     def showing(self, field: FlowField, own: dict[str, Any] | None = None) -> Scene:
         """Return a scene of another flow that shares these settings and has this appearance.
 
-        Its time is the nearest one. With ``own`` changes of the appearance, scalars that the flow
-        lacks are replaced by the speed. Raises the errors of the constructor.
+        Its time is the nearest one, and its colours keep their range. With ``own`` changes of the
+        appearance they fit its data, and scalars that the flow lacks are replaced by the speed.
+        Raises the errors of the constructor.
         """
         look = self._appearance if own is None else _look_beside(self, own, field)
         scene = Scene(field, self.settings, look, image=self.image)
+        if own is None:
+            ranges = {(name, robust): ends for (name, robust, _), ends in self._ranges.items()}
+            scene._kept = {**ranges, **self._kept}
         scene._time = min(max(self._time, scene._time), float(field.times[-1]))
         return scene
 
@@ -473,6 +486,12 @@ class Scene:
     def _notify(self, affects: Change) -> None:
         for notice in list(self._notices):
             notice(affects)
+
+
+def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
+    """Return the ends of a legend: one that is 0 up to rounding is 0."""
+    least = 0.0 if log_scale else ZERO_SHARE * max(abs(low), abs(high))
+    return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:
@@ -537,19 +556,20 @@ def share_field(field: FlowField) -> FlowField:
     """
     if has_pyramid(field):
         return field
-    names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
+    texts = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     text = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (*names, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
+    words = (*texts, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
     units = (field.velocity_unit, *field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)
     inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
-    inputs += tuple(field.scalars.values())
+    inputs += (*field.scalars.values(), *field.volume_values.values())
     # Lazy steps are identified by their object, which a field keeps alive.
     lazy_ids = tuple(id(a) for a in inputs if isinstance(a, LazySteps))
     arrays = (a for a in inputs if not isinstance(a, LazySteps))
     kind = (field.has_position is None, field.triangles is None)
-    key = digest(*arrays, words=(words, units, kind, lazy_ids, *field.scalars, field.uncertainty))
+    names = (*field.scalars, field.uncertainty, *field.volume_values)
+    key = digest(*arrays, words=(words, units, kind, lazy_ids, *names))
     return _fields.get(key, lambda: field)
 
 

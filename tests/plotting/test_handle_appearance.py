@@ -129,7 +129,7 @@ def test_another_surface_is_drawn_as_if_it_were_the_first(plotter: Any) -> None:
         handle.set_surface(field)
         fresh: Any = pv.Plotter(off_screen=True, window_size=plotter.window_size)
         fresh.disable_anti_aliasing()
-        fresh.flowtex.add(field)
+        fresh.flowtex.add(field, clim=handle.scene.scalar_limits)
         fresh.camera = plotter.camera.copy()
         np.testing.assert_array_equal(shot(plotter), shot(fresh))
         fresh.close()

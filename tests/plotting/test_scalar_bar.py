@@ -57,7 +57,7 @@ def test_bars_are_inside_and_apart(size: tuple[int, int], names: tuple[str, ...]
 
 
 def test_text_lies_on_a_plate_and_keeps_its_size_on_a_large_view() -> None:
-    shots = [pixels(size, ("speed",))[0] for size in SIZES[1:]]
+    shots = [pixels(size, ("speed",))[0] for size in ((900, 800), (1000, 1000))]
     widths = [(shot.max(axis=-1) > 200).any(axis=0).sum() for shot in shots]
     assert 40 < widths[0] < 120
     assert widths[1] == pytest.approx(widths[0], abs=6)

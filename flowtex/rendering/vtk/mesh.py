@@ -87,12 +87,21 @@ def vertex_attributes(textures: TextureSet) -> dict[str, str]:
     return {name: array for name, array in ATTRIBUTES.items() if array in needed}
 
 
+class Ends(NamedTuple):
+    """The limits of the colours of one actor alone, and the range of its values."""
+
+    limits: tuple[float, float] = (0.0, 1.0)
+    values: tuple[float, float] = (0.0, 1.0)
+
+
 class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
     """PyVista's mapper properties on ``vtkPolyDataMapper``.
 
     PyVista's own mapper hides the polygon mapper inside ``vtkDataSetMapper``, where neither
     vertex attributes nor the event before a draw can be reached.
     """
+
+    ends = Ends()
 
     def __init__(self, dataset: pv.PolyData, theme: Theme | None = None) -> None:
         super().__init__(theme=theme)

@@ -22,7 +22,7 @@ from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.sources.meshes.components import named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.nodes import Masks, Sheet
-from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps
+from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps, times_of
 from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
 from flowtex.sources.meshes.series import (
     aligned,
@@ -32,6 +32,7 @@ from flowtex.sources.meshes.series import (
     ordered_times,
 )
 from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity, thick_axes
+from flowtex.sources.meshes.volume import VolumeValues
 from flowtex.sources.record import Record
 
 #: Greatest ratio of the variances across and along a flat mesh.
@@ -70,9 +71,11 @@ def read_meshes(
             return plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
         return surface_sheet(grid, cut, velocity, record)
 
-    arrays = _stacked(chain([first], steps), velocity, draw, times, record)
+    count = len(mesh) if isinstance(mesh, (list, tuple)) else len(times_of(mesh))
+    volume = VolumeValues(velocity, chosen or cut, count)
+    arrays = _stacked(chain([first], steps), velocity, draw, times, record, volume)
     record.notify()
-    arrays |= {"name": name, "reading": record.reading}
+    arrays |= {"name": name, "reading": record.reading, "volume_values": volume.values()}
     if first.grid.max_cell_dimensionality < 3:
         arrays["notable_normal"] = NOTABLE_SHARE
     if on_grid:
@@ -121,6 +124,7 @@ def _stacked(
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
     record: Record,
+    volume: VolumeValues,
 ) -> dict[str, Any]:
     """Return the arrays of all steps on the nodes of the first."""
     masks, first, reordered = Masks(velocity), next(steps), 0
@@ -129,7 +133,9 @@ def _stacked(
     for step in chain([first], steps):
         check_arrays(step, first, velocity)
         same = aligned(step, first)
-        sheet = draw(masks.masked(same.grid))
+        grid = masks.masked(same.grid)
+        volume.add(grid)
+        sheet = draw(grid)
         start = sheet if start is None else start
         check_nodes(start, sheet, step.label)
         values = sheet.nodes(velocity), _scalars(sheet)

@@ -1,0 +1,109 @@
+"""Values of the arrays of a volume, which give the colours of its slices their range."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex._util.blocks import row_blocks
+from flowtex._util.cache import ByteCache
+from flowtex._util.vectors import dot, norm
+from flowtex.field.validation import MAGNITUDES
+from flowtex.sources.meshes.cuts import Cut, Slice
+from flowtex.sources.meshes.nodes import hidden_nodes, visible_cells
+from flowtex.sources.meshes.planes import Plane
+from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, values_of
+
+#: Values that are kept of an array, of all steps together, and at least of one.
+MOST_VALUES, LEAST_VALUES = 1 << 17, 1 << 10
+#: Distance between sampled values, as a share of their number: it fits no axis of a grid.
+GOLDEN_SHARE = (5**0.5 - 1) / 2
+#: Samples by the states of their arrays, which VTK numbers: a moving slice asks again and again.
+_samples: ByteCache[tuple[object, ...], Floats] = ByteCache(128_000_000)
+
+
+class VolumeValues:
+    """Values of the arrays of a volume over a number of steps: the extremes, and a sample of many.
+
+    ``speed`` is the one in planes such as the ``drawn`` one, and is left out for a contour.
+    """
+
+    def __init__(self, velocity: MeshArray, drawn: Cut | Plane | None, steps: int) -> None:
+        self._velocity, self._drawn = velocity, drawn
+        self._count = max(MOST_VALUES // max(steps, 1), LEAST_VALUES)
+        self._steps: dict[str, list[Floats]] = {}
+
+    def add(self, grid: Any) -> None:
+        """Read a step, unless it is a surface."""
+        if grid.max_cell_dimensionality < 3:
+            return
+        velocity = self._velocity
+        arrays = {velocity.name: velocity}
+        # Arrays of points come first, and have precedence.
+        arrays |= {a.name: a for a in reversed(catalogue(grid)) if a.numeric and a.components <= 3}
+        for name, array in arrays.items():
+            self._keep(name, grid, array)
+        if velocity.components == 3 and isinstance(self._drawn, (Slice, Plane)):
+            self._keep("speed", grid, velocity, self._drawn)
+
+    def values(self) -> dict[str, Floats]:
+        """Return the values of all steps by the names of the arrays."""
+        return {name: np.concatenate(steps) for name, steps in self._steps.items()}
+
+    def _keep(self, name: str, grid: Any, array: MeshArray, drawn: Any = None) -> None:
+        data = (grid.GetPointData(), grid.GetCellData())
+        names = {*BLANKING, *array.parts, array.name, *self._velocity.parts, self._velocity.name}
+        held = [d.GetAbstractArray(n) for d in data for n in sorted(names) if d.HasArray(n)]
+        place: Any = (drawn.axis, grid.GetMTime()) if isinstance(drawn, Plane) else None
+        place = drawn.normal if isinstance(drawn, Slice) else place
+        key = (*(a.GetMTime() for a in held), place, array, self._velocity, self._count)
+        sample = _samples.get(key, lambda: self._sample(grid, array, drawn))
+        self._steps.setdefault(name, []).append(sample)
+
+    def _sample(self, grid: Any, array: MeshArray, drawn: Slice | Plane | None) -> Floats:
+        values, most = values_of(grid, array), np.float64(MAGNITUDES[1])
+        if values.ndim > 1:
+            values = _lengths(values, None if drawn is None else _normals(grid, array, drawn))
+        shown = visible_cells(grid) if array.where == "cells" else ~hidden_nodes(grid)
+        velocity = values_of(grid, self._velocity)
+        if array.where == self._velocity.where and np.isnan(velocity.min(initial=0)):
+            shown &= ~np.isnan(velocity).any(axis=-1)
+        known = values if shown.all() else values[shown]
+        if not (known.min(initial=0) >= -most and known.max(initial=0) <= most):  # or NaN
+            known = known[np.abs(known) <= most]
+        if len(known) <= self._count:
+            return known.astype(float)
+        places = (np.arange(self._count) * GOLDEN_SHARE % 1 * len(known)).astype(int)
+        return np.append(known[places], [known.min(), known.max()]).astype(float)
+
+
+def _normals(grid: Any, array: MeshArray, drawn: Slice | Plane) -> Floats:
+    """Return the normal of parallel planes, (3,), or of the one at each value, (N, 3)."""
+    import pyvista as pv
+
+    if isinstance(drawn, Slice):
+        return np.array(drawn.normal, dtype=float)
+    if not isinstance(grid, pv.StructuredGrid):
+        return np.array(getattr(grid, "direction_matrix", np.eye(3))[:, drawn.axis])
+    places = grid if array.where == "points" else grid.cell_centers()
+    shape = np.array(drawn.dimensions)[::-1] - (array.where == "cells")
+    # A single layer of cells has the sides of one cell.
+    points = np.asarray(places.points).reshape(*shape, 3)
+    axes = [axis for axis in range(3) if axis != 2 - drawn.axis]
+    sides = np.gradient(points, axis=axes)
+    return np.cross(*sides).reshape(-1, 3)
+
+
+def _lengths(vectors: Floats, normals: Floats | None) -> Floats:
+    """Return lengths of vectors (N, 3), or of their parts across normals, one or (N, 3)."""
+    lengths = np.empty(len(vectors))
+    for rows in row_blocks(len(vectors), 1):
+        part = vectors[rows].astype(float)
+        if normals is not None:
+            normal = normals if normals.ndim == 1 else normals[rows].astype(float)
+            with np.errstate(all="ignore"):  # where sides of a cell have no length
+                part -= (dot(part, normal) / dot(normal, normal))[..., None] * normal
+        lengths[rows] = norm(part)
+    return lengths
