@@ -361,11 +361,17 @@ class FlowHandle(AppearanceAttributes):
             self.bar.remove()
             self._show_colours()
             self.actor.mapper.scalar_range = self.actor.mapper.ends.limits
-        elif differs("clim"):
+        elif differs("clim") or self._has_other_limits:
             self._show_colours()
             self.bar.set_range(new.clim if isinstance(new.clim, tuple) else None)
         if differs("scalars", "cmap", "clim", "log_scale", "visible", "show_scalar_bar"):
             self._show_bar()
+
+    @property
+    def _has_other_limits(self) -> bool:
+        """Whether the range of the data has been chosen instead of one that was kept."""
+        limits = self.scene.scalar_limits
+        return self.scene.scalar_name is not None and self.actor.mapper.ends.limits != limits
 
     def _show_colours(self) -> None:
         mapper, name, appearance = self.actor.mapper, self.scene.scalar_name, self.scene.appearance

@@ -76,7 +76,8 @@ def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
 def _read_ends(text: str) -> str | tuple[float, ...]:
     if text == ROBUST:
         return ROBUST
-    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
+    *low_first, high = numbers(1, 2, expected="two numbers, such as 1.5,3, or one")(text)
+    low = low_first[0] if low_first else -high
     if not low < high:
         msg = "two numbers, the lower one first"
         raise UnreadableError(msg)
@@ -280,9 +281,10 @@ class Appearance:
             "okubo_weiss, otherwise viridis."
         ),
     )
-    clim: tuple[float, float] | str | None = _option(
+    clim: tuple[float, float] | float | str | None = _option(
         None,
-        "Values at the ends of the colour map, low and high; by default the range over all times. "
+        "Values at the ends of the colour map, low and high, or ``5`` for -5 and 5; by default the "
+        "range over all times, and in a slice that of its whole volume. "
         "The outermost 2 % of the values at an end are left out if they more than double it; "
         '``"robust"`` always leaves them out. If values lie beyond an end, the legend is pointed '
         "there. If the map diverges, such as coolwarm, and the values have both signs, zero is in "
@@ -343,6 +345,8 @@ class Appearance:
             object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
+        if is_number(self.clim):  # as in PyVista
+            object.__setattr__(self, "clim", (-self.clim, self.clim))
         if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
                 low, high = (float(value) for value in self.clim)
@@ -351,7 +355,7 @@ class Appearance:
             if not (low < high and math.isfinite(low + high)):
                 faults.append(
                     f"clim is {brief(self.clim)}; expected two numbers, (low, high), the lower one "
-                    f'first, or "{ROBUST}"'
+                    f'first, one for (-number, number), or "{ROBUST}"'
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))

@@ -1,0 +1,317 @@
+"""Colour ranges: those of all data behind a view, shared by what has one scalar and one map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import pyvista as pv
+from page_reader import Reader
+
+import flowtex
+from flowtex._util.colours import colour_table
+from flowtex.scene.scene import Scene
+from flowtex.web.export import page_text
+from flowtex.web.view import WebView
+
+pytestmark = [
+    pytest.mark.usefixtures("opengl"),
+    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+]
+#: Colours that are the scalar's alone.
+PLAIN: dict[str, Any] = {"strength": 0.0, "lighting": False, "samples": 1}
+SIZE = (320, 240)
+
+
+def volume(**kind: Any) -> Any:
+    """A box whose scalar p grows away from its middle."""
+    grid: Any = pv.ImageData(dimensions=(21, 17, 11), spacing=(0.2,) * 3, origin=(-2, -1.6, -1))
+    if kind:
+        grid = grid.cast_to_structured_grid()
+    x, y, z = np.asarray(grid.points).T
+    grid["U"] = np.stack([1 - y / 2, x / 2 + 0.3 * np.sin(3 * z), 2 + 0.3 * np.cos(2 * x)], -1)
+    grid["p"] = x * x + y * y + z * z
+    return grid
+
+
+@pytest.fixture
+def window() -> Iterator[Any]:
+    made: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+    made.disable_anti_aliasing()
+    made.enable_parallel_projection()
+    with closing(made):
+        yield made
+
+
+def shot(plotter: Any) -> Any:
+    plotter.render()
+    return np.asarray(plotter.screenshot(return_img=True), dtype=float)
+
+
+def read_back(image: Any, table: Any, limits: tuple[float, float]) -> Any:
+    """The values that a reader takes from colours with a bar."""
+    away = np.abs(image[..., None, :3] - np.asarray(table, float)[:, :3]).sum(axis=-1)
+    share = (np.argmin(away, axis=-1) + 0.5) / len(table)
+    return limits[0] + share * (limits[1] - limits[0])
+
+
+def true_p(plotter: Any, z: float) -> tuple[Any, Any]:
+    """The values of p on a plane across z at the pixels of a plotter, and where they are inside."""
+    camera, (width, height) = plotter.camera, SIZE
+    pixel = 2 * camera.parallel_scale / height
+    x = camera.focal_point[0] + (np.arange(width) - (width - 1) / 2) * pixel
+    y = camera.focal_point[1] - (np.arange(height) - (height - 1) / 2)[:, None] * pixel
+    inside = (np.abs(x) < 1.9) & (np.abs(y) < 1.5) & (x > -1.2)  # right of the bar
+    return x * x + y * y + z * z, inside
+
+
+CUTS = [{"slice": f"z={z}"} for z in (-0.79, 0.11)] + [{"plane": "k=1"}, {"plane": "k=5"}]
+
+
+@pytest.mark.parametrize("structured", [{}, {"structured": True}], ids=str)
+@pytest.mark.parametrize("cut", CUTS, ids=str)
+def test_slice_has_range_of_volume(cut: dict[str, str], structured: dict[str, bool]) -> None:
+    mesh = volume(**structured)
+    scene = Scene.of(mesh, scalars="p", **cut)
+    assert scene.scalar_limits == pytest.approx(mesh.get_data_range("p"))
+    u = np.asarray(mesh["U"])
+    across = np.hypot(u[:, 0], u[:, 1])
+    assert scene.scalar_range("speed") == pytest.approx((across.min(), across.max()))
+    robust = scene.scalar_range("p", robust=True)
+    assert robust == pytest.approx(tuple(np.percentile(mesh["p"], (2, 98))))
+
+
+def test_tilted_slice_has_range_of_speeds_in_its_planes() -> None:
+    mesh = volume()
+    scene = Scene.of(mesh, slice="1,1,0 through 0.2,0,0")
+    u, normal = np.asarray(mesh["U"]), np.array([1, 1, 0]) / np.sqrt(2)
+    speeds = np.linalg.norm(u - (u @ normal)[:, None] * normal, axis=1)
+    assert scene.scalar_limits == pytest.approx((speeds.min(), speeds.max()))
+
+
+def test_hidden_and_missing_values_have_no_part_in_the_range() -> None:
+    mesh = volume()
+    corner = np.argmax(mesh["p"])
+    mesh["U"][corner] = np.nan
+    hidden = np.zeros(mesh.n_points, np.uint8)
+    hidden[np.argsort(mesh["p"])[-8:]] = 2
+    mesh.point_data["vtkGhostType"] = hidden
+    mesh["p"][hidden > 0] = 1e5
+    mesh["p"][0], rest = np.inf, hidden == 0
+    rest[0] = False
+    high = Scene.of(mesh, slice="z=0.1", scalars="p").scalar_limits[1]
+    assert high == pytest.approx(mesh["p"][rest].max())
+
+
+def test_slices_of_a_series_have_range_of_all_steps() -> None:
+    steps = [volume() for _ in range(3)]
+    for n, mesh in enumerate(steps):
+        mesh["p"] *= 1 + n
+    scene = Scene.of(steps, slice="z=0.1", scalars="p")
+    assert scene.scalar_limits == pytest.approx((0, steps[-1].get_data_range("p")[1]))
+
+
+def test_blocks_that_are_cut_together_have_one_range() -> None:
+    left, right = volume(), volume()
+    right.origin = (2, -1.6, -1)
+    right["p"] += 10
+    scene = Scene.of(pv.MultiBlock([left, right]), slice="z=0.5", scalars="p")
+    ends = left.get_data_range("p")[0], right.get_data_range("p")[1]
+    assert scene.scalar_limits == pytest.approx(ends)
+
+
+def test_large_volume_has_exact_extremes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.sources.meshes.volume.MOST_VALUES", 2000)
+    mesh = volume()
+    scene = Scene.of(mesh, slice="z=0.1", scalars="p")
+    assert scene.scalar_range("p") == pytest.approx(mesh.get_data_range("p"))
+    exact = np.percentile(mesh["p"], (2, 98))
+    robust = scene.scalar_range("p", robust=True)
+    assert robust == pytest.approx(tuple(exact), abs=0.02 * np.ptp(exact))
+
+
+def test_moving_slice_keeps_its_colours(window: Any) -> None:
+    mesh = volume()
+    handle = window.flowtex.add(mesh, slice="z=0", scalars="p", **PLAIN)
+    for z in (0.0, 0.5, 0.9):
+        handle.set_surface(mesh, slice=f"z={z}")
+        image, (true, inside) = shot(window), true_p(window, z)
+        bar = window.scalar_bars["p"].GetLookupTable()
+        assert bar.GetRange() == pytest.approx(mesh.get_data_range("p"))
+        values = read_back(image, bar.values, bar.GetRange())
+        assert np.abs(values - true)[inside].max() < 0.02 * np.ptp(bar.GetRange())
+
+
+def test_surfaces_without_a_volume_keep_the_range_of_the_first(window: Any) -> None:
+    cuts = [volume().slice("z", origin=(0, 0, z)) for z in (0.1, 0.9)]
+    handle = window.flowtex.add(cuts[0], scalars="p", **PLAIN)
+    first = handle.scene.scalar_limits
+    handle.set_surface(cuts[1])
+    assert handle.actor.mapper.scalar_range == pytest.approx(cuts[0].get_data_range("p"))
+    assert handle.scene.scalar_limits == first
+    assert handle.scene.beyond == (False, True)
+    handle.clim = None
+    assert handle.actor.mapper.scalar_range == pytest.approx(cuts[1].get_data_range("p"))
+
+
+def test_front_ends_have_one_range() -> None:
+    mesh, options = volume(), {"slice": "z=0.9", "scalars": "p"}
+    low, high = mesh.get_data_range("p")
+    view = WebView(Scene.of(mesh, **options))
+    page: Any = Reader(page_text([view])).header()
+    widget = flowtex.FlowWidget(mesh, **options)
+    for header in (page, widget._header):
+        colours: Any = header["scalars"]
+        assert (colours["low"], colours["high"]) == pytest.approx((low, high))
+    widget.close()
+    figure, ax = plt.subplots()
+    norm = flowtex.axes(ax, mesh, **options).norm
+    assert (norm.vmin, norm.vmax) == pytest.approx((low, high))
+    plt.close(figure)
+    image = flowtex.render(mesh, size=(64, 64), **options, **PLAIN)
+    middle = read_back(image[31:33, 31:33].astype(float), colour_table("viridis"), (low, high))
+    assert middle == pytest.approx(0.81, abs=0.02 * high)
+
+
+def pair() -> tuple[Any, Any]:
+    """Two slices of the box, whose ranges of p overlap."""
+    return volume().slice("z", origin=(0, 0, -0.9)), volume().slice("z", origin=(0, 0, 0.1))
+
+
+@pytest.mark.parametrize("kinds", ["ff", "fm", "mf", "mff"])
+def test_flows_and_meshes_share_a_range_as_pyvista_meshes_do(window: Any, kinds: str) -> None:
+    meshes = (*pair(), volume().slice("x"))[: len(kinds)]
+    plain: Any = pv.Plotter(off_screen=True)
+    actors, expected = [], [plain.add_mesh(mesh, scalars="p") for mesh in meshes]
+    for kind, mesh in zip(kinds, meshes, strict=True):
+        add = window.flowtex.add if kind == "f" else window.add_mesh
+        actors.append(add(mesh, scalars="p", **(PLAIN if kind == "f" else {})))
+    shot(window)
+    assert list(window.scalar_bars.keys()) == ["p"]
+    assert window.scalar_bars["p"].GetLookupTable().GetRange() == expected[0].mapper.scalar_range
+    for actor, one in zip(actors, expected, strict=True):
+        mapper = getattr(actor, "actor", actor).mapper
+        assert mapper.scalar_range == one.mapper.scalar_range
+    plain.close()
+
+
+def test_colours_of_two_flows_are_those_of_their_bar(window: Any) -> None:
+    meshes = pair()
+    handles = [window.flowtex.add(mesh, scalars="p", **PLAIN) for mesh in meshes]
+    for shown, hidden, z in ((*handles, -0.9), (*handles[::-1], 0.1)):
+        shown.actor.visibility, hidden.actor.visibility = True, False
+        image, (true, inside) = shot(window), true_p(window, z)
+        bar = window.scalar_bars["p"].GetLookupTable()
+        values = read_back(image, bar.values, bar.GetRange())
+        assert np.abs(values - true)[inside].max() < 0.02 * np.ptp(bar.GetRange())
+
+
+def test_another_colour_map_has_its_own_bar_and_range(window: Any) -> None:
+    first, second = (window.flowtex.add(mesh, scalars="p", cmap="magma") for mesh in pair())
+    common = first.actor.mapper.scalar_range
+    second.cmap = "viridis"
+    shot(window)
+    bars = window.scalar_bars
+    assert [bar.GetTitle() for bar in bars.values()] == ["p", "p"]
+    ranges = [bar.GetLookupTable().GetRange() for bar in bars.values()]
+    assert ranges[0] == common
+    assert ranges[1] == second.actor.mapper.scalar_range == pair()[1].get_data_range("p")
+    second.cmap = "magma"
+    assert second.actor.mapper.scalar_range == common and len(bars) == 1
+    mesh = window.add_mesh(pair()[1], scalars="p", cmap="cividis")
+    shot(window)
+    tables = [bar.GetLookupTable().values for bar in bars.values()]
+    assert len(bars) == 2
+    np.testing.assert_array_equal(tables[0], mesh.mapper.lookup_table.values)
+    assert np.abs(tables[1].astype(int) - colour_table("magma")).max() < 60
+
+
+def test_limits_of_one_flow_are_those_of_its_bar(window: Any) -> None:
+    first, second = (window.flowtex.add(mesh, scalars="p") for mesh in pair())
+    common = first.actor.mapper.scalar_range
+    for clim, expected in ((2.0, (-2, 2)), ([1, 3], (1, 3)), (np.array([0, 2]), (0, 2))):
+        second.clim = clim
+        shot(window)
+        assert second.clim == expected
+        assert first.actor.mapper.scalar_range == second.actor.mapper.scalar_range == expected
+        assert window.scalar_bars["p"].GetLookupTable().GetRange() == expected
+    second.clim = None
+    assert first.actor.mapper.scalar_range == common
+    window.update_scalar_bar_range((0, 4), "p")
+    shot(window)
+    assert window.scalar_bars["p"].GetLookupTable().GetRange() == (0, 4)
+
+
+def test_a_flow_that_leaves_its_bar_leaves_it_to_the_others(window: Any) -> None:
+    first, second = (window.flowtex.add(mesh, scalars="p") for mesh in pair())
+    common = first.actor.mapper.scalar_range
+    first.scalars = "speed"
+    assert list(window.scalar_bars.keys()) == ["p", "speed in the surface"]
+    first.remove()
+    shot(window)
+    assert list(window.scalar_bars.keys()) == ["p"]
+    assert window.scalar_bars["p"].GetLookupTable().GetRange() == common
+    second.show_scalar_bar = False
+    assert not window.scalar_bars
+
+
+def test_subplots_have_their_own_bars_and_ranges() -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=SIZE, shape=(1, 2))
+    with closing(made):
+        for column, mesh in enumerate(pair()):
+            made.subplot(0, column)
+            handle = made.flowtex.add(mesh, scalars="p")
+            assert handle.actor.mapper.scalar_range == mesh.get_data_range("p")
+        shot(made)
+        for n, bar in enumerate(made.scalar_bars.values()):
+            assert [bool(r.HasViewProp(bar)) for r in made.renderers] == [n == 0, n == 1]
+            assert bar.GetLookupTable().GetRange() == pair()[n].get_data_range("p")
+
+
+REMOVALS = {
+    "remove_actor": lambda plotter, actor: plotter.remove_actor(actor),
+    "name": lambda plotter, actor: plotter.remove_actor("wing"),
+    "clear_actors": lambda plotter, actor: plotter.clear_actors(),
+    "clear": lambda plotter, actor: plotter.clear(),
+}
+
+
+@pytest.mark.parametrize("how", REMOVALS)
+def test_removed_actor_takes_bar_and_arrows_with_it(window: Any, how: str) -> None:
+    handle = window.flowtex.add(volume(), slice="z", arrows=20, nullclines=True, name="wing")
+    shot(window)
+    assert window.renderer.GetViewProps().GetNumberOfItems() > 3
+    REMOVALS[how](window, handle.actor)
+    assert handle.closed and not len(window.flowtex) and not window.scalar_bars
+    assert window.renderer.GetViewProps().GetNumberOfItems() == 0
+
+
+def test_a_flow_of_the_same_name_is_replaced(window: Any) -> None:
+    old = window.flowtex.add(volume(), slice="z", name="cut", label="below")
+    new = window.flowtex.add(volume(), slice="x", name="cut", label="across", pickable=False)
+    assert old.closed and list(window.flowtex) == [new]
+    assert window.renderer.actors["cut"] is new.actor and not new.actor.pickable
+    assert window.add_legend().GetNumberOfEntries() == 1
+    edged = window.flowtex.add(volume(), slice="z", show_edges=True, edge_color="red", line_width=3)
+    prop = edged.actor.prop
+    assert (prop.show_edges, prop.edge_color, prop.line_width) == (True, "red", 3)
+
+
+@pytest.mark.parametrize("what", ["U", "p", "points"])
+def test_mesh_that_is_changed_in_place_is_drawn_again(window: Any, what: str) -> None:
+    mesh = volume(structured=True)
+    window.flowtex.add(mesh, slice="z=0.1", scalars="p")
+    before = shot(window)
+    changed = mesh.points if what == "points" else mesh[what]
+    saved = np.array(changed)
+    changed[:] = saved[:, [1, 0, 2]] if what == "U" else 0.7 * saved
+    assert np.abs(shot(window) - before).mean() > 2
+    changed[:] = saved
+    np.testing.assert_array_equal(shot(window), before)
+    mesh["U"][:] = np.nan
+    with pytest.warns(UserWarning, match="the mesh has changed and cannot be drawn, so the image"):
+        window.render()
