@@ -18,6 +18,8 @@ DEFAULT_CMAP, SIGNED_CMAP = "viridis", "RdBu_r"
 LIGHT_FROM = 0.18
 #: Entries of a colour map.
 ENTRIES = 256
+#: Share of the larger end of a range, or of the range, below which a difference is rounding.
+ZERO_SHARE = 1e-5
 #: Colour maps to choose from: even steps of lightness first, those that diverge after them.
 CMAPS = (
     *("viridis", "cividis", "magma", "inferno", "plasma", "gray", "Blues_r", "YlGnBu_r", "turbo"),
@@ -120,6 +122,12 @@ def colour_shares(values: AnyArray, low: float, high: float, *, log_scale: bool 
         numbers = np.log(np.maximum(numbers, low))
         low, high = np.log([low, high])
     return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))
+
+
+def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
+    """Return the ends of a legend: one that is 0 up to rounding is 0."""
+    least = 0.0 if log_scale else ZERO_SHARE * max(abs(low), abs(high))
+    return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
 
 def _resampled(colours: AnyArray) -> Bytes:

@@ -16,10 +16,9 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.array_types import Bytes
-from flowtex._util.colours import is_light
-from flowtex.scene.annotations import OPACITY, round_values
+from flowtex._util.colours import ZERO_SHARE, is_light, rounded_ends
 from flowtex.rendering.vtk.mesh import Ends, FlowMapper
-from flowtex.scene.scene import ZERO_SHARE, rounded_ends
+from flowtex.scene.annotations import OPACITY, round_values
 
 #: A bar at the left border of the window, as tall as those of PyVista.
 SCALAR_BAR: dict[str, Any] = {

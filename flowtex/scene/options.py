@@ -76,8 +76,7 @@ def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
 def _read_ends(text: str) -> str | tuple[float, ...]:
     if text == ROBUST:
         return ROBUST
-    *low_first, high = numbers(1, 2, expected="two numbers, such as 1.5,3, or one")(text)
-    low = low_first[0] if low_first else -high
+    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
     if not low < high:
         msg = "two numbers, the lower one first"
         raise UnreadableError(msg)
@@ -281,7 +280,7 @@ class Appearance:
             "okubo_weiss, otherwise viridis."
         ),
     )
-    clim: tuple[float, float] | float | str | None = _option(
+    clim: Any = _option(
         None,
         "Values at the ends of the colour map, low and high, or ``5`` for -5 and 5; by default the "
         "range over all times, and in a slice that of its whole volume. "
@@ -345,17 +344,16 @@ class Appearance:
             object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
-        if is_number(self.clim):  # as in PyVista
-            object.__setattr__(self, "clim", (-self.clim, self.clim))
-        if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
+        clim = (-self.clim, self.clim) if is_number(self.clim) else self.clim  # as in PyVista
+        if clim is not None and not (isinstance(clim, str) and clim == ROBUST):
             try:
-                low, high = (float(value) for value in self.clim)
+                low, high = (float(value) for value in clim)
             except (TypeError, ValueError, OverflowError):
                 low = high = math.nan
             if not (low < high and math.isfinite(low + high)):
                 faults.append(
                     f"clim is {brief(self.clim)}; expected two numbers, (low, high), the lower one "
-                    f'first, one for (-number, number), or "{ROBUST}"'
+                    f'first, or "{ROBUST}"'
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))

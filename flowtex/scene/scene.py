@@ -16,7 +16,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
-from flowtex._util.colours import colour_table, is_diverging
+from flowtex._util.colours import ZERO_SHARE, colour_table, is_diverging, rounded_ends
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -53,9 +53,6 @@ Notice = Callable[[Change], None]
 
 #: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
 SETTINGS_IN_TEXTURES = {"seed": ("texture",), "tiles": (), "resolution": ("texture", "image")}
-
-#: Share of the larger end of a range, or of the range, below which a difference is rounding.
-ZERO_SHARE = 1e-5
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
@@ -486,12 +483,6 @@ class Scene:
     def _notify(self, affects: Change) -> None:
         for notice in list(self._notices):
             notice(affects)
-
-
-def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
-    """Return the ends of a legend: one that is 0 up to rounding is 0."""
-    least = 0.0 if log_scale else ZERO_SHARE * max(abs(low), abs(high))
-    return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:

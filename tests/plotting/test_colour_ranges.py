@@ -24,7 +24,7 @@ pytestmark = [
 ]
 #: Colours that are the scalar's alone.
 PLAIN: dict[str, Any] = {"strength": 0.0, "lighting": False, "samples": 1}
-SIZE = (320, 240)
+SIZE = [320, 240]
 
 
 def volume(**kind: Any) -> Any:
@@ -159,7 +159,7 @@ def test_surfaces_without_a_volume_keep_the_range_of_the_first(window: Any) -> N
 
 
 def test_front_ends_have_one_range() -> None:
-    mesh, options = volume(), {"slice": "z=0.9", "scalars": "p"}
+    mesh, options = volume(), dict[str, Any](slice="z=0.9", scalars="p")
     low, high = mesh.get_data_range("p")
     view = WebView(Scene.of(mesh, **options))
     page: Any = Reader(page_text([view])).header()

@@ -60,7 +60,7 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ({"cmap": 3}, r"^the colour map 3 does not exist; expected a name"),
         ({"color": "greyy"}, r"greyy"),
         ({"axes": "bar"}, r"^axes is 'bar'; expected 'ticks', 'scale', 'none', or None$"),
-        ({"opacity": -1, "clim": 3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is 3;"),
+        ({"opacity": -1, "clim": -3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is -3;"),
     ],
 )
 def test_what_is_unknown_or_wrong_is_refused(values: dict[str, Any], text: str) -> None:
