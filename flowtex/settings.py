@@ -191,7 +191,7 @@ class Settings:
     Raises
     ------
     SettingsError
-        When a value is out of range, or no setting has this name.
+        If a value is out of range, or a name that does not exist is set.
 
     Examples
     --------

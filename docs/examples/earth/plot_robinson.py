@@ -1,6 +1,6 @@
 """
-All of the Earth on a map
-=========================
+World map (Robinson)
+====================
 
 ``projection`` accepts names such as ``robinson``, ``mercator`` and ``lambert``, and PROJ strings.
 The velocity is projected as well, so a streak on the map is the projected path on the Earth.

@@ -1,8 +1,8 @@
 """
-Optical flow between two pictures
-=================================
+Optical flow
+============
 
-How a picture moves to the next one, by the method of Lucas and Kanade: around each place, the
+How an image moves to the next one, by the method of Lucas and Kanade: around each place, the
 velocity that best explains the change by the slopes. Here clouds turn around an eye. Where the
 picture has no slope, as in the clear sky at the right, its motion is not known: streaks are
 shorter and fainter.

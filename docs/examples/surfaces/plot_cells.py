@@ -1,8 +1,8 @@
 """
-Cells that develop
-==================
+RNA velocity
+============
 
-RNA velocity: each cell of a sample lies at a point of a plane, and its velocity leads to the cells
+Each cell of a sample lies at a point of a plane, and its velocity leads to the cells
 that it becomes. The points are joined by triangles; the flow parts where a cell type decides.
 """
 
