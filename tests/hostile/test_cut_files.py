@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -166,10 +165,6 @@ FORMATS: dict[str, Callable[[Path], None]] = {
     "offset.nc": dataset("NETCDF3_64BIT_OFFSET"),
     "cdf5.nc": dataset("NETCDF3_64BIT_DATA"),
     "four.nc": dataset("NETCDF4"),
-    "text.ply": with_vectors(binary=False),
-    "binary.ply": with_vectors(binary=True),
-    "text.stl": with_vectors(binary=False),
-    "binary.stl": with_vectors(binary=True),
     "wind.grib": grib,
     "wind.json": wind_map,
     "wing.xyz": plot3d,
@@ -180,7 +175,7 @@ FORMATS: dict[str, Callable[[Path], None]] = {
     "flow.foam": write_foam,
 }
 #: Formats of text that ends anywhere: a number of which digits are missing is a number.
-FREE_TEXT = ("text.vtk", "cells.vtk", "polygons.vtk", "mesh.obj", "text.ply")
+FREE_TEXT = ("text.vtk", "cells.vtk", "polygons.vtk", "mesh.obj")
 #: Formats without a count of all that they have: at the end of an entry they look whole.
 NO_COUNTS = ("mesh.obj", "flow.case")
 
@@ -283,17 +278,6 @@ def test_a_file_that_is_cut_is_refused_or_whole(
         if not result.startswith("error: ") and result != truths[name]:
             wrong.append((name, place, len(data), data[-40:]))
     assert not [case for case in wrong if case[0] not in NO_COUNTS]
-
-
-@pytest.mark.parametrize("words", [1, 2, 3, 4])
-def test_a_last_line_that_is_cut_is_refused(
-    files: Whole, read: Callable[[Path], str], tmp_path: Path, words: int
-) -> None:
-    whole = files["text.ply"]["text.ply"].rstrip()
-    for _ in range(words):
-        whole = whole[: re.search(rb"\s+\S+$", whole).start()]  # type: ignore[union-attr]
-    result = read(lay(tmp_path, files, "text.ply", "text.ply", whole + b" "))
-    assert result.startswith("error: ") and "element face" in result
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

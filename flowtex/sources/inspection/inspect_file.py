@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
@@ -10,7 +9,6 @@ from typing import BinaryIO
 from flowtex.errors import FieldError
 from flowtex.sources.inspection import grib, netcdf, vtk_legacy, vtk_xml
 from flowtex.sources.inspection.others import check_other
-from flowtex.sources.inspection.surfaces import check_ply, check_stl
 from flowtex.sources.inspection.zarr_folder import DOCUMENTS, check_zarr
 
 #: Bytes that identify most files.
@@ -18,12 +16,6 @@ HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
 #: Most files of a series or of several blocks that are inspected.
 MOST_MEMBERS = 100_000
-#: Checks by suffix, whatever the content, as the reader is chosen by the suffix.
-BY_SUFFIX: dict[str, Callable[[Path], None]] = {
-    ".ply": check_ply,
-    ".stl": check_stl,
-    ".vtk": vtk_legacy.check_vtk_legacy,
-}
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
@@ -71,8 +63,8 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         raise FieldError(msg)
     if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         grib.check_grib(path)
-    if suffix in BY_SUFFIX:
-        BY_SUFFIX[suffix](path)
+    if suffix == ".vtk":
+        vtk_legacy.check_vtk_legacy(path)
     is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
     return tuple(vtk_xml.check_vtk_xml(path)) if is_xml else ()
 
