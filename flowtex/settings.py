@@ -123,10 +123,10 @@ class Setting:
     def condition(self) -> str:
         """Condition under which the setting has an effect, as a sentence; empty if always."""
         needs = [
-            f"{TABLE[name].label} is {'not ' if sign == '!=' else ''}{TABLE[name].format(value)}"
+            f"{TABLE[name].label} {'≠' if sign == '!=' else '='} {TABLE[name].format(value)}"
             for name, sign, value in NEEDS.get(self.name, ())
         ]
-        return f"Only where {' or '.join(needs)}." if needs else ""
+        return f"Requires {' or '.join(needs)}." if needs else ""
 
     @property
     def control(self) -> Control:

@@ -62,8 +62,9 @@ def code_blocks(page: Path) -> list[Block]:
 
 
 def blocks(page: Path) -> list[str]:
-    """Python blocks of a page."""
-    return [block.code for block in code_blocks(page) if block.language == "python"]
+    """Python blocks of a page, also those whose result the site shows."""
+    shown = [b.code for b in code_blocks(page) if b.language in ("python", "{live}")]
+    return [re.sub(r"^:.*\n", "", code, flags=re.MULTILINE) for code in shown]
 
 
 def fewer(mesh: Any) -> Any:
@@ -191,6 +192,7 @@ def test_the_blocks_of_a_page_run(
     for draws in (flowtex.render, flowtex.movie):
         defaults = {**(draws.__kwdefaults__ or {}), "size": (160, 120)}
         monkeypatch.setattr(draws, "__kwdefaults__", defaults)
+    monkeypatch.setattr(flowtex, "show", flowtex.render, raising=False)
     monkeypatch.setitem(flowtex.formula.__kwdefaults__ or {}, "resolution", 97)
     for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):
         made = partial(getattr(flowtex.examples, name), shape=shape)

@@ -34,7 +34,7 @@ const getContext = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
   return kind === "webgl2" ? null : getContext.call(this, kind, ...more);
 };"""
-#: Has the browser draw, also on a processor, as after a choice of *Drawn by*.
+#: Has the browser draw, also on a processor, as after a choice of *Renderer*.
 CHOSEN = """
 try { sessionStorage["flowtex painter"] ??= "browser"; } catch { /* a page of no origin */ }"""
 

@@ -18,7 +18,7 @@ const SLIDERS: [name: string, label: string, low: number, high: number, step: nu
   ["samples", "Samples, K", 1, 49, 2],
   ["spacing", "Spacing, Δt", 0.1, 3, 0.1],
   ["grain", "Grain, pixels", 2, 24, 1],
-  ["seed", "Another noise", 0, 20, 1],
+  ["seed", "Noise seed", 0, 20, 1],
   [ZOOM, "Zoom", 0, 12, 0.25],
 ];
 const KERNELS = { hann: "smooth", box: "even", ramp: "falling" };

@@ -2242,7 +2242,7 @@ total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{let
 fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??at.position,weight:weight/total(weights2),noise:value,
 grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*sample.noise));return{samples,middle:back.length,
 level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
-g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
+g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Noise seed",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
 hann:"smooth",box:"even",ramp:"falling"},ROW2=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"\
 svg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW2}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(
 "aria-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG4,"rect"),shape2={x:at+

@@ -211,7 +211,7 @@ def test_a_broken_file_is_told(page: Page) -> None:
 
 
 def test_a_file_is_sent_and_shown(page: Page, folder: Path, tmp_path: Path) -> None:
-    chosen = page.get_by_label("A file of yours")
+    chosen = page.get_by_label("Open file", exact=True)
     chosen.set_input_files(folder / "series.pvd")
     page.get_by_text(re.compile("series.pvd: this format cannot be uploaded")).wait_for()
     page.get_by_role("button", name="Close").click()
@@ -413,7 +413,7 @@ def test_a_picture_is_saved_at_any_size(page: Page, tmp_path: Path) -> None:
     page.get_by_label("Width in pixels").fill("600")
     page.get_by_label("Height in pixels").fill("150")
     page.get_by_label("Height in pixels").press("Enter")
-    page.get_by_text("Make it").click()
+    page.get_by_role("button", name="Export", exact=True).click()
     link = page.get_by_text(re.compile(r"Save .*\.png"))
     link.wait_for()
     with page.expect_download() as download:

@@ -63,8 +63,8 @@ export const upload = {
     const choose = { ref: input, type: "file", accept: props.accept, onChange: change, hidden: true };
     return () =>
       h("div", { class: "flowtex-upload" }, [
-        h("input", { ...choose, "aria-label": "A file of yours" }),
-        h("button", { class: "flowtex-link", onClick: () => input.value?.click() }, "Open a file of yours"),
+        h("input", { ...choose, "aria-label": "Open file" }),
+        h("button", { class: "flowtex-link", onClick: () => input.value?.click() }, "Open file…"),
         h("div", { class: "flowtex-drop", hidden: !isOver.value }, `Drop it here: ${props.accept}`),
       ]);
   },

@@ -78,8 +78,8 @@ event)&&(event.preventDefault(),take(event.dataTransfer?.files))};onMounted(()=>
 addEventListener("dragover",over,options),window.addEventListener("dragleave",leave,options),window.addEventListener("dr\
 op",drop,options)}),onBeforeUnmount(()=>ended.abort());let change=()=>{take(input.value?.files).then(()=>input.value&&(input.
 value.value=""))},choose={ref:input,type:"file",accept:props.accept,onChange:change,hidden:!0};return()=>h("div",{class:"\
-flowtex-upload"},[h("input",{...choose,"aria-label":"A file of yours"}),h("button",{class:"flowtex-link",onClick:()=>input.
-value?.click()},"Open a file of yours"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
+flowtex-upload"},[h("input",{...choose,"aria-label":"Open file"}),h("button",{class:"flowtex-link",onClick:()=>input.value?.
+click()},"Open file…"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
 {flowtex_page:{install(app){for(let component of[browser,hints,keys,upload])app.component(component.name,component);Object.
 assign(app.config.globalProperties,{flowtex_address:linked,flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
