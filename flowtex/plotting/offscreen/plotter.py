@@ -281,8 +281,8 @@ def render(
         Time in the animation of a steady flow, in seconds (see the setting ``motion``).
     supersampling
         Factor by which the picture is drawn larger along each side and then averaged, 1 to 8. A
-        factor of 2 takes four times as long and smooths details finer than a pixel. Grains keep
-        their size.
+        factor of 2 takes up to three times as long and smooths details finer than a pixel. Grains
+        keep their size.
     margin
         Share of the picture that stays empty at each side of the whole surface, from 0 to less than
         0.5. :func:`flowtex.extent` returns the rectangle that a flat picture shows.
