@@ -83,6 +83,10 @@ def test_slice_has_range_of_volume(cut: dict[str, str], structured: dict[str, bo
     assert scene.scalar_range("speed") == pytest.approx((across.min(), across.max()))
     robust = scene.scalar_range("p", robust=True)
     assert robust == pytest.approx(tuple(np.percentile(mesh["p"], (2, 98))))
+    values = scene.field.volume_values
+    lengths = np.linalg.norm(u, axis=1)
+    assert (values["U"].min(), values["U"].max()) == pytest.approx((lengths.min(), lengths.max()))
+    assert (values["U_z"].min(), values["U_z"].max()) == (u[:, 2].min(), u[:, 2].max())
 
 
 def test_tilted_slice_has_range_of_speeds_in_its_planes() -> None:

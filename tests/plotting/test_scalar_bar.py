@@ -14,6 +14,7 @@ from flowtex import FlowField
 pytestmark = pytest.mark.usefixtures("opengl")
 
 LONG = "a rather long name of a pressure"
+TEXTS = ["GetTitleTextProperty", "GetLabelTextProperty"]
 SIZES = [(300, 200), (640, 400), (1600, 1000)]
 
 
@@ -95,3 +96,63 @@ def test_one_title_has_one_bar() -> None:
     assert list(made.scalar_bars.keys()) == ["height"]
     made.close()
     assert flowtex.render(sheet(), size=(64, 48), samples=1, show_scalar_bar=True).std() > 0
+
+
+def test_bar_is_as_tall_as_that_of_pyvista() -> None:
+    heights = []
+    for add in ("add_mesh", "flowtex.add"):
+        made: Any = pv.Plotter(off_screen=True, window_size=[640, 480])
+        mesh: Any = pv.Plane(i_resolution=9, j_resolution=9)
+        mesh["U"], mesh["p"] = np.tile([1.0, 0, 0], (mesh.n_points, 1)), mesh.points[:, 0]
+        look: Any = {"scalars": "p", "cmap": ["red", "red"], "opacity": 0.0}
+        if add == "add_mesh":
+            made.add_mesh(mesh, scalar_bar_args={"vertical": True}, **look)
+        else:
+            made.flowtex.add(mesh, **{**look, "cmap": np.array([[1.0, 0, 0]])}, strength=0.0)
+        shot = made.screenshot(return_img=True)
+        heights.append((shot == [255, 0, 0]).all(axis=-1).any(axis=1).sum())
+        made.close()
+    assert heights[0] > 150
+    assert heights[1] == pytest.approx(heights[0], rel=0.1)
+
+
+@pytest.mark.parametrize("limits", [(0.0, 7.25), (-3e-7, 1.3e-6), (1e5, 3.7e5), (99.2, 101.1)])
+def test_labels_are_multiples_of_one_two_or_five(limits: tuple[float, float]) -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[640, 480])
+    made.flowtex.add(sheet(), scalars="height", clim=limits)
+    made.screenshot(return_img=True)
+    bar = made.scalar_bars["height"]
+    assert bar.GetUseCustomLabels()
+    values = pv.convert_array(bar.GetCustomLabels())
+    made.close()
+    step = float(np.diff(values).mean())
+    assert 3 <= len(values) <= 6 and limits[0] <= values[0] and values[-1] <= limits[1]
+    assert f"{step:.6e}"[0] in "125" and f"{step:.6e}"[1:8] == ".000000"
+    np.testing.assert_allclose(values / step, np.rint(values / step), atol=1e-6)
+
+
+def test_number_and_format_of_labels_can_be_chosen() -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[640, 480])
+    made.flowtex.add(sheet(), scalar_bar_args={"n_labels": 7, "fmt": "%.1f"})
+    made.screenshot(return_img=True)
+    bar = made.scalar_bars["speed"]
+    assert (bar.GetNumberOfLabels(), bar.GetUseCustomLabels()) == (7, 0)
+    assert bar.GetLabelFormat() in ("%.1f", "{:.1f}")
+    made.close()
+
+
+@pytest.mark.parametrize("background", ["white", "black", "gray", "navy", "yellow"])
+def test_labels_are_readable_on_any_background(background: str) -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[300, 200])
+    made.flowtex.add(sheet(), opacity=0.0)
+    made.set_background(background)
+    made.screenshot(return_img=True)
+    ground = np.array(made.background_color.float_rgb)
+    for text in (getattr(made.scalar_bars["speed"], name)() for name in TEXTS):
+        plate, share = np.array(text.GetBackgroundColor()), text.GetBackgroundOpacity()
+        for behind in (ground, 1 - ground):
+            colours = np.array([text.GetColor(), share * plate + (1 - share) * behind])
+            linear = np.where(colours < 0.04, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+            dark, light = np.sort(linear @ (0.2126, 0.7152, 0.0722))
+            assert (light + 0.05) / (dark + 0.05) > 4.5  # as WCAG requires
+    made.close()

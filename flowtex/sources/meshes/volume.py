@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from flowtex._util.blocks import row_blocks
 from flowtex._util.cache import ByteCache
 from flowtex._util.vectors import dot, norm
 from flowtex.field.validation import MAGNITUDES
-from flowtex.sources.meshes.cuts import Cut, Slice
+from flowtex.sources.meshes.cuts import Contour, Cut, Slice
 from flowtex.sources.meshes.nodes import hidden_nodes, visible_cells
 from flowtex.sources.meshes.planes import Plane
 from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, values_of
@@ -27,11 +28,17 @@ _samples: ByteCache[tuple[object, ...], Floats] = ByteCache(128_000_000)
 class VolumeValues:
     """Values of the arrays of a volume over a number of steps: the extremes, and a sample of many.
 
-    ``speed`` is the one in planes such as the ``drawn`` one, and is left out for a contour.
+    Vectors have values of their magnitude and their components. ``speed`` is the one in planes such
+    as the ``drawn`` one, and is left out for a contour.
     """
 
     def __init__(self, velocity: MeshArray, drawn: Cut | Plane | None, steps: int) -> None:
-        self._velocity, self._drawn = velocity, drawn
+        self._velocity, self._plane = velocity, drawn
+        # All planes in a direction have the same values.
+        if isinstance(drawn, Slice):
+            self._plane = replace(drawn, point=None, text="")
+        elif isinstance(drawn, Plane):
+            self._plane = replace(drawn, index=0)
         self._count = max(MOST_VALUES // max(steps, 1), LEAST_VALUES)
         self._steps: dict[str, list[Floats]] = {}
 
@@ -39,33 +46,39 @@ class VolumeValues:
         """Read a step, unless it is a surface."""
         if grid.max_cell_dimensionality < 3:
             return
-        velocity = self._velocity
-        arrays = {velocity.name: velocity}
+        arrays = {self._velocity.name: self._velocity}
         # Arrays of points come first, and have precedence.
         arrays |= {a.name: a for a in reversed(catalogue(grid)) if a.numeric and a.components <= 3}
+        wanted: dict[str, tuple[MeshArray, Any]] = {}
+        if self._velocity.components == 3 and not isinstance(self._plane, Contour | None):
+            wanted["speed"] = self._velocity, self._plane
         for name, array in arrays.items():
-            self._keep(name, grid, array)
-        if velocity.components == 3 and isinstance(self._drawn, (Slice, Plane)):
-            self._keep("speed", grid, velocity, self._drawn)
+            axes = enumerate("xyz" if array.components == 3 else "")
+            wanted |= {f"{name}_{letter}": (array, axis) for axis, letter in axes}
+        wanted |= {name: (array, None) for name, array in arrays.items()}
+        for name, (array, part) in wanted.items():
+            self._keep(name, grid, array, part)
 
     def values(self) -> dict[str, Floats]:
         """Return the values of all steps by the names of the arrays."""
         return {name: np.concatenate(steps) for name, steps in self._steps.items()}
 
-    def _keep(self, name: str, grid: Any, array: MeshArray, drawn: Any = None) -> None:
+    def _keep(self, name: str, grid: Any, array: MeshArray, part: Any) -> None:
         data = (grid.GetPointData(), grid.GetCellData())
         names = {*BLANKING, *array.parts, array.name, *self._velocity.parts, self._velocity.name}
         held = [d.GetAbstractArray(n) for d in data for n in sorted(names) if d.HasArray(n)]
-        place: Any = (drawn.axis, grid.GetMTime()) if isinstance(drawn, Plane) else None
-        place = drawn.normal if isinstance(drawn, Slice) else place
-        key = (*(a.GetMTime() for a in held), place, array, self._velocity, self._count)
-        sample = _samples.get(key, lambda: self._sample(grid, array, drawn))
+        place = grid.GetMTime() if isinstance(part, Plane) else None
+        key = (*(a.GetMTime() for a in held), place, part, array, self._velocity, self._count)
+        sample = _samples.get(key, lambda: self._sample(grid, array, part))
         self._steps.setdefault(name, []).append(sample)
 
-    def _sample(self, grid: Any, array: MeshArray, drawn: Slice | Plane | None) -> Floats:
+    def _sample(self, grid: Any, array: MeshArray, part: Slice | Plane | int | None) -> Floats:
+        """Return values of an array, or of a component or the part in planes of vectors."""
         values, most = values_of(grid, array), np.float64(MAGNITUDES[1])
-        if values.ndim > 1:
-            values = _lengths(values, None if drawn is None else _normals(grid, array, drawn))
+        if isinstance(part, int):
+            values = values[:, part]
+        elif values.ndim > 1:
+            values = _lengths(values, None if part is None else _normals(grid, array, part))
         shown = visible_cells(grid) if array.where == "cells" else ~hidden_nodes(grid)
         velocity = values_of(grid, self._velocity)
         if array.where == self._velocity.where and np.isnan(velocity.min(initial=0)):
@@ -87,13 +100,11 @@ def _normals(grid: Any, array: MeshArray, drawn: Slice | Plane) -> Floats:
         return np.array(drawn.normal, dtype=float)
     if not isinstance(grid, pv.StructuredGrid):
         return np.array(getattr(grid, "direction_matrix", np.eye(3))[:, drawn.axis])
-    places = grid if array.where == "points" else grid.cell_centers()
-    shape = np.array(drawn.dimensions)[::-1] - (array.where == "cells")
-    # A single layer of cells has the sides of one cell.
-    points = np.asarray(places.points).reshape(*shape, 3)
-    axes = [axis for axis in range(3) if axis != 2 - drawn.axis]
-    sides = np.gradient(points, axis=axes)
-    return np.cross(*sides).reshape(-1, 3)
+    points = np.asarray(grid.points).reshape(*drawn.dimensions[::-1], 3)
+    sides = np.gradient(points, axis=[axis for axis in range(3) if axis != 2 - drawn.axis])
+    normals = np.cross(*sides)
+    # Cells have the normal at their first corner.
+    return (normals if array.where == "points" else normals[:-1, :-1, :-1]).reshape(-1, 3)
 
 
 def _lengths(vectors: Floats, normals: Floats | None) -> Floats:
