@@ -47,18 +47,7 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     flow: Any = field
     scalars = flow.scalars
     if not isinstance(value, str):
-        try:
-            array = np.asarray(value, dtype=float)
-            steps = array.reshape(-1, *flow.shape)
-        except (TypeError, ValueError):
-            steps = None
-        if steps is None or len(steps) not in {1, len(flow.times)}:
-            shape = np.shape(value) if not isinstance(value, (bool, dict)) else repr(value)
-            msg = (
-                f"uncertainty is {shape}; expected the name of a scalar, or an array of the shape "
-                f"{flow.shape}, or {(len(flow.times), *flow.shape)}"
-            )
-            raise FieldError(msg)
+        steps = nodal_steps(flow, value, "uncertainty", "the name of a scalar, or ")
         scalars, value = {**scalars, UNCERTAINTY: steps}, UNCERTAINTY
     if value not in scalars and spread_name(value) in scalars:
         value = spread_name(value)
@@ -74,6 +63,23 @@ def with_uncertainty(field: Field, value: Any) -> Field:
         raise FieldError(msg)
     changed: Field = flow.same_flow(scalars=scalars, uncertainty=value)
     return changed
+
+
+def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
+    """Return an array of an argument as nodal values of a field, (T or 1, J, I)."""
+    try:
+        array = np.asarray(value, dtype=float)
+        steps = array.reshape(-1, *field.shape)
+    except (TypeError, ValueError):
+        steps = None
+    if steps is None or len(steps) not in {1, len(field.times)}:
+        shape = np.shape(value) if not isinstance(value, (bool, dict)) else repr(value)
+        msg = (
+            f"{name} is {shape}; expected {other}an array of the shape {field.shape}, or "
+            f"{(len(field.times), *field.shape)}"
+        )
+        raise FieldError(msg)
+    return steps
 
 
 def unknown_share(field: Any, step: int) -> Floats:

@@ -7,19 +7,9 @@ from typing import Any
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
 
 from flowtex.field import FlowField
-from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
 
-
-def read_camera(vtk_camera: vtkCamera) -> Camera:
-    """Return the camera of a VTK camera, such as ``plotter.camera``, that sees something."""
-    return Camera(
-        position=vtk_camera.GetPosition(),
-        focal_point=vtk_camera.GetFocalPoint(),
-        up=vtk_camera.GetViewUp(),
-        parallel=bool(vtk_camera.GetParallelProjection()),
-        parallel_scale=vtk_camera.GetParallelScale(),
-        view_angle=vtk_camera.GetViewAngle(),
-    )
+__all__ = ["apply_camera", "look", "read_camera", "subplot_aspect"]
 
 
 def apply_camera(camera: Camera, vtk_camera: vtkCamera) -> None:

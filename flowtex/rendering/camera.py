@@ -540,3 +540,15 @@ def _is_point(value: Any, coordinates: int = 3) -> bool:
 def _point(values: ArrayLike) -> Point:
     x, y, z = (float(v) for v in np.asarray(values))
     return x, y, z
+
+
+def read_camera(vtk_camera: Any) -> Camera:
+    """Return the camera of a VTK camera, such as ``plotter.camera``, that sees something."""
+    return Camera(
+        position=vtk_camera.GetPosition(),
+        focal_point=vtk_camera.GetFocalPoint(),
+        up=vtk_camera.GetViewUp(),
+        parallel=bool(vtk_camera.GetParallelProjection()),
+        parallel_scale=vtk_camera.GetParallelScale(),
+        view_angle=vtk_camera.GetViewAngle(),
+    )

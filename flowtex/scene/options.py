@@ -39,11 +39,12 @@ from flowtex._util.written import (
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived import SIGNED
-from flowtex.field.uncertainty import with_uncertainty
-from flowtex.rendering.camera import Camera
+from flowtex.field.uncertainty import nodal_steps, with_uncertainty
+from flowtex.rendering.camera import Camera, read_camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.select import two_names
+from flowtex.sources.meshes.vectors import with_array
 
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies
@@ -64,6 +65,8 @@ OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_fr
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
+#: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
+DATA, ARRAY = "Data", "_array"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -191,8 +194,13 @@ class FieldOptions:
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
         """Return the field of a mesh or of a file (at one time), or a field unchanged."""
         choices = {name: value for name, value in vars(self).items() if value is not None}
-        uncertainty = choices.pop("uncertainty", None)
+        uncertainty, array = choices.pop("uncertainty", None), choices.pop(ARRAY, None)
+        if array is not None and hasattr(mesh, "point_data"):
+            mesh, array = with_array(mesh, DATA, array), None
         field = self._read(mesh, choices, time, uncertainty)
+        if array is not None:
+            steps = nodal_steps(field, array, "scalars", "the name of an array, or ")
+            field = field.same_flow(scalars={**field.scalars, DATA: steps})
         # Datasets and files are averaged where they are read.
         is_done = uncertainty is None or bool(field.uncertainty and field is not mesh)
         return field if is_done else with_uncertainty(field, uncertainty)
@@ -266,8 +274,8 @@ class Appearance:
 
     scalars: str | bool | None = _option(
         None,
-        'Values for the colours: the name of an array, ``"speed"`` (the default), or ``False`` '
-        "for a plain surface.",
+        'Values for the colours: the name of an array, ``"speed"`` (the default), an array for the '
+        "points or cells of a mesh or the nodes of a field, or ``False`` for a plain surface.",
         Form(read=or_none(value=False)),
     )
     cmap: Any | None = _option(
@@ -405,8 +413,8 @@ class ViewOptions:
     )
     camera: Any | None = _option(
         None,
-        "Camera: a :class:`flowtex.rendering.camera.Camera`, its values by name, or position, "
-        "focal point and up direction as three points.",
+        "Camera: a :class:`flowtex.rendering.camera.Camera`, its values by name, that of a plotter "
+        "(``plotter.camera``), or position, focal point and up direction as three points.",
         Form(
             "Position, focal point and up direction, nine numbers separated by commas; or the "
             "camera from a page's link.",
@@ -437,6 +445,8 @@ class ViewOptions:
             raise FieldError(msg)
         if self.background is not None:
             rgb(self.background)
+        if hasattr(self.camera, "GetFocalPoint"):
+            object.__setattr__(self, "camera", read_camera(self.camera))
         if not (self.beside is None or isinstance(self.beside, Mapping)):
             msg = (
                 f"beside is {brief(self.beside)}; expected settings by name, such as "
@@ -501,6 +511,9 @@ class Options:
         Raises a SettingsError for an unknown argument, with the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
+        array: Any = values.get("scalars")
+        if is_array := "field" in accepted and np.ndim(array) > 0:
+            values["scalars"] = DATA
         parts = {
             name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
             for name, kind in _KINDS.items()
@@ -519,6 +532,8 @@ class Options:
                     near = f"help(flowtex.render) has all of them{of_file}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
+        if is_array:  # which is read with the mesh, and is no argument of its own
+            object.__setattr__(parts["field"], ARRAY, np.asarray(array))
         return cls(**parts, settings=values)
 
 

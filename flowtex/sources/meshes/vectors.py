@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex.errors import FieldError
 from flowtex.sources.meshes.components import NO_VELOCITY, find_vectors
 
 if TYPE_CHECKING:
@@ -72,6 +73,20 @@ def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
 def data_of(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
     """Return the arrays on points or cells."""
     return mesh.point_data if where == "points" else mesh.cell_data
+
+
+def with_array(mesh: pv.DataSet, name: str, values: AnyArray) -> pv.DataSet:
+    """Return a mesh with values at its points or cells as an array."""
+    mesh = mesh.copy(deep=False)
+    for where, count in (("points", mesh.n_points), ("cells", mesh.n_cells)):
+        if values.shape == (count,):
+            data_of(mesh, where)[name] = values
+            return mesh
+    msg = (
+        f"scalars is an array of the shape {values.shape}; expected the name of an array, "
+        f"({mesh.n_points},) for the points of the mesh, or ({mesh.n_cells},) for its cells"
+    )
+    raise FieldError(msg)
 
 
 def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:

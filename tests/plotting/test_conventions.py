@@ -1,0 +1,81 @@
+"""Arguments that PyVista has too: arrays as scalars, cameras of plotters, and sizes of windows."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import flowtex
+from flowtex import FieldError
+from flowtex.scene.scene import Scene
+
+pytestmark = [
+    pytest.mark.usefixtures("opengl"),
+    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+]
+QUICK: dict[str, Any] = {"size": (160, 120), "samples": 1, "strength": 0.0}
+
+
+def plane() -> Any:
+    mesh: Any = pv.Plane(i_resolution=12, j_resolution=9)
+    mesh["U"] = np.tile([1.0, 0.2, 0], (mesh.n_points, 1))
+    mesh["x"] = np.array(mesh.points[:, 0])
+    return mesh
+
+
+def test_array_colours_as_if_it_were_in_the_mesh() -> None:
+    mesh = plane()
+    by_name = flowtex.render(mesh, scalars="x", **QUICK)
+    for array in (np.array(mesh["x"]), mesh["x"].tolist()):
+        np.testing.assert_array_equal(flowtex.render(mesh, scalars=array, **QUICK), by_name)
+    assert "Data" not in mesh.array_names
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[160, 120])
+    with closing(plotter):
+        handle = plotter.flowtex.add(mesh, scalars=2 * mesh["x"])
+        assert list(plotter.scalar_bars.keys()) == ["Data"]
+        assert handle.scene.scalar_limits == pytest.approx((-1, 1))
+
+
+def test_array_belongs_to_points_or_cells_of_a_volume_before_a_cut() -> None:
+    grid: Any = pv.ImageData(dimensions=(9, 8, 7))
+    grid["U"] = np.ones((grid.n_points, 3))
+    heights = np.array(grid.points[:, 2])
+    scene = Scene.of(grid, slice="z=2.5", scalars=heights)
+    assert scene.scalar_limits == (0, 6)
+    np.testing.assert_allclose(scene.scalar("Data"), 2.5)
+    cells = np.array(grid.cell_centers().points[:, 0])
+    assert Scene.of(grid, slice="z=2.5", scalars=cells).scalar_limits == (0.5, 7.5)
+
+
+def test_array_of_a_field_has_its_nodes() -> None:
+    field = flowtex.examples.vortex_field()
+    steps = np.arange(np.prod((len(field.times), *field.shape)), dtype=float)
+    scene = Scene.of(field, scalars=steps.reshape(-1, *field.shape))
+    assert scene.scalar_limits == (0, steps[-1])
+
+
+def test_array_of_another_size_raises() -> None:
+    with pytest.raises(FieldError, match=r"an array of the shape \(3,\); .* \(130,\) for"):
+        flowtex.render(plane(), scalars=np.ones(3), **QUICK)
+    with pytest.raises(FieldError, match=r"scalars is \(3,\); expected the name of an array, or"):
+        flowtex.render(flowtex.examples.vortex_field(), scalars=np.ones(3), **QUICK)
+
+
+def test_camera_of_a_plotter_shows_the_same_view() -> None:
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[160, 120], lighting="light kit")
+    with closing(plotter):
+        plotter.disable_anti_aliasing()
+        look: Any = {"scalars": "x", "show_scalar_bar": False, "samples": 1, "strength": 0.0}
+        plotter.flowtex.add(plane(), **look)
+        plotter.camera_position = [(0.6, -1.2, 1.5), (0.1, 0, 0), (0, 0, 1)]
+        seen = plotter.screenshot(return_img=True).astype(int)
+        image = flowtex.render(plane(), scalars="x", camera=plotter.camera, **QUICK).astype(int)
+        widget = flowtex.FlowWidget(plane(), camera=plotter.camera)
+        assert widget.camera["position"] == pytest.approx(plotter.camera.position)
+        widget.close()
+    assert (np.abs(seen - image).max(axis=-1) > 8).mean() < 0.03
+    assert (seen < 250).any(axis=-1).mean() > 0.1
