@@ -186,7 +186,8 @@ class WidgetView {
     const picture = await pictureOf(viewers, 1 / first.ratio, STILL_FORMAT);
     const data = await picture.arrayBuffer();
     if (first.lifetime.isOver) return;
-    this.model.send({ kind: "frame" }, undefined, [data]);
+    const size = [this.view.clientWidth, this.view.clientHeight];
+    this.model.send({ kind: "frame", size, ground: first.header?.background }, undefined, [data]);
     dataset.still = frames; // the picture that the kernel has
   }
 

@@ -7,7 +7,10 @@ the default if no other is installed; this one then falls back to what PyVista d
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import Any
+
+from flowtex.rendering.diagnostics import OpenGLMissingError, begin_trial, require_opengl
 
 NAME = "flowtex"
 
@@ -22,10 +25,15 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
         return _show_otherwise(plotter, screenshot, options)
     if screenshot:
         plotter.screenshot(screenshot)
+    begin_trial()
     from flowtex.widget import FlowWidget
 
     width, height = plotter.window_size
-    return FlowWidget(plotter, **{"size": (int(width), int(height)), **options})
+    widget = FlowWidget(plotter, **{"size": (int(width), int(height)), **options})
+    with suppress(OpenGLMissingError):
+        require_opengl()
+        widget.set_still(plotter.screenshot(return_img=True))
+    return widget
 
 
 def _is_requested() -> bool:

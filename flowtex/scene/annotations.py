@@ -52,6 +52,8 @@ PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
 OPACITY = 0.8
 #: Digits of the values of a legend: the fewest that distinguish them.
 DIGITS = range(3, 9)
+#: Length of ticks in pixels.
+TICK_PX = 4
 #: Number from which on the text of one has a power of ten.
 LARGE = 1e6
 #: Share of the range by which a number may lie beyond an end: less than a pixel.
@@ -117,21 +119,23 @@ def layout(
     background: Any = "white",
     label: str = "",
     legend: bool = True,
+    scale_bar: bool = True,
+    beside: bool = False,
     flow_height: int | None = None,
 ) -> Layout:
-    """Return what is written on a picture.
+    """Return what is written on a picture, or ``beside`` the flow also of a large one.
 
     ``size`` is the width and height of the picture in pixels, in which the flow has all rows or
     ``flow_height``, and ``label`` is added to the name of the field in the title. Plates are light
     on a light background. There is no legend for an image or a plain surface.
     """
     width, height = size
-    writer = _Writer(size, background, flow_height)
+    writer = _Writer(size, background, flow_height, small=beside)
     title = _printable(", ".join(text for text in (scene.field.name, label) if text))
     parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
         ("legend", True, True, writer.legends(scene) if legend else iter(())),
         ("time", True, False, writer.times(scene)),
-        ("scale bar", False, True, writer.scale_bars(scene, camera)),
+        ("scale bar", False, True, writer.scale_bars(scene, camera) if scale_bar else iter(())),
         ("title", False, False, writer.texts(title)),
         ("structure", False, True, writer.structure(scene) if legend else iter(())),
     )
@@ -164,22 +168,50 @@ def layout(
     return Layout(placed, left_out, *(strips if small else (0, 0)))
 
 
+def write_ticks(
+    picture: Image.Image, box: tuple[int, int, int, int], ends: ArrayLike, background: Any
+) -> None:
+    """Write ticks at the left and below a box, (left, top, right, bottom), of a picture, in place.
+
+    ``ends`` are the coordinates (x, y) of its lower left and its upper right corner.
+    """
+    writer, draw = _Writer(picture.size, background, small=True), ImageDraw.Draw(picture)
+    left, top, right, bottom = box
+    draw.rectangle((left, top, right - 1, bottom - 1), outline="grey")
+    for axis, (low, high) in enumerate(np.transpose(ends)):
+        for share, text in _value_marks(low, high, log_scale=False):
+            x = left if axis else round(left + share * (right - left))
+            y = round(bottom - share * (bottom - top)) if axis else bottom
+            end = (x - TICK_PX, y) if axis else (x, y + TICK_PX)
+            draw.line((x, y, *end), "grey")
+            draw.text(
+                (end[0] - 2 * axis, end[1]), text, writer.ink, writer.font, ("ma", "rm")[axis]
+            )
+
+
 class _Writer:
     """Makes the plates of pictures of one size and background, the largest form of each first."""
 
-    def __init__(self, size: tuple[int, int], background: Any, flow_height: int | None) -> None:
+    def __init__(
+        self,
+        size: tuple[int, int],
+        background: Any,
+        flow_height: int | None = None,
+        *,
+        small: bool = False,
+    ) -> None:
         self._size, self._flow_height = size, flow_height or size[1]
         height, (least, most) = min(size[1], size[0] / WIDEST_ASPECT), SMALL_TEXT_PX
         self._em = round(height * TEXT_SHARE)
-        self.small = self._em < most
+        self.small = small or self._em < most
         if self.small:
             self._em = min(max(round(height * SMALL_TEXT_SHARE), least), most)
-        self._font = _font(self._em)
-        self._line = sum(self._font.getmetrics())
+        self.font = _font(self._em)
+        self._line = sum(self.font.getmetrics())
         self._thin, closer = self._px(LINE), CLOSER if self.small else 1.0
         self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
         light = is_light(rgb(background))
-        self._plate, self._ink = ("white", "black") if light else ("black", "white")
+        self._plate, self.ink = ("white", "black") if light else ("black", "white")
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
         """Yield a plate with one line, with room for the widest of ``room``."""
@@ -221,9 +253,9 @@ class _Writer:
         self._write(draw, (width - self._width(text)) // 2, 0, text)
         left, low = self._pad + (width - across) // 2, self._pad + self._line + tick - 1
         right = left + across - 1
-        draw.rectangle((left, low - self._thin + 1, right, low), self._ink)
+        draw.rectangle((left, low - self._thin + 1, right, low), self.ink)
         for x in (left, right - self._thin + 1):
-            draw.rectangle((x, low - tick + 1, x + self._thin - 1, low), self._ink)
+            draw.rectangle((x, low - tick + 1, x + self._thin - 1, low), self.ink)
         yield image
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
@@ -240,7 +272,7 @@ class _Writer:
         yield self._legend(title, table, marks[:: max(len(marks) - 1, 1)], scene.beyond)
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield legends of critical points and lines: one column, two rows, and one."""
+        """Yield legends of critical points and lines, in columns."""
         structure, settings, step = scene.structure, scene.settings, scene.step
         count, saddles = settings.critical_points, settings.separatrices
         points = structure.points(step)[:count] if count else ()
@@ -253,7 +285,8 @@ class _Writer:
         rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
         rows |= NULLCLINE_COLORS if settings.nullclines else {}
         width, side = max(map(self._width, rows), default=0) + self._line, SMOOTH * self._line
-        for lines in [*dict.fromkeys((len(rows), 2, 1))] if rows else []:
+        forms = (2, 3, len(rows)) if self.small else (len(rows), 2, 1)
+        for lines in dict.fromkeys(min(form, len(rows)) for form in forms if rows):
             wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
             image, draw = self._blank(wide, lines * self._line)
             for n, (name, look) in enumerate(rows.items()):
@@ -322,12 +355,12 @@ class _Writer:
         return image, ImageDraw.Draw(image)
 
     def _width(self, text: str) -> int:
-        left, _, right, _ = self._font.getbbox(text)
+        left, _, right, _ = self.font.getbbox(text)
         return math.ceil(right - left)
 
     def _write(self, draw: ImageDraw.ImageDraw, x: int, y: int, text: str) -> None:
-        left = self._font.getbbox(text)[0]  # a letter may begin beside its position
-        draw.text((self._pad + x - left, self._pad + y), text, self._ink, self._font)
+        left = self.font.getbbox(text)[0]  # a letter may begin beside its position
+        draw.text((self._pad + x - left, self._pad + y), text, self.ink, self.font)
 
 
 @lru_cache(8)

@@ -2364,28 +2364,29 @@ clock",TIME_MS),hear("playing",playing=>this.send("playing",playing)),hear("poin
 this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(this.frameTimer);
 let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){let{
 first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;let{dataset}=first.root,{frames}=dataset;this.hasSentFrame=
-!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||(this.model.
-send({kind:"frame"},void 0,[data]),dataset.still=frames)}becomeLive(){let{root}=this.first;if(root.dataset.live||root.dataset.
-failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(
-`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still}) { display: none !important }`)}listen(event,call){
-this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){
-this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),
-this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{message?.kind===
-"parts"&&this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.
-kind==="error"&&first.panel.fail("The kernel could not continue.",message.text??"")}),viewers.forEach((_,n)=>this.listen(
-`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{
-let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
-forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
-clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
-!!shown)),this.follow("axes",kind=>viewers.forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.
-get("size")??[0,0],{style,parentElement}=this.view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}\
-px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.
-format)return;let rows=header.table??[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.
-get("_shaders")[n],settings:Object.fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.
-get("clock")??0,axes:model.get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.
-early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.
-followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
-header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
-generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);discard(
-[delivery]),this.becomeLive()}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),
-document.adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();
+!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).arrayBuffer();if(first.lifetime.isOver)return;let size=[
+this.view.clientWidth,this.view.clientHeight];this.model.send({kind:"frame",size,ground:first.header?.background},void 0,
+[data]),dataset.still=frames}becomeLive(){let{root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.
+live="true";let still=`[data-flowtex~="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-Out\
+putArea-child, .output_area):has(> * > ${still}) { display: none !important }`)}listen(event,call){this.handlers.some(([
+other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`cha\
+nge:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(
+name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{message?.kind==="parts"&&this.take(
+opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.kind==="error"&&
+first.panel.fail("The kernel could not continue.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
+()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
+camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
+Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
+playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown)),this.follow("axes",kind=>viewers.
+forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.
+view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowt\
+ex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??
+[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("_shaders")[n],settings:Object.
+fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0,axes:model.
+get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.early.splice(0))this.take(delivery);
+for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
+let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
+generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
+"/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);discard([delivery]),this.becomeLive()}dispose(){
+for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
+adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();

@@ -7,10 +7,12 @@ needs no OpenGL, and can be made in any thread.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.colours import rgb
@@ -54,20 +56,44 @@ def preview_png(
     """
     scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
-    drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
+    image, _ = draw_flow(view, scene, size, Camera.from_dict(camera), time, coarser)
+    return encoded(image, is_page=scene.colours.background is None)
+
+
+def draw_flow(
+    view: WebView,
+    scene: ClientData,
+    size: tuple[int, int],
+    camera: Camera,
+    time: float | None,
+    coarser: int,
+) -> tuple[Image.Image, Picture]:
+    """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
     from PIL import Image
 
+    drawn, picture = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     image = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
-    _draw_lines(image, scene, Camera.from_dict(camera))
+    _draw_lines(image, scene, camera)
+    return image, picture
+
+
+def encoded(image: Image.Image, exact: Iterable[int] = (), *, is_page: bool = False) -> bytes:
+    """Return a picture as PNG, with up to 90 ``exact`` colours in one list.
+
+    White is transparent on a page whose colour is not known.
+    """
+    from PIL import Image
+
     picture = np.asarray(image)
     # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
     palette_image = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
+    palette_image.putpalette([*(palette_image.getpalette() or [])[: 3 * 160], *exact])
     reduced = Image.fromarray(picture).quantize(palette=palette_image, dither=Image.Dither.NONE)
     palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the exact background
     reduced.putpalette(palette)
     file = io.BytesIO()
-    is_page = scene.colours.background is None and (picture[0, 0] == 255).all()
+    is_page &= bool((picture[0, 0] == 255).all())
     reduced.save(file, "PNG", optimize=True, **({"transparency": corner // 3} if is_page else {}))
     return file.getvalue()
 
@@ -86,9 +112,9 @@ def _drawn(
     view: WebView,
     scene: ClientData,
     size: tuple[int, int],
-    camera: CameraValues,
+    camera: Camera,
     time: float | None,
-) -> Bytes:
+) -> tuple[Bytes, Picture]:
     before, after, between = steps_around(
         scene.times, float(scene.times[0] if time is None else time)
     )
@@ -96,7 +122,7 @@ def _drawn(
     picture = render(
         scene.textures,
         _few_samples(view.scene.settings),
-        Camera.from_dict(camera),
+        camera,
         (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between, still=True),
         steps=steps,
@@ -104,10 +130,8 @@ def _drawn(
     ground = scene.colours.background or WHITE
     drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
     opacity = scene.colours.opacity
-    if opacity == 1:
-        return drawn
     behind = 255.0 * np.asarray(ground)
-    return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
+    return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8), picture
 
 
 def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None:
@@ -124,16 +148,22 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
         if not getattr(scene.colours, option):
             continue
         lines = lines.thinned(spacing) if spacing else lines
-        places = camera.project(lines.points, size[0] / size[1])
-        seen: Bools = np.isfinite(places[..., 0])
+        pixels = pixels_of(lines.points, camera, size)
         if field.surface.on_globe:
-            seen &= np.sum(lines.points * (camera.eye[:3] - camera.eye[3] * lines.points), -1) > 0
-        pixels = (places * [0.5, -0.5] + 0.5) * size
+            far = np.sum(lines.points * (camera.eye[:3] - camera.eye[3] * lines.points), -1) <= 0
+            pixels[far] = np.nan
+        seen: Bools = np.isfinite(pixels[..., 0])
         stroke = STROKES[option]
         colour = tuple(round(255 * c) for c in (*rgb(stroke.color), stroke.opacity))
         for begin, end in pairwise(lines.starts):
             for run in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
                 draw.line([tuple(p) for p in pixels[run][seen[run]]], fill=colour)
+
+
+def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
+    """Return the pixels (..., 2) of points, from the top left, NaN behind the camera."""
+    sides = np.asarray(size)
+    return np.asarray((camera.project(points, sides[0] / sides[1]) * [0.5, -0.5] + 0.5) * sides)
 
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:

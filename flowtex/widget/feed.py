@@ -20,12 +20,12 @@ from functools import partial
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped, has_threads, start
-from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene.scene import Change
 from flowtex.textures.tiles import TileKey
-from flowtex.web import preview
+from flowtex.web import still
+from flowtex.web.still import MakeCamera
 from flowtex.web.view import TileSource, WebView
 
 #: A field of more nodes, at all times together, is shown coarse first.
@@ -98,11 +98,11 @@ class Feed:
         if has_threads():
             self._timer.start()
 
-    def draw(self, size: tuple[int, int], camera: CameraValues) -> None:
-        """Draw a small picture, once, as soon as there is time; ``pictured`` tells when."""
+    def draw(self, size: tuple[int, int], camera: MakeCamera, axes: str | None) -> None:
+        """Draw a still, once, as soon as there is time; ``pictured`` tells when."""
         if not self._drawing:
             self._drawing = True
-            self._answers.do(lambda: self._draw(size, camera), urgency=1)
+            self._answers.do(lambda: self._draw(size, camera, axes), urgency=1)
 
     def ready(self) -> None:
         """Answer a client that has no arrays yet."""
@@ -308,12 +308,10 @@ class Feed:
         buffers = [part_buffer(array) for _, array in parts]
         self._send({"kind": "parts", "generation": self._generation, "parts": infos}, buffers)
 
-    def _draw(self, size: tuple[int, int], camera: CameraValues) -> None:
-        """Draw the small picture; an error does no harm."""
+    def _draw(self, size: tuple[int, int], camera: MakeCamera, axes: str | None) -> None:
+        """Draw the still; an error does no harm."""
         with suppress(Exception):
-            self.picture = preview.preview_png(
-                self._view, size, camera=camera, time=self._moment(), scene=self.scene
-            )
+            self.picture = still.still_png(self._view, size, camera, axes=axes, data=self.scene)
         self.pictured.set()
 
     def _failed(self, error: Exception) -> None:

@@ -16,7 +16,10 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 import traitlets
+from PIL import Image
 
+from flowtex._util.array_types import Bytes
+from flowtex._util.colours import rgb
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
@@ -30,6 +33,7 @@ from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles import TileKey
 from flowtex.web.export import PREVIEW, page_text, write_page
+from flowtex.web.still import MakeCamera, still_png
 from flowtex.web.view import WebView, browser_options, client_module, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.feed import Feed, Send
@@ -129,6 +133,8 @@ class Host:
         asyncio.run_coroutine_threadsafe(flush(), self._loop)
 
 
+#: Width of a still where the widget fills the cell, and most pixels of its sides.
+USUAL_WIDTH, MOST_SIDE = 800, 4096
 SLACK = 1e-9  #: Share of the duration by which rounding may move a time outside of it.
 
 
@@ -227,6 +233,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         views = web_views(shown, arguments)
         self._state_lock = threading.RLock()
         self._frame: bytes | None = None
+        #: A still of all that a browser shows, until it has drawn or the scene changes.
+        self._still: bytes | None = None
+        self._fit = arguments.view.first_camera
         self._ends: list[Callable[[], None]] = []
         host = Host()
         self._views = Views(
@@ -234,7 +243,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             lambda number, header: host.call(self._announce, number, header),
             lambda content, buffers: host.call(self.send, content, buffers),
         )
-        first = arguments.view.first_camera(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
+        first = self._fit(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
             _key=uuid.uuid4().hex,
             camera=first.to_dict(),
@@ -272,13 +281,18 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
         before, field = self.field.surface, share_field(reading.field(mesh))
         self._views.show(field)
-        self._frame = None
+        self._frame = self._still = None
         if not can_share_camera(before, field.surface):
             self.camera = Camera.fit(field.surface, PREVIEW[0] / PREVIEW[1]).to_dict()
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
         self._views.set_image(load_image(image))
+
+    def set_still(self, picture: Bytes) -> None:
+        """Show a picture, (H, W, 3) uint8, where no browser draws, until the scene changes."""
+        Image.fromarray(picture).save(file := io.BytesIO(), "PNG")
+        self._still = file.getvalue()
 
     def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
         """Write the current view as a page that needs no server, as :func:`flowtex.export` does.
@@ -292,10 +306,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         """
         shown: dict[str, Any] = {"camera": dict(self.camera), "axes": self.axes}
         shown |= {"time": self.time, "clock": self.clock}
-        picture = self._picture(timeout_s=0.0)
         if path is None:
-            return page_text(self._views.views, title=title, picture=picture, **shown)
-        write_page(self._views.views, path, title=title, picture=picture, **shown)
+            return page_text(self._views.views, title=title, picture=self._frame, **shown)
+        write_page(self._views.views, path, title=title, picture=self._frame, **shown)
         return None
 
     def close(self) -> None:
@@ -365,15 +378,24 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def _handle_message(self, _: Any, content: Any, buffers: list[memoryview]) -> None:
         if isinstance(content, dict):
             if content.get("kind") == "frame":
-                self._frame = bytes(buffers[0])
+                self._frame = self._still = bytes(buffers[0])
+                with suppress(OSError, ValueError, TypeError, KeyError):
+                    self._still = self._views.framed(self._frame, content, self._look(), self.axes)
                 self._update_stills()
             self._views.handle_message(content)
 
     def _picture(self, timeout_s: float) -> bytes | None:
-        """Return the browser's last frame, or a small picture in its place."""
-        if self._frame is not None:
-            return self._frame
-        return self._views.picture(PREVIEW, dict(self.camera), timeout_s)
+        """Return a still of the browser's last frame, or one that NumPy draws."""
+        if self._still is not None:
+            return self._still
+        size = (self.size[0] or USUAL_WIDTH, self.size[1])
+        return self._views.picture(size, self._look(), self.axes, timeout_s)
+
+    def _look(self) -> MakeCamera:
+        """Return the camera by the shape of the picture, to which one that was not moved fits."""
+        surface, camera = self.field.surface, Camera.from_dict(dict(self.camera))
+        is_moved = camera != self._fit(surface, PREVIEW[0] / PREVIEW[1])
+        return lambda aspect: camera if is_moved else self._fit(surface, aspect)
 
     def _to_settings(self, change: Any) -> None:
         setattr(self.settings, change["name"], change["new"])
@@ -387,6 +409,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             setattr(self, name, value)
 
     def _scene_changed(self, affects: Change) -> None:
+        if self._frame is None:
+            self._still = None
         if affects != "appearance":
             self._set("time", self.scene.time)
 
@@ -485,19 +509,32 @@ class Views:
         """Lay another image on the surface, in all views that show one."""
         lay_image([view.scene for view in self.views], image, self.views[-1].own)
 
+    def framed(self, frame: bytes, content: Header, camera: MakeCamera, axes: str | None) -> bytes:
+        """Return a still of what a browser has drawn; raises an error for an invalid message."""
+        image = Image.open(io.BytesIO(frame)).convert("RGB")
+        count, (width, height) = len(self.feeds), (int(side) for side in content["size"])
+        size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
+        wide, ground = image.width // count, rgb(content["ground"])
+        parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
+        pictures = [
+            still_png(view, size, camera, axes=axes, data=feed.scene, flow=part, ground=ground)
+            for view, feed, part in zip(self.views, self.feeds, parts, strict=True)
+        ]
+        return _side_by_side(pictures)
+
     def picture(
-        self, size: tuple[int, int], camera: CameraValues, timeout_s: float
+        self, size: tuple[int, int], camera: MakeCamera, axes: str | None, timeout_s: float
     ) -> bytes | None:
-        """Return a small picture of all views as PNG, if there is one in this many seconds."""
+        """Return a still of all views as PNG, if there is one in this many seconds."""
         view_size = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
         if timeout_s > 0:
             for feed in self.feeds:
-                feed.draw(view_size, camera)
+                feed.draw(view_size, camera, axes)
                 feed.pictured.wait(timeout_s)
         pictures = [feed.picture for feed in self.feeds if feed.picture is not None]
         if len(pictures) < len(self.feeds):
             return None
-        return pictures[0] if len(pictures) == 1 else _side_by_side(pictures)
+        return _side_by_side(pictures)
 
     def close(self) -> None:
         """Close the feeds and the views."""
@@ -511,8 +548,8 @@ def _are_whole(values: Any) -> TypeGuard[list[int]]:
 
 
 def _side_by_side(pictures: Sequence[bytes]) -> bytes:
-    from PIL import Image
-
+    if len(pictures) == 1:
+        return pictures[0]
     columns = [np.asarray(Image.open(io.BytesIO(png)).convert("RGB")) for png in pictures]
     file = io.BytesIO()
     Image.fromarray(np.hstack(columns)).save(file, "PNG")
