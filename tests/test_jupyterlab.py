@@ -5,6 +5,7 @@ They share its server, which takes seconds to start.
 
 from __future__ import annotations
 
+import base64
 import io
 import json
 import warnings
@@ -257,12 +258,16 @@ LOADED = """() => {
 }"""
 
 
+MARKED = """flowtex.FlowWidget(
+    mesh, samples=9, size=(500, 300), arrows=True, critical_points=8)"""
+
+
 def test_a_converted_notebook_shows_pictures(page: Page, tmp_path: Path) -> None:
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     exporters = pytest.importorskip("nbconvert.exporters")
     # A busy machine takes its time for the pictures.
     patience = f"from flowtex.widget import display\ndisplay.MAX_WAIT_S = {PATIENCE_S}"
-    cells = [nbformat.v4.new_code_cell(text) for text in (patience, BOXES)]
+    cells = [nbformat.v4.new_code_cell(text) for text in (patience, BOXES, MARKED, PLOTTER)]
     notebook = nbformat.v4.new_notebook(cells=cells)
     nbclient.NotebookClient(notebook, kernel_name="python3").execute()
     with warnings.catch_warnings():
@@ -271,9 +276,22 @@ def test_a_converted_notebook_shows_pictures(page: Page, tmp_path: Path) -> None
     (tmp_path / "page.html").write_text(text)
     page.goto(f"file://{tmp_path}/page.html")
     pictures, words, _ = page.evaluate(SEEN)
-    assert len(pictures) == 2
-    assert all(width > 100 and height > 60 for width, height in pictures)
+    assert len(pictures) == 4
+    assert min(min(size) for size in pictures) > 50
+    assert pictures[2:] == [[500, 300], [300, 200]]
     assert words == ""
+    stills = []
+    for cell in cells[2:]:
+        data = base64.b64decode(cell.outputs[-1].data["image/png"])
+        with Image.open(io.BytesIO(data)) as image:
+            stills.append(np.asarray(image.convert("RGB")).astype(int))
+    assert [still.shape for still in stills] == [(300, 500, 3), (200, 300, 3)]
+    marked, plotter = stills
+    saddles = np.abs(marked - (0xFF, 0xD2, 0x1F)).max(axis=-1) < 12
+    assert saddles[:220].any() and saddles[250:].any()  # on the flow, and with their name
+    assert (marked[40:200, :50].max(axis=-1) < 120).any()  # numbers of the axis
+    assert (np.ptp(marked[-40:, -130:], axis=-1) > 60).any()  # the colour bar
+    assert np.ptp(plotter, axis=-1).max() > 60
 
 
 TWO = """import flowtex, pathlib, time
@@ -334,6 +352,8 @@ def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
         assert shown.said("setattr(w, 'contrast', 0.2)") == "None"
     page.wait_for_function(SENT)
     assert shown.said("len(w._frame), hash(w._frame)") != was
+    size = "__import__('PIL.Image').Image.open(__import__('io').BytesIO(w._still)).size"
+    assert shown.said(size) == "(300, 200)"
     pictures, words, views = page.evaluate(SEEN)
     assert not any(width for width, _ in pictures)
     assert (words, views) == ("", 4)

@@ -45,6 +45,7 @@ MEMORY = {
     "app/streaming/stream.py: Image.fromarray(pixels).save",
     "web/preview.py: reduced.save",
     "widget/flow_widget.py: Image.fromarray(np.hstack(columns)).save",
+    "widget/flow_widget.py: Image.fromarray(picture).save",
 }
 #: ... a file in a temporary folder, or one without a name, ...
 TEMPORARY = {

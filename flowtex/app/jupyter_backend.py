@@ -32,6 +32,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     widget = FlowWidget(plotter, **{"size": (int(width), int(height)), **options})
     with suppress(OpenGLMissingError):
         require_opengl()
+        plotter.render()
         widget.set_still(plotter.screenshot(return_img=True))
     return widget
 

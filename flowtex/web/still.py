@@ -28,7 +28,7 @@ from flowtex.rendering.webgl.marks import (
     NULLCLINE_COLORS,
     RIM_COLOR,
 )
-from flowtex.scene.annotations import annotate, layout, write_ticks
+from flowtex.scene.annotations import annotate, difference_text, layout, write_ticks
 from flowtex.scene.scene import Scene
 from flowtex.web import preview
 from flowtex.web.view import WebView
@@ -61,11 +61,13 @@ def still_png(
     data: ClientData | None = None,
     flow: Image.Image | None = None,
     ground: Sequence[float] | None = None,
+    differs: Sequence[str] = (),
 ) -> bytes:
     """Draw a view as a browser shows it, without controls, and return it as PNG.
 
     ``camera`` returns the camera for a ratio of width to height. ``flow`` is what a browser has
-    drawn, on a ``ground``; otherwise NumPy draws the ``data``.
+    drawn, on a ``ground``; otherwise NumPy draws the ``data``. The title has the settings in which
+    the view ``differs`` from another.
     """
     scene, (width, height) = view.scene, size
     data = data or view.coarse_data(preview.NODES)
@@ -75,22 +77,23 @@ def still_png(
     if axes not in (None, "ticks") or frame is None or not np.allclose(seen.axes[:2], frame):
         frame = None
     look: dict[str, Any] = {"background": ground, "legend": data.colours.bar, "beside": True}
+    look["label"] = difference_text(scene, dict.fromkeys(differs))
     look["scale_bar"] = frame is None and axes != "none"
     room = layout(scene, size, seen, **look)
     left, right, row = (0, 0, 0) if frame is None else TICK_ROOM
+    across, down = width - left - right, height - room.above - room.below - row
+    box = (max(across, 1), max(down, 1))
     if flow is None:
-        across, down = width - left - right, height - room.above - room.below - row
-        seen = camera(max(across, 1) / max(down, 1))
-        flow = _drawn(view, data, (max(across, 1), max(down, 1)), seen)
-    width = max(width, left + flow.width + right)
-    height = max(height, room.above + flow.height + row + room.below)
-    picture = Image.new("RGB", (width, height), tuple(round(255 * c) for c in ground))
+        seen = camera(box[0] / box[1])
+        flow = _drawn(view, data, box, seen)
+    flow.thumbnail(box)
+    picture = Image.new("RGB", size, tuple(round(255 * c) for c in ground))
     picture.paste(flow, (left, room.above))
     if frame is not None:
         half = np.array([seen.height * flow.width / flow.height, seen.height])
         middle = frame @ seen.focal_point
-        box = (left, room.above, left + flow.width, room.above + flow.height)
-        write_ticks(picture, box, (middle - half, middle + half), ground)
+        corners = (left, room.above, left + flow.width, room.above + flow.height)
+        write_ticks(picture, corners, (middle - half, middle + half), ground)
     canvas = np.array(picture)
     annotate(canvas, scene, seen, flow_height=flow.height, **look)
     colors = {*LINE_COLORS.values(), *NULLCLINE_COLORS.values(), RIM_COLOR, "black", "white"}

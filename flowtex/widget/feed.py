@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from functools import partial
+from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped, has_threads, start
@@ -98,11 +99,11 @@ class Feed:
         if has_threads():
             self._timer.start()
 
-    def draw(self, size: tuple[int, int], camera: MakeCamera, axes: str | None) -> None:
+    def draw(self, size: tuple[int, int], camera: MakeCamera, **look: Any) -> None:
         """Draw a still, once, as soon as there is time; ``pictured`` tells when."""
         if not self._drawing:
             self._drawing = True
-            self._answers.do(lambda: self._draw(size, camera, axes), urgency=1)
+            self._answers.do(lambda: self._draw(size, camera, look), urgency=1)
 
     def ready(self) -> None:
         """Answer a client that has no arrays yet."""
@@ -308,10 +309,10 @@ class Feed:
         buffers = [part_buffer(array) for _, array in parts]
         self._send({"kind": "parts", "generation": self._generation, "parts": infos}, buffers)
 
-    def _draw(self, size: tuple[int, int], camera: MakeCamera, axes: str | None) -> None:
+    def _draw(self, size: tuple[int, int], camera: MakeCamera, look: Any) -> None:
         """Draw the still; an error does no harm."""
         with suppress(Exception):
-            self.picture = still.still_png(self._view, size, camera, axes=axes, data=self.scene)
+            self.picture = still.still_png(self._view, size, camera, data=self.scene, **look)
         self.pictured.set()
 
     def _failed(self, error: Exception) -> None:

@@ -516,8 +516,9 @@ class Views:
         size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
         wide, ground = image.width // count, rgb(content["ground"])
         parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
+        look: Any = {"axes": axes, "ground": ground, "differs": self.views[-1].own_settings}
         pictures = [
-            still_png(view, size, camera, axes=axes, data=feed.scene, flow=part, ground=ground)
+            still_png(view, size, camera, data=feed.scene, flow=part, **look)
             for view, feed, part in zip(self.views, self.feeds, parts, strict=True)
         ]
         return _side_by_side(pictures)
@@ -529,7 +530,7 @@ class Views:
         view_size = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
         if timeout_s > 0:
             for feed in self.feeds:
-                feed.draw(view_size, camera, axes)
+                feed.draw(view_size, camera, axes=axes, differs=self.views[-1].own_settings)
                 feed.pictured.wait(timeout_s)
         pictures = [feed.picture for feed in self.feeds if feed.picture is not None]
         if len(pictures) < len(self.feeds):

@@ -25,7 +25,7 @@ from flowtex.examples._exact import nodes as nodes_of
 from flowtex.field.earth import Projection
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE
-from flowtex.web import preview
+from flowtex.web import still
 from flowtex.widget import feed
 
 pytest.importorskip("anywidget")
@@ -316,13 +316,13 @@ def test_an_error_while_tracing_is_told(
 def test_a_notebook_that_is_read_elsewhere_has_a_picture(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    free, draw = threading.Event(), preview.preview_png
+    free, draw = threading.Event(), still.still_png
 
     def held(*arguments: Any, **options: Any) -> bytes:
         free.wait(PATIENCE_S)
         return draw(*arguments, **options)
 
-    monkeypatch.setattr(preview, "preview_png", held)
+    monkeypatch.setattr(still, "still_png", held)
     widget = make(gyre(nodes=20))
     data, _ = widget._repr_mimebundle_()
     assert "image/png" not in data  # it was not waited for
@@ -332,9 +332,9 @@ def test_a_notebook_that_is_read_elsewhere_has_a_picture(
     assert widget._views.feeds[0].pictured.wait(PATIENCE_S)
     data, _ = widget._repr_mimebundle_()
     with Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) as picture:
-        assert picture.size == (480, 300)
+        assert picture.size == (800, 400)
         pixels = np.asarray(picture.convert("RGB"), dtype=float)
-    assert pixels[150, 200:280].std() > 10
+    assert pixels[200, 350:450].std() > 10
     assert (pixels[0, 0] == 255).all()
     widget._handle_custom_msg({"kind": "frame"}, [memoryview(b"png")])
     data, _ = widget._repr_mimebundle_()
