@@ -40,6 +40,8 @@ BY_HAND = (
 #: Arguments by which users set the background of a bar. The default are plates behind its texts:
 #: one behind the whole bar would cover as much as the title is wide.
 BEHIND = ("fill", "background_color", "color")
+#: Arguments of a bar that PyVista has made: it keeps its place and its labels.
+AS_IT_IS = {"position_x": None, "n_labels": None}
 #: Height of the text: a share of the view's, within limits in points; a title's is larger.
 TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 40, 10, 18, 1.15
 #: Height of a bar without its title, as a share of the view's, and at least this many lines.
@@ -96,8 +98,7 @@ class FlowBar:
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
         bar = self._bars[self.key]
         bar.SetTitle(title)
-        if len(self._sharing) == 1:
-            _options[bar] = self._options
+        _options.setdefault(bar, self._options if len(self._sharing) == 1 else AS_IT_IS)
         if self._renderer not in _renderers:
             _renderers.add(self._renderer)
             self._renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
@@ -167,8 +168,10 @@ def _ends(mapper: Any) -> Ends:
     """Return the limits that a mapper has without others, and the range of its values."""
     if isinstance(mapper, FlowMapper):
         return mapper.ends
-    low, high = map(float, mapper.dataset.get_data_range(mapper.array_name))
-    return Ends((low, high), (low, high))
+    mapper.GetInputAlgorithm().Update()  # no frame may have been drawn yet
+    data, name = pv.wrap(mapper.GetInputDataObject(0, 0)), mapper.array_name
+    ends = data.get_data_range(name) if name in data.array_names else mapper.scalar_range
+    return Ends(*[(float(ends[0]), float(ends[1]))] * 2)
 
 
 def _same_colours(one: Any, other: Any) -> bool:

@@ -156,6 +156,7 @@ class FlowtexComponent:
             )
             raise FieldError(msg)
         shown = self._handles[0]
+        shown.read_changes()
         bodies, left_out = read_bodies(self._plotter, shown)
         if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
             left_out.append("the place of the flow")

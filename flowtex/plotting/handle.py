@@ -232,7 +232,7 @@ class FlowHandle(AppearanceAttributes):
         """Read a PyVista mesh again before a frame if it has been changed in place."""
         self._source = Source(mesh, reading, _state(mesh))
 
-    def _read_changes(self) -> None:
+    def read_changes(self) -> None:
         """Draw the mesh again if it has changed; a warning says why it cannot be drawn."""
         if self._source is None or self._source.state == (state := _state(self._source.mesh)):
             return
@@ -301,7 +301,7 @@ class FlowHandle(AppearanceAttributes):
 
     def _before_frame(self) -> None:
         """Follow changes of the mesh, and of others that share the colour bar."""
-        self._read_changes()
+        self.read_changes()
         self._look_at_bar()
 
     def _check_actor(self) -> None:
