@@ -21,6 +21,7 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.scene.options import Options
@@ -106,8 +107,7 @@ def large(*, gpu: bool, repeats: int) -> Table:
             whole = view.data()
             page.tile = _tiles(whole)
             for zoom in (1.0, 8.0, 40.0):
-                first = whole.first_camera(4 / 3)
-                camera = first.zoom_by(zoom, 0.3, 0.2, aspect=4 / 3, whole=first)
+                camera = Camera.fit(field.surface, 4 / 3, zoom=zoom)
                 given = packed(whole, whole.header(view.scene.settings, camera=camera.to_dict()))
                 start = time.perf_counter()
                 viewer = page.mount(given, size=(1280, 960), controls=False, smooth=False)

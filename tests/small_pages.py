@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from camera_moves import pan
 
 from flowtex import FlowField
 
@@ -80,7 +81,7 @@ def picture(app: Any) -> Any:
 
 def panned(viewport: Any, x: float, y: float) -> None:
     """Move what is seen by a part of the view."""
-    viewport.camera = viewport.camera.pan(x, y, viewport.aspect)
+    viewport.camera = pan(viewport.camera, x, y, viewport.aspect)
 
 
 def difference(one: Any, other: Any) -> float:

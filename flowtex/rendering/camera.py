@@ -411,86 +411,6 @@ class Camera:
             focal_point=_point(np.add(self.focal_point, offset)),
         )
 
-    def pan(self, dx: float, dy: float, aspect: float) -> Self:
-        """Return the camera after a pan by a fraction of the view."""
-        right, up, _ = self.axes
-        return self.shift((right * dx * aspect + up * dy) * self.height)
-
-    def rotate(self, dx: float, dy: float, aspect: float, pivot: ArrayLike | None = None) -> Self:
-        """Return the camera after a rotation, as by a drag by (dx, dy).
-
-        The centre of the rotation is ``pivot``, (3,), by default the focal point.
-        """
-        around = np.asarray(self.focal_point if pivot is None else pivot, dtype=float)
-        aside = -CAMERA_LIMITS.turn * dx * min(aspect, CAMERA_LIMITS.widest_turn)
-        up = np.asarray(self.up)
-        right = _turned(self.axes[0], up, aside)
-
-        def turned(vector: ArrayLike) -> Floats:
-            level = _turned(np.asarray(vector, dtype=float), up, aside)
-            return _turned(level, -right, -CAMERA_LIMITS.turn * dy)
-
-        return replace(
-            self,
-            position=_point(around + turned(self.position - around)),
-            focal_point=_point(around + turned(self.focal_point - around)),
-            # The old up need not be off the new line of sight, so the axes turn along with it.
-            up=_point(turned(self.axes[1])),
-        )
-
-    def zoom_by(
-        self,
-        factor: float,
-        x: float = 0.0,
-        y: float = 0.0,
-        *,
-        aspect: float,
-        whole: Camera,
-        target: ArrayLike | None = None,
-    ) -> Self:
-        """Return the camera after a zoom; the point at (x, y) stays where it is.
-
-        Parameters
-        ----------
-        factor
-            More than 1 zooms in; a factor that is not a positive number changes nothing.
-        x, y
-            Point in the view that keeps its place.
-        aspect
-            Width of the picture over its height.
-        whole
-            Camera that shows the whole surface, which has zoom 1.
-        target
-            Point of the surface at (x, y), (3,). The focal point moves to its depth, which does not
-            change the view, so that a perspective camera never enters the surface.
-        """
-        if not math.isfinite(factor) or factor <= 0:
-            return self
-        camera = self if target is None else self._focused(np.asarray(target, dtype=float))
-        limits, zoom = CAMERA_LIMITS, whole.height / camera.height
-        factor = min(max(factor, limits.farthest_zoom / zoom), limits.deepest_zoom / zoom)
-        right, up, ahead = camera.axes
-        offset = (right * x * aspect + up * y) * camera.height
-        moved = camera.shift(offset * (1 - 1 / factor))
-        if camera.parallel:
-            return replace(moved, parallel_scale=camera.parallel_scale / factor)
-        height = camera.height / factor
-        half = math.tan(math.radians(limits.view_angle / 2))
-        distance = max(height / half, whole.distance / limits.closest)
-        return replace(
-            moved,
-            position=_point(np.asarray(moved.focal_point) - ahead * distance),
-            view_angle=2 * math.degrees(math.atan(height / distance)),
-        )
-
-    def _focused(self, point: Floats) -> Self:
-        """Bring the focal point to the depth of a point; the view stays the same."""
-        ahead = self.axes[2]
-        depth = float((point - self.position) @ ahead)
-        if depth <= 0:
-            return self
-        return replace(self, focal_point=_point(self.position + ahead * depth))
-
     def is_near(self, surface: Surface) -> bool:
         """Return whether double precision resolves the surface from this camera."""
         eye, focus = np.asarray(self.position), np.asarray(self.focal_point)
@@ -518,15 +438,6 @@ def _side(center: Floats) -> tuple[Point, Point]:
     if math.hypot(ahead[0], ahead[1]) < LEAST_ASIDE:  # at a pole, with longitude 0 below it
         return _point(ahead), (-math.copysign(1.0, ahead[2]), 0.0, 0.0)
     return _point(ahead), UP
-
-
-def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:
-    """Rotate a vector about an axis, by the right-hand rule."""
-    axis = axis / np.linalg.norm(axis)
-    angle = math.radians(degrees)
-    along = axis * (axis @ vector)
-    across = vector - along
-    return np.asarray(along + across * math.cos(angle) + np.cross(axis, vector) * math.sin(angle))
 
 
 def _is_point(value: Any, coordinates: int = 3) -> bool:

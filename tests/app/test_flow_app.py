@@ -13,6 +13,7 @@ import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
+from camera_moves import pan
 from small_pages import playing, small, small_page
 
 from flowtex import Camera, examples
@@ -63,7 +64,7 @@ async def test_use_leaves_no_object_behind() -> None:
     def use() -> None:
         element, whole = app.area.element, app.viewport.camera
         element.begin("browser")
-        element.take_camera(whole.pan(0.1, 0.1, 1.5).to_dict())
+        element.take_camera(pan(whole, 0.1, 0.1, 1.5).to_dict())
         element.take_camera(whole.to_dict())
         element.take_colours({"cmap": "magma"})
         element.take_colours({"cmap": "viridis"})

@@ -17,6 +17,8 @@ from waiting import PATIENCE_S, until
 
 pytest.importorskip("trame_rca")
 
+from camera_moves import pan, rotate
+
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
@@ -377,7 +379,7 @@ async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -
     async with playing(app):
         app.area.scalars, app.area.clim = "depth", (-1.0, 99.0)
         app.area.element.take_time(1.0)
-        app.viewport.camera = camera = app.viewport.camera.pan(0.2, 0.1, app.viewport.aspect)
+        app.viewport.camera = camera = pan(app.viewport.camera, 0.2, 0.1, app.viewport.aspect)
         app.state.send(index=5)
         await until(lambda: app.controllers.data.choice.plane == "k=5")
         assert app.viewport.handle.time == 1.0
@@ -547,7 +549,7 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
         return float(np.abs(app.viewport.camera.project(points, app.viewport.aspect)).max())
 
     assert 0.5 < seen() <= 1.0
-    app.viewport.camera = app.viewport.camera.pan(0.3, 0.1, app.viewport.aspect)
+    app.viewport.camera = pan(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
     app.area.reset_camera()
     assert 0.5 < seen() <= 1.0 and app.viewport.zoom == pytest.approx(1)
     for view in app.controllers.viewpoint.views:
@@ -558,7 +560,7 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
 
 def test_another_size_of_the_window_leaves_a_turned_surface_turned() -> None:
     app = page(field(curved=True))
-    app.viewport.camera = app.viewport.camera.rotate(0.3, 0.1, app.viewport.aspect)
+    app.viewport.camera = rotate(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
     before = app.viewport.camera.axes[2]
     app.stream.update_size("test", {"w": 120, "h": 64, "p": 1})
     assert app.viewport.camera.axes[2] == pytest.approx(before)

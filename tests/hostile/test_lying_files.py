@@ -13,8 +13,7 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.inspection import inspect_file as files
-from flowtex.sources.inspection import limits
+from flowtex.sources.inspection import limits, vtk_legacy
 from flowtex.sources.inspection.inspect_file import inspect_file
 
 
@@ -175,14 +174,14 @@ def test_a_member_of_a_series_is_looked_into(tmp_path: Path) -> None:
 
 def test_a_file_is_looked_into_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     looks = 0
-    check = files.vtk_legacy.check_vtk_legacy
+    check = vtk_legacy.check_vtk_legacy
 
     def counted(path: Path) -> None:
         nonlocal looks
         looks += 1
         check(path)
 
-    monkeypatch.setattr(files.vtk_legacy, "check_vtk_legacy", counted)
+    monkeypatch.setattr(vtk_legacy, "check_vtk_legacy", counted)
     path = tmp_path / "mesh.vtk"
     pv.ImageData(dimensions=(3, 3, 1)).save(path)
     inspect_file(path)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from camera_moves import pan, rotate, zoom_by
 from earth_fields import ocean, winds
 from flows import gyre, torus
 
@@ -64,7 +65,7 @@ def test_a_turn_is_that_of_vtk(camera: Camera, dx: float, dy: float) -> None:
     other.Azimuth(-90 * dx * ASPECT)
     other.Elevation(-90 * dy)
     other.OrthogonalizeViewUp()
-    turned = camera.rotate(dx, dy, ASPECT)
+    turned = rotate(camera, dx, dy, ASPECT)
     assert turned.position == pytest.approx(other.GetPosition(), abs=1e-12)
     assert turned.focal_point == camera.focal_point
     assert turned.up == pytest.approx(other.GetViewUp(), abs=1e-12)
@@ -117,33 +118,33 @@ def test_zoom_narrows_the_view(field: Any) -> None:
 def test_a_zoom_keeps_the_point_under_the_pointer(camera: Camera, factor: float) -> None:
     start, along = camera.ray(0.5, -0.25, ASPECT)
     target = start + along * 2.0
-    closer = camera.zoom_by(factor, 0.5, -0.25, aspect=ASPECT, whole=camera, target=target)
+    closer = zoom_by(camera, factor, 0.5, -0.25, aspect=ASPECT, whole=camera, target=target)
     assert closer.project(target, ASPECT) == pytest.approx((0.5, -0.25), abs=1e-9)
     assert closer.height < camera.height if factor > 1 else closer.height > camera.height
 
 
 def test_zoom_ends_at_its_limits() -> None:
-    deep = STRAIGHT.zoom_by(1e30, aspect=1.0, whole=STRAIGHT)
-    far = STRAIGHT.zoom_by(1e-30, aspect=1.0, whole=STRAIGHT)
+    deep = zoom_by(STRAIGHT, 1e30, aspect=1.0, whole=STRAIGHT)
+    far = zoom_by(STRAIGHT, 1e-30, aspect=1.0, whole=STRAIGHT)
     assert STRAIGHT.height / deep.height == pytest.approx(CAMERA_LIMITS.deepest_zoom)
     assert STRAIGHT.height / far.height == pytest.approx(CAMERA_LIMITS.farthest_zoom)
     for factor in (0.0, -1.0, math.nan, math.inf):
-        assert STRAIGHT.zoom_by(factor, aspect=1.0, whole=STRAIGHT) == STRAIGHT
+        assert zoom_by(STRAIGHT, factor, aspect=1.0, whole=STRAIGHT) == STRAIGHT
 
 
 def test_in_perspective_it_comes_closer_and_then_narrows() -> None:
     whole = Camera.fit(torus().surface, ASPECT)
-    near = whole.zoom_by(4, aspect=ASPECT, whole=whole)
+    near = zoom_by(whole, 4, aspect=ASPECT, whole=whole)
     assert near.distance == pytest.approx(whole.distance / 4)
     assert near.view_angle == pytest.approx(CAMERA_LIMITS.view_angle)
-    nearest = whole.zoom_by(64, aspect=ASPECT, whole=whole)
+    nearest = zoom_by(whole, 64, aspect=ASPECT, whole=whole)
     assert nearest.distance == pytest.approx(whole.distance / CAMERA_LIMITS.closest)
     assert nearest.height == pytest.approx(whole.height / 64)
 
 
 def test_a_pan_carries_the_picture_along() -> None:
     point = np.array([1.2, 0.4, 0.0])
-    moved = STRAIGHT.pan(0.25, -0.5, ASPECT)
+    moved = pan(STRAIGHT, 0.25, -0.5, ASPECT)
     step = STRAIGHT.project(point, ASPECT) - moved.project(point, ASPECT)
     assert step == pytest.approx((0.25, -0.5))
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from camera_moves import pan, rotate, zoom_by
 from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, IMAGE, TILTED, WHOLE, straight
 from triangle_meshes import random_plane
@@ -134,8 +135,8 @@ MOVES: list[tuple[str, list[float]]] = [
 def moved(camera: Camera, whole: Camera, aspect: float, move: tuple[str, list[float]]) -> Camera:
     name, (x, y, *rest) = move
     if name == "zoom":
-        return camera.zoom_by(x, y, *rest, aspect=aspect, whole=whole)
-    return camera.pan(x, y, aspect) if name == "pan" else camera.rotate(x, y, aspect)
+        return zoom_by(camera, x, y, *rest, aspect=aspect, whole=whole)
+    return pan(camera, x, y, aspect) if name == "pan" else rotate(camera, x, y, aspect)
 
 
 def camera_of(name: str) -> dict[str, Any]:

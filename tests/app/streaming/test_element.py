@@ -12,6 +12,7 @@ import pyvista as pv
 pytest.importorskip("trame_rca")
 
 from aiohttp import web
+from camera_moves import pan
 from small_pages import small, small_page
 from trame.app import get_server
 
@@ -162,7 +163,7 @@ def test_a_page_is_told_what_changes_here_and_what_others_say(
     assert told.calls == []  # there is no page yet
     begun = element.begin("browser")
     assert begun["camera"] is None and begun["settings"]["contrast"] == 2.0
-    camera = app.viewport.camera.pan(0.1, 0.0, 1.5)
+    camera = pan(app.viewport.camera, 0.1, 0.0, 1.5)
     element.take_camera(camera.to_dict(), "a")
     element.take_time(1.5, "a")
     element.take_clock(0.5, "a")
