@@ -121,22 +121,21 @@ export function variantOf(header: Header, settings: Settings, isClose: boolean, 
   return Object.entries(chosen).flatMap(([name, holds]) => (holds ? [name] : []));
 }
 
-/** The remainder that is not negative, as `%` of Python. */
-const modulo = (value: number, by: number): number => value - by * Math.floor(value / by);
-
 /** How the grains change: with the time of a field that varies, by the clock of a steady one. */
 function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<string, Uniform> {
-  const { geometry, slices, constants } = header;
-  const varies = slices.steps > 1;
+  const { geometry, constants } = header;
+  const { times, pace } = header.slices;
+  const varies = times.length > 1;
   const inPixels = !varies && s.speed_in === "pixels";
-  // The time in which the flow crosses the surface, or the setting's.
-  const turns = varies
-    ? modulo((view.time - slices.times[0]) / (geometry.extent / slices.pace), constants.mostTurns)
-    : modulo(view.clock / s.period, 1);
-  const travel = varies ? geometry.extent : s.speed * s.period;
-  const coarse = Math.floor(turns / constants.clockStep) * constants.clockStep;
+  // About the time in which the flow crosses the surface, a whole share of the series.
+  const span = times[times.length - 1] - times[0];
+  const rounds = (span * pace) / geometry.extent;
+  const period = varies ? span / (Math.round(rounds) || rounds) : s.period;
+  const turns = ((varies ? view.time - times[0] : view.clock) / period) % constants.mostTurns;
+  const travel = period * (varies ? pace : s.speed);
+  const fine = turns % constants.clockStep;
   return {
-    u_clock: [coarse, turns - coarse],
+    u_clock: [turns - fine, fine],
     u_travel: travel * (inPixels ? view.density : 1),
     u_travelInPixels: inPixels,
     u_travelBySpeed: varies || s.motion === "speed",

@@ -307,14 +307,17 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
     """
     store = textures.store
     if store.steps > 1:
-        # The time in which the flow crosses the surface.
-        period = textures.geometry.extent / textures.typical_speed
+        # About the time in which the flow crosses the surface, a whole share of the series, so that
+        # a periodic one has no seam.
+        first, last = (float(store.field.times[step]) for step in (0, -1))
+        rounds = (last - first) * textures.typical_speed / textures.geometry.extent
+        period = (last - first) / (np.floor(rounds + 0.5) or rounds)
         # Whole turns count for nothing, and single precision holds no more.
-        turns = (view.time - float(store.field.times[0])) / period % MOST_TURNS
-        travel = textures.geometry.extent
+        turns = (view.time - first) / period % MOST_TURNS
+        travel = textures.typical_speed * period
         pixels, by_speed = False, True
     else:
-        turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
+        turns, travel = view.clock / settings.period % MOST_TURNS, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {

@@ -258,13 +258,18 @@ class MovieJob(Job):
         self._quality = quality
         settings = _moving(viewport.handle.settings, viewport.field)
         self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
+        #: Why the movie hardly moves; empty where it does.
+        pixel = viewport.handle.pixel * viewport.size[1] / size[1]
+        self.notice = self.frames.notice(settings, pixel * self._density)
 
     async def _make(self, viewport: Viewport) -> None:
         viewport.set_still(still=False)
         if viewport.field.steady:
             motion = _moving(viewport.handle.settings, viewport.field).motion
             for pane in viewport.panes:
-                pane.handle.settings.update(motion=motion, period=self.frames.seconds)
+                pane.handle.settings.update(
+                    motion=motion, period=self.frames.seconds, speed=self.frames.speed
+                )
         fps, count = self.frames.fps, len(self.frames)
         opening = asyncio.ensure_future(
             self._in_thread(MovieWriter, self.path, self._size, fps, self._quality)

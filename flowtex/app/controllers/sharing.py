@@ -75,6 +75,8 @@ class Sharing(Controller):
             self.context.complain(error)
             return
         self._job = job
+        if isinstance(job, MovieJob) and job.notice:
+            self.context.complain(job.notice)
         self.state.set(out_progress=0.0, out_file=None)
         self._task = asyncio.create_task(self._run(job, self._task))
 

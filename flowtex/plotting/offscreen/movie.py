@@ -1,8 +1,9 @@
 """A flow that moves, as a movie: :func:`movie`, and its pictures alone: :func:`frames`.
 
 A steady flow streams round: its frames lie evenly in one period, and after the last one comes the
-first again, bit for bit. A field that varies in time is shown from its first to its last time;
-if these are equal, as after one period, the last time is left out.
+first again, bit for bit. In a short period it streams faster, because a grain stands still where
+the flow does not go a whole wave in a period. A field that varies in time is shown from its first
+to its last time; if these are equal, as after one period, the last time is left out.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
+from flowtex._util.notices import notify
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.encoders import (
@@ -28,11 +30,14 @@ from flowtex.plotting.offscreen.encoders import (
     write_movie,
 )
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
+from flowtex.rendering.uniforms import WAVE_PIXELS
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.settings import TABLE, Settings
 
 #: Seconds for one run through the times of a field: so many for each step, within limits.
 STEP_S, SHORTEST_RUN_S, LONGEST_RUN_S = 0.25, 5.0, 30.0
+#: Fewest frames that show in which direction the flow goes.
+LEAST_FRAMES = 4
 #: Frames of a movie and frames in a second, at most.
 MAX_FRAMES, MAX_FPS = 36_000, 120.0
 #: Velocities that differ by less than this share of the fastest are the same.
@@ -50,10 +55,31 @@ class FrameTimes:
     fps: float  #: As for :class:`Movie`; a steady flow is as long as its ``period``.
     seconds: float
     closed: bool
+    speed: float  #: The setting ``speed`` with which a steady flow moves visibly.
 
     def __len__(self) -> int:
         """Count the frames."""
         return len(self.times) or len(self.clocks)
+
+    def notice(self, settings: Settings, pixel: float) -> str:
+        """Return why the movie hardly moves, and the remedy; empty where it does.
+
+        ``pixel`` is the length that a pixel covers, in the mesh's units.
+        """
+        if len(self) < LEAST_FRAMES:
+            needed, remedy = LEAST_FRAMES / self.fps, f"fps={LEAST_FRAMES / self.seconds:g}"
+            reason = f"it has {len(self)} of the {LEAST_FRAMES} frames that show a direction"
+        else:
+            wave = WAVE_PIXELS * (1.0 if settings.speed_in == "pixels" else pixel)
+            needed = wave / max(self.speed, 1e-30)
+            if self.times or self.seconds >= needed * (1 - 1e-9):
+                return ""
+            reason = f"speed is {self.speed:g} {settings.speed_in} per second"
+            remedy = f"speed={wave / self.seconds:.3g}"
+        return (
+            f"the movie of {self.seconds:g} seconds hardly moves, because {reason}; expected at "
+            f"least seconds={needed:.3g}, or {remedy}"
+        )
 
 
 def frame_times(
@@ -78,11 +104,14 @@ def frame_times(
         raise MovieError(msg)
     if field.steady:
         clocks = tuple(duration * n / count for n in range(count))
-        return FrameTimes((), clocks, fps, duration, closed=True)
+        chosen, speed = (settings.speed, settings.speed_in), settings.speed
+        if chosen == (TABLE["speed"].default, TABLE["speed_in"].default):
+            speed = max(speed, WAVE_PIXELS / duration)
+        return FrameTimes((), clocks, fps, duration, closed=True, speed=speed)
     closed = _is_periodic(field)
     first, last = float(field.times[0]), float(field.times[-1])
     times = np.linspace(first, last, max(count, 2), endpoint=not closed)
-    return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed)
+    return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed, speed=0.0)
 
 
 def run_seconds(times: int) -> float:
@@ -183,8 +212,10 @@ def movie(
         Width and height in pixels; even numbers for an MP4.
     seconds
         Duration of the movie, 0.1 to 600. A steady flow repeats after this time; the default is the
-        setting ``period``. The default for a time-varying field is a quarter of a second per step,
-        but at least 5 and at most 30 seconds.
+        setting ``period``. With the default ``speed`` a short movie streams faster, 96 pixels in
+        its duration; for another one that is too slow, a notice gives the duration needed. The
+        default for a time-varying field is a quarter of a second per step, but at least 5 and at
+        most 30 seconds.
     fps
         Frames per second; 30 by default, and 20 in a GIF.
     quality
@@ -252,8 +283,8 @@ def frames(
     >>> import flowtex
     >>> from flowtex.plotting.offscreen.movie import frames
     >>> field = flowtex.examples.airfoil_field()
-    >>> [picture.shape for picture in frames(field, size=(64, 48), fps=5, seconds=0.4, samples=5)]
-    [(48, 64, 3), (48, 64, 3)]
+    >>> len(list(frames(field, size=(64, 48), fps=10, seconds=0.4, samples=5)))
+    4
     """
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     return _prepare(mesh, options, fps, seconds, **drawing)[1]
@@ -269,14 +300,22 @@ def _prepare(
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     values = dict(options.settings)
     if field.steady:
-        values |= {"motion": settings.motion, "period": shown.seconds}
+        values |= {
+            "motion": settings.motion,
+            "period": shown.seconds,
+            "speed": shown.speed,
+        }
     options = replace(options, field=FieldOptions(), settings=values)
 
     def draw() -> Generator[Bytes, None, None]:
         with closing(OffscreenPlotter(field, options, **drawing)) as plotter:
-            for time in shown.times:
-                yield plotter.picture(time=time)
-            for clock in shown.clocks:
-                yield plotter.picture(clock=clock)
+            for number in range(len(shown)):
+                if shown.times:
+                    picture = plotter.picture(time=shown.times[number])
+                else:
+                    picture = plotter.picture(clock=shown.clocks[number])
+                if not number and (text := shown.notice(settings, plotter.handles[0].pixel)):
+                    notify(text)
+                yield picture
 
     return shown, draw()

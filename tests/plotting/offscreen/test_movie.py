@@ -1,7 +1,9 @@
 from __future__ import annotations
 
+import re
 import sys
 import threading
+import warnings
 from collections.abc import Iterator
 from itertools import islice, pairwise
 from pathlib import Path
@@ -15,6 +17,7 @@ from PIL import Image, ImageSequence
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.notices import Notice
 from flowtex._util.progress import Stopped
 from flowtex.cli import main
 from flowtex.plotting.offscreen.encoders import MovieError, check_movie, write_movie
@@ -214,6 +217,55 @@ def test_a_period_leaves_its_last_time_out() -> None:
     moments = frame_times(field, Settings(), fps=2, seconds=4)
     assert moments.closed and moments.times == pytest.approx(np.arange(8) * 0.5)
     assert frame_times(field, Settings(), fps=10).seconds == 5.0
+
+
+def changed(drawn: list[Pixels]) -> NDArray[np.float64]:
+    """Share of pixels that differ from each picture to the next, and from the last to the first."""
+    following = np.roll(drawn, -1, axis=0).astype(int)
+    return np.asarray((np.abs(following - drawn).max(axis=-1) > 8).mean(axis=(1, 2)))
+
+
+@pytest.mark.parametrize(("seconds", "fps"), [(0.4, 20.0), (1.0, 20.0), (0.8, 5.0), (4.0, 8.0)])
+def test_short_movies_move_without_a_seam(seconds: float, fps: float, opengl: object) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        drawn = list(frames(shear(), size=SIZE, seconds=seconds, fps=fps, samples=25))
+    shares = changed(drawn)
+    assert len(drawn) == round(seconds * fps)
+    assert shares.min() > 0.1 and shares[-1] == pytest.approx(shares[:-1].mean(), rel=0.25)
+
+
+def test_a_periodic_series_has_no_seam(opengl: object) -> None:
+    # The flow crosses the surface in no whole share of the period.
+    field = shear(steps=9, turn=2 * np.pi)
+    drawn = list(frames(field, size=SIZE, seconds=2, fps=20, samples=25, scalars=False))
+    still = np.zeros(SIZE[::-1])
+    near = [carried(a, b, still, still, 1) for a, b in pairwise([*drawn, drawn[0]])]
+    assert near[-1] > 0.9 * np.median(near) > 0.5
+
+
+@pytest.mark.parametrize(
+    ("options", "needed"),
+    [
+        ({"seconds": 1.0, "speed": 20.0}, 4.8),  # 96 pixels
+        ({"seconds": 1.0, "speed": 2.0, "speed_in": "units"}, None),
+        ({"seconds": 0.4, "fps": 5.0}, 0.8),  # four frames
+    ],
+)
+def test_a_movie_that_hardly_moves_states_the_needed_duration(
+    options: dict[str, Any], needed: float | None, opengl: object
+) -> None:
+    options = {"size": SIZE, "fps": 10.0, "samples": 9, **options}
+    with pytest.warns(Notice, match="hardly moves") as caught:
+        list(frames(shear(), **options))
+    match = re.search(r"at least seconds=([\d.]+)", str(caught[0].message))
+    assert match and (needed is None or float(match[1]) == pytest.approx(needed))
+    # With that duration it moves.
+    options["seconds"] = float(match[1]) * 1.01
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        moving = list(frames(shear(), **options))
+    assert changed(moving).min() > 0.05
 
 
 @pytest.mark.parametrize(
