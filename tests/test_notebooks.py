@@ -92,7 +92,7 @@ def kernel(opengl: Any) -> Iterator[Any]:
 def smaller(code: str) -> str:
     """Return code whose pictures, not arrays, have a quarter of the width and of the height.
 
-    Movies have three tenths of a second.
+    Movies have eight tenths of a second.
     """
     code = re.sub(r"dpi=\d+", "dpi=40", code).replace("resolution=4096", "resolution=512")
     code = re.sub(r"\bseconds=\d+(?![.\d])", "seconds=0.8", code)

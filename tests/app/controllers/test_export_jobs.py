@@ -152,7 +152,7 @@ def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, k
     assert min(steps) > 1 and max(steps) < 2 * min(steps)
     # The settings on view stay, and the motion is the movie's own.
     assert plain.handle.settings.motion == "off" and plain.clock == 0.0
-    plain.handle.settings.update(motion="speed", period=1.0, speed=96.0)
+    plain.handle.settings.update(motion="speed", period=1.0)
     plain.resize(wide, high)
     plain.clock = 0.3
     assert difference(pictures[3], plain.draw(wide, high)) < 6
@@ -173,6 +173,7 @@ def shown(path: Path) -> Any:
 
 def test_a_movie_that_hardly_moves_has_a_notice(plain: Viewport, tmp_path: Path) -> None:
     options: dict[str, Any] = {"path": tmp_path / "a.gif", "size": (120, 80), "fps": 10}
+    plain.handle.settings.speed = 40.0
     assert not MovieJob(plain, seconds=0.5, **options).notice
     plain.handle.settings.speed = 48.0
     assert not MovieJob(plain, seconds=2.0, **options).notice
