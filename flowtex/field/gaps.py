@@ -77,5 +77,14 @@ def filled_gaps(
     )
 
 
+def known_nodes(field: Any, first: int, last: int) -> Bools:
+    """Return the valid nodes of a field that have data at all steps of a range, (J, I)."""
+    known: Bools = field.valid.copy()
+    if field.uncertainty == NO_DATA:
+        for step in range(first, last + 1):
+            known &= np.asarray(field.scalars[NO_DATA][step]) < 1
+    return known
+
+
 def _known(step: Floats) -> Bools:
     return np.asarray(np.isfinite(step).all(axis=-1))

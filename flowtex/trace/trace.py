@@ -18,11 +18,13 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import brief, check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.notices import notify
 from flowtex._util.progress import pool, track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import FOLLOWED
 from flowtex.field.derived.gradient import node_gradient, true_positions
+from flowtex.field.gaps import known_nodes
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
@@ -38,6 +40,10 @@ B = TypeVar("B")
 LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
+#: Share of the greatest speed that is rounding, and contraction by less than the error of paths.
+ROUNDED_SPEED, LEAST_STRETCH = 1e-9, 10 * TOLERANCE
+#: First step of a particle in a steady flow, as a share of the horizon.
+FIRST_STEP = 0.2
 #: Particles followed together, and blocks of them followed at once. Threads wait for each other
 #: between the operations on a block: on 16 cores blocks a quarter as large take 1.5 times as long.
 BLOCK, MOST_THREADS = 65536, 8
@@ -474,18 +480,34 @@ def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
     The trace slices are the flow map (Shadden, Lekien and Marsden 2005, Definition and properties
     of Lagrangian coherent structures from finite-time Lyapunov exponents in two-dimensional
     aperiodic flows).
-    It is NaN where a particle leaves the domain within the horizon. Steps of a field that varies
-    are computed when they are read.
+    It is NaN where a particle leaves the domain within the horizon, where particles gather closer
+    than their paths are exact, and at steps from which the
+    horizon leaves the series: a notice states how long it may be. Steps of a field that varies are
+    computed when they are read.
     """
-    gradient = node_gradient(field.surface, field.projection)
+    room = np.full(1, np.inf)
+    if not field.steady:
+        room = np.abs(field.times[-1 if horizon > 0 else 0] - field.times)
+    known = abs(horizon) <= room * (1 + 1e-9)
+    if not known.all():
+        first, last = field.times[[np.argmax(room), np.argmin(room)]]
+        notify(
+            f"FTLE is blank at {np.sum(~known)} of {len(known)} time steps, because horizon="
+            f"{horizon:g} leads beyond the {'end' if horizon > 0 else 'start'} of the series; the "
+            f"longest valid horizon is {last - first:g} at time {first:g}, and 0 at time {last:g}"
+        )
 
     def at_step(step: int) -> Floats:
-        moved = _moved(field, step, horizon)
+        if not known[step]:
+            return np.full(field.shape, np.nan)
+        moved, followed = _moved(field, step, horizon)
+        gradient = node_gradient(field.surface, field.projection, followed)
         change = gradient.derivative(np.moveaxis(moved, -1, 0)) + gradient.directions
         (a, b), (_, d) = (
             [np.einsum("c...,c...->...", one, two) for two in change] for one in change
         )
         largest = (a + d) / 2 + np.hypot((a - d) / 2, b)
+        largest[largest < LEAST_STRETCH**2] = np.nan
         with np.errstate(divide="ignore", invalid="ignore"):
             return gradient.with_poles(np.log(largest) / (2 * abs(horizon)))
 
@@ -497,13 +519,25 @@ def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
 FOLLOWED["ftle"] = lyapunov_exponent
 
 
-def _moved(field: FlowField, step: int, horizon: float) -> Floats:
-    """Return displacements of the particles at the nodes, (J, I, 3), on the true surface."""
+def _moved(field: FlowField, step: int, horizon: float) -> tuple[Floats, Bools]:
+    """Return displacements of the particles at the nodes, (J, I, 3), on the true surface.
+
+    The second array marks the particles that are followed to the end, (J, I).
+    """
     times = field.times - field.times[step]
     span, forward = (min(horizon, 0.0), max(horizon, 0.0)), horizon > 0
     first = max(int(np.searchsorted(times, span[0], side="right")) - 1, 0)
     last = min(int(np.searchsorted(times, span[1])), len(times) - 1)
-    part = field.at_steps(range(first, last + 1))
+    part, valid = field.at_steps(range(first, last + 1)), known_nodes(field, first, last)
+    if (valid != field.valid).any():
+        part = replace(part, valid=valid)
+    if field.steady:
+        # In a flow that may vary no particle rests, so that a path that ends has left the domain.
+        # The first step is short: the estimated error of a long one may vanish by chance.
+        velocity, times = np.repeat(part.velocity, 2, axis=0), FIRST_STEP * np.sort([0.0, horizon])
+        part = replace(part, velocity=velocity, times=times)
+        part.__dict__["surface"] = field.surface
+        first = 0 if forward else -1
     slices = trace(
         part, lags=[1.0], unit=abs(horizon), parameter="time", steps=[step - first],
         two_sided=forward, compose=False,
@@ -513,13 +547,13 @@ def _moved(field: FlowField, step: int, horizon: float) -> Floats:
     )
     assert moved is not None
     assert reach is not None
-    # Particles at rest have not left.
-    moved, ended = moved[0, 0].astype(float), (reach[0] < 1) & (field.speed[step] > 0)
+    moved, speed = moved[0, 0].astype(float), np.nan_to_num(field.speed[step])
+    # Rounding moves a particle at rest in a corner outward.
+    moving = (speed > ROUNDED_SPEED * speed.max()) | ((reach[0] > 0) & (not field.steady))
+    followed = valid & ~((reach[0] < 1) & moving)
     if not slices.in_space:
         moved = field.surface.at(slices.nodes + moved) - field.points
     before, after = (
         true_positions(p, field.projection) for p in (field.points, field.points + moved)
     )
-    result = after - before
-    result[ended | ~field.valid] = np.nan
-    return np.asarray(result)
+    return np.where(followed[..., None], after - before, np.nan), followed

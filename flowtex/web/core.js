@@ -694,19 +694,19 @@ arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,cons
 eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(s.samples/
 2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={FLOWTEX_CELLS:isClose,
 FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(chosen).flatMap(
-([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
-let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
-(view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
-geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,
-turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="sp\
-eed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.
-constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-
-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.
-SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,
-u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.
-noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,
-u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],
-u_pictureRound:[Number(paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+([name,holds])=>holds?[name]:[])}function motionUniforms(header,s,view){let{geometry,constants}=header,{times:times2,pace}=header.
+slices,varies=times2.length>1,inPixels=!varies&&s.speed_in==="pixels",span=times2[times2.length-1]-times2[0],rounds=span*
+pace/geometry.extent,period=varies?span/(Math.round(rounds)||rounds):s.period,turns=(varies?view.time-times2[0]:view.clock)/
+period%constants.mostTurns,travel=period*(varies?pace:s.speed),fine=turns%constants.clockStep;return{u_clock:[turns-fine,
+fine],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.
+wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,
+center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**
+clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.
+map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
 (times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL2=.001;function texelsAt({
 scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[-di-dj,di,dj];return scene.

@@ -43,27 +43,27 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
 SOFTWARE. */
-var hr=1e-6,Ke=typeof Float32Array<"u"?Float32Array:Array;var Ac=Math.PI/180,Sc=180/Math.PI;function $r(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+var hr=1e-6,Ke=typeof Float32Array<"u"?Float32Array:Array;var Ec=Math.PI/180,Ac=180/Math.PI;function $r(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function Yr(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<hr?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
-a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Da(){var a=new Ke(3);return Ke!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function Xr(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function Kr(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function qr(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function Jr(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
+a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Va(){var a=new Ke(3);return Ke!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function Xr(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function Kr(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function qr(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function Jr(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
 r,a[2]=e[2]+t[2]*r,a}function Zr(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;return s>0&&(s=1/Math.sqrt(s)),a[0]=e[0]*s,a[1]=e[1]*s,a[2]=e[2]*
 s,a}function Qr(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function en(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[0],o=t[1],c=t[2];
 return a[0]=n*c-s*o,a[1]=s*i-r*c,a[2]=r*o-n*i,a}function tn(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[3]*r+t[7]*n+t[11]*s+t[15];return i=i||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 i,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/i,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/i,a}function mr(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Pc=(function(){var a=Da();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var _c=(function(){var a=Va();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var H=a=>a,te=()=>[0,0,0],rn=a=>new Array(a).fill(0),N=(a,e)=>Qr(H(a),H(e)),L=a=>Xr(H(a)),S=(a,e)=>Kr(te(),H(a),H(e)),k=(a,e)=>qr(
 te(),H(a),e),I=(a,e)=>en(te(),H(a),H(e)),V=a=>Zr(te(),H(a)),P=(a,e,t=1)=>Jr(te(),H(a),H(e),t);function qe(a,e,t){let r=Yr(
 rn(16),t*Math.PI/180,H(e));return r===null?te():tn(te(),H(a),r)}function F(a,e){let t=$r(rn(9),a);return mr(te(),H(e),t)}
-function Z(a,e){return mr(te(),H(e),a)}function _(a,e,t){return Math.min(Math.max(a,e),t)}var Ha="own cmap";function za(a,e,t){let[r,n]=[a.scalars.maps.indexOf(t)*3*256,256],s=new Uint8Array(4*n).fill(255);for(let i=0;i<n;i+=1)for(let o=0;o<
+function Z(a,e){return mr(te(),H(e),a)}function _(a,e,t){return Math.min(Math.max(a,e),t)}var Ba="own cmap";function Ha(a,e,t){let[r,n]=[a.scalars.maps.indexOf(t)*3*256,256],s=new Uint8Array(4*n).fill(255);for(let i=0;i<n;i+=1)for(let o=0;o<
 3;o+=1)s[4*i+o]=e[r+3*i+o];return s}function nn(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:p})=>p===e.scalars);
 if(n>=0){let{name:p,label:f,unit:d,steps:g}=r.choices[n];Object.assign(r,{name:p,label:f,unit:d,steps:g,number:n,auto:!0})}
 if(e.cmap&&(r.cmap=e.cmap),Array.isArray(e.clim)&&([r.low,r.high]=e.clim),e.clim!==void 0&&(r.auto=!e.clim),r.auto&&r.choices[r.
 number]){let{low:p,high:f,cmap:d=""}=r.choices[r.number],y=(p<0&&f>0||r.diverging.includes(d))&&r.diverging.includes(r.cmap),
 b=Math.max(-p,f);[r.low,r.high]=y?[-b,b]:[p,f]}let{coastlines:s=a.earth?.coastlines,graticule:i=a.earth?.graticule}=e,o=a.
 earth&&{...a.earth,coastlines:s,graticule:i},{opacity:c=a.opacity}=e,l={scalars:r,earth:o,opacity:c},h=t.get("maps");if(!e.
-cmap||!h)return{colours:l,part:null};let m={name:"cmap",data:za(a,h.data,e.cmap),shape:[256,4],digest:`${Ha} ${e.cmap}`};
-return{colours:l,part:m}}var ur=[0,0,1],sn=Math.sin(89*Math.PI/180),Ga=.2,ue=a=>Math.tan(a*Math.PI/360),pe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
+cmap||!h)return{colours:l,part:null};let m={name:"cmap",data:Ha(a,h.data,e.cmap),shape:[256,4],digest:`${Ba} ${e.cmap}`};
+return{colours:l,part:m}}var ur=[0,0,1],sn=Math.sin(89*Math.PI/180),za=.2,ue=a=>Math.tan(a*Math.PI/360),pe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
 this.state=pr(e),this.start=pr(e),this.limits=t,this.flat=r,this.globe=s,this.aspect=n,this.homeHeight=this.height,this.
 nearest=this.distance/t.closest}get height(){let{parallel:e,parallel_scale:t,view_angle:r}=this.state;return e?t:this.distance*
 ue(r)}get distance(){return L(S(this.state.focal_point,this.state.position))}get zoom(){return this.homeHeight/this.height}get axes(){
@@ -79,7 +79,7 @@ this.shift(P(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.
 r.up),i=S(r.position,r.focal_point);i=qe(i,s,-n.turn*e*Math.min(this.aspect,n.widest_turn));let o=V(I(s,i));i=qe(i,o,n.turn*
 t),r.position=P(r.focal_point,i),r.up=V(I(i,o))}roam(e,t){let{state:r,limits:n,globe:s}=this,i=L(r.position),o=Math.max(
 i-s,0)*ue(r.view_angle),c=r.parallel?r.parallel_scale:o,l=Math.min(c/s*180/Math.PI,n.turn),h=Math.hypot(r.position[0],r.
-position[1])/i,u=Math.min(l*this.aspect/Math.max(h,Ga),n.turn);this.turn(ur,-u*e);let[m]=this.axes,p=Math.abs(r.position[2])/
+position[1])/i,u=Math.min(l*this.aspect/Math.max(h,za),n.turn);this.turn(ur,-u*e);let[m]=this.axes,p=Math.abs(r.position[2])/
 i,f=pr(r);this.turn(m,l*t),Math.abs(r.position[2])/i>Math.max(sn,p)&&(this.state=f);let[,,g]=this.axes,y=P(ur,g,-N(ur,g));
 L(y)>1-sn&&(this.state.up=V(y))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=qe(r[n],e,t)}zoomBy(e,t=0,r=0){
 if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=_(e,n/
@@ -96,24 +96,24 @@ view_angle);if([c.map(A=>A/g/n),l.map(A=>A/g)].forEach((A,T)=>{for(let O=0;O<3;O
 for(let A=0;A<3;A+=1)d[4*A+2]=h[A]/f;return d[14]=-N(h,p)/f,d[15]=1,d}let b=u(r.position),v=N(S(p,b),h),x=Math.max(v+f,.001*
 f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),E=-2*x*w/(x-w);for(let A=0;A<3;A+=1)d[4*A+2]=h[A]*M,d[4*A+3]=h[A];return d[15]=-N(
 h,b),d[14]=d[15]*M+E,d}function an(a,[e,t],[r,n]){let s=[...a];for(let i=0;i<4;i+=1)s[4*i]=(s[4*i]-e*s[4*i+3])*r,s[4*i+1]=
-(s[4*i+1]-t*s[4*i+3])*n;return s}var ae=8,cn=9,fr=.2,Wa=1.4,on=55,ja=125,$a=.5,Ya=4,Xa=150,ln=4e-5,hn=2e-6;function mn(a,e,t,r,n){let s=Math.max(n-e,Math.
+(s[4*i+1]-t*s[4*i+3])*n;return s}var ae=8,cn=9,fr=.2,Ga=1.4,on=55,Wa=125,ja=.5,$a=4,Ya=150,ln=4e-5,hn=2e-6;function mn(a,e,t,r,n){let s=Math.max(n-e,Math.
 min(e/2,n),2)/a;if(t*(r+ae)<=s)return{scale:1,samples:r};let i=Math.min(cn,r),o=Math.sqrt(s/(i+ae)/t);return o<1?{scale:Math.
 max(o,fr),samples:i}:{scale:1,samples:_(Math.floor(s/t-ae),i,r)}}function un(a,e,t,r,n){if(!n)return on;let s=Math.min(cn,
-r),i=e+a*t*$a**2*(s+ae);return _(i,on,ja)}function pn(a,e,t,r,n){let s=e*r*(n+ae),i=Math.max(Math.min(3*t,Xa),t);return Math.
-max(Math.floor(Math.max(a-t,i)/s),Ya)}function fn(a){return(2*a+ae)/(a+ae)}function dn(a,e,t,r,n,s){let i=Math.max(e-t,.05)/
+r),i=e+a*t*ja**2*(s+ae);return _(i,on,Wa)}function pn(a,e,t,r,n){let s=e*r*(n+ae),i=Math.max(Math.min(3*t,Ya),t);return Math.
+max(Math.floor(Math.max(a-t,i)/s),$a)}function fn(a){return(2*a+ae)/(a+ae)}function dn(a,e,t,r,n,s){let i=Math.max(e-t,.05)/
 (r*(n+ae)*s);return a+(i-a)*(i>a?.7:.3)}function gn(a,e,t){let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(
-r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:_(c,.1,Math.max(Wa,n))}}var Ka=`#version 300 es
+r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:_(c,.1,Math.max(Ga,n))}}var Xa=`#version 300 es
 precision highp float;
 precision highp int;
-`,qa=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners","flowtexRadi\
+`,Ka=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners","flowtexRadi\
 us"],dr=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares"],Me=class{graphics;entries=new Map;parallel=null;constructor(e){
 this.graphics=e}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){this.
 entries.clear()}dispose(){for(let e of this.entries.values()){for(let t of e.shaders)this.graphics.free("Shader",t);this.
 graphics.free("Program",e.program)}this.clear()}get(e,t,...r){let n=[e,t,...r].join("\0"),s=this.entries.get(n);return s||
 this.entries.set(n,s=this.build(e,t,r)),!s.ready&&!s.error&&this.finish(s),s}build(e,t,r){let{graphics:n}=this,s=n.context,
-i=n.counted(s.createProgram()),o=[s.VERTEX_SHADER,s.FRAGMENT_SHADER],c=Ka+r.map(u=>`#define ${u}
+i=n.counted(s.createProgram()),o=[s.VERTEX_SHADER,s.FRAGMENT_SHADER],c=Xa+r.map(u=>`#define ${u}
 `).join(""),l=[e,t].map((u,m)=>{let p=n.counted(s.createShader(o[m]));return s.shaderSource(p,u.startsWith("#version")?u:
-c+u),s.compileShader(p),s.attachShader(i,p),p});return qa.forEach((u,m)=>s.bindAttribLocation(i,m,u)),s.linkProgram(i),{
+c+u),s.compileShader(p),s.attachShader(i,p),p});return Ka.forEach((u,m)=>s.bindAttribLocation(i,m,u)),s.linkProgram(i),{
 program:i,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:ln}}}finish(e){let t=this.graphics.context,{program:r}=e,
 n=this.parallel?.COMPLETION_STATUS_KHR;if(n&&!t.getProgramParameter(r,n))return;if(!t.getProgramParameter(r,t.LINK_STATUS)){
 if(t.isContextLost())return;let o=[...e.shaders.map(c=>t.getShaderInfoLog(c)),t.getProgramInfoLog(r)].filter(Boolean).join(
@@ -124,7 +124,7 @@ o.name);!o||!c||e.uniforms.set(o.name.replace(/\[0\]$/,""),{location:c,type:o.ty
 let c=e.uniforms.get(i);c&&t.uniform1i(c.location,o)}),e.ready=!0}use(e,t){let r=this.graphics.context;r.useProgram(e.program);
 for(let[n,s]of Object.entries(t)){let i=e.uniforms.get(n);if(!i)continue;let{location:o,type:c}=i,l=typeof s=="object"?s:
 [Number(s)];c===r.FLOAT?r.uniform1fv(o,l):c===r.FLOAT_VEC2?r.uniform2fv(o,l):c===r.FLOAT_VEC3?r.uniform3fv(o,l):c===r.FLOAT_VEC4?
-r.uniform4fv(o,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(o,!1,l):r.uniform1i(o,l[0])}}};var Ja=4,Za=45,Qa=[4,68],ei=Symbol.for("flowtex.gl/3"),gr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+r.uniform4fv(o,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(o,!1,l):r.uniform1i(o,l[0])}}};var qa=4,Ja=45,Za=[4,68],Qa=Symbol.for("flowtex.gl/3"),gr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Me(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",e=>{e.
 preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),this.picker=
@@ -134,7 +134,7 @@ _buffer_float","EXT_color_buffer_half_float"];this.floats=t.some(r=>e.getExtensi
 if(!this.gl)throw new Error("WebGL2 is not available");return this.gl}leave(e){if(this.users.delete(e),this.waiting.delete(
 e),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=0,this.programs.dispose();for(let t of[this.picker,
 this.smooth])t&&this.freeTarget(t);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(e){this.
-waiting.add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+Za;
+waiting.add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+Ja;
 for(let r of[...this.waiting])if(this.waiting.delete(r),r.frame(e,t),performance.now()>t)break;this.waiting.size&&(this.
 scheduled||=requestAnimationFrame(r=>this.run(r)))}counted(e){if(e===null)throw new Error("the graphics card has no memo\
 ry left, or the context is lost");return this.objects+=1,e}free(e,t){if(t===null||this.isLost||!this.gl)return;this.objects-=
@@ -145,14 +145,14 @@ i);let c=[[e,s.COLOR_ATTACHMENT0],[s.DEPTH_COMPONENT24,s.DEPTH_ATTACHMENT]].map(
 return s.bindRenderbuffer(s.RENDERBUFFER,u),s.renderbufferStorageMultisample(s.RENDERBUFFER,n,l,t,r),s.framebufferRenderbuffer(
 s.FRAMEBUFFER,h,s.RENDERBUFFER,u),u});return{frame:i,buffers:c}}freeTarget(e){this.free("Framebuffer",e.frame);for(let t of e.
 buffers)this.free("Renderbuffer",t)}bindSmooth(e,t){let r=this.context,n=this.smooth;if(!n||n.width<e||n.height<t){let[s,
-i]=[Math.max(e,n?.width??0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,Ja);this.smooth=
+i]=[Math.max(e,n?.width??0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,qa);this.smooth=
 {...o,width:s,height:i}}r.bindFramebuffer(r.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(e,t){let r=this.context;r.bindFramebuffer(
 r.READ_FRAMEBUFFER,this.smooth?.frame??null),r.bindFramebuffer(r.DRAW_FRAMEBUFFER,null),r.disable(r.SCISSOR_TEST),r.blitFramebuffer(
 0,0,e,t,0,0,e,t,r.COLOR_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,null)}numbers(e,t=1,r=1){let n=this.context;
-this.picker??=this.target(n.RGBA32UI,...Qa,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
+this.picker??=this.target(n.RGBA32UI,...Za,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
 n.SCISSOR_TEST),n.enable(n.DEPTH_TEST),n.clearBufferuiv(n.COLOR,0,[0,0,0,0]),n.clear(n.DEPTH_BUFFER_BIT),e();let s=new Uint32Array(
 4*t*r);return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function bn(){
-let a=globalThis;return a[ei]??=new gr}function vn(a){let e=a>>10&31,t=a&1023,r;return e===0?r=t*2**-24:e===31?r=t?NaN:1/0:r=(1024+t)*2**(e-25),a&32768?-r:r}var Re=Float32Array.
+let a=globalThis;return a[Qa]??=new gr}function vn(a){let e=a>>10&31,t=a&1023,r;return e===0?r=t*2**-24:e===31?r=t?NaN:1/0:r=(1024+t)*2**(e-25),a&32768?-r:r}var Re=Float32Array.
 from({length:65536},(a,e)=>vn(e)),xn=new Float32Array(1),yn=new Uint32Array(xn.buffer);function br(a){xn[0]=a;let e=yn[0]>>>
 16&32768,t=yn[0]&2147483647;return t>=1199566848?e|(t>2139095040?32256:31744):t<947912704?e|Math.round(Math.abs(a)*2**24):
 e|t-93952e4>>>13}function wn(a,e,t,r){let[n,s]=[Math.max(e>>1,1),Math.max(t>>1,1)],i=new Uint16Array(n*s*r),o=(c,l,h)=>{
@@ -169,13 +169,13 @@ if(!o)throw new Error(`a part has the type "${n}"; expected ${Object.keys(Mn).jo
 data:new o(t.slice().buffer)}}function _n(a){let[e,t]=yr(new Uint8Array(a)),r=t;return e.map(n=>{let s=new Uint8Array(a,
 r,n.bytes);return r+=n.bytes,n.differences===void 0?Tn(n,s):Rn(n,s)})}function yr(a){let e=4+new DataView(a.buffer,a.byteOffset).
 getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(a.subarray(4,e))),e]}async function Pn(a,e){return Rn(a,new Uint8Array(
-await ti(e).arrayBuffer()))}function ti(a){let e=atob(a),t=new Uint8Array(e.length);for(let r=0;r<t.length;r+=1)t[r]=e.charCodeAt(
+await ei(e).arrayBuffer()))}function ei(a){let e=atob(a),t=new Uint8Array(e.length);for(let r=0;r<t.length;r+=1)t[r]=e.charCodeAt(
 r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStream("gzip")))}var En={1:Uint8Array,2:Uint16Array,
 4:Uint32Array};function Rn(a,e){let{shape:t,differences:r=[0,0],scale:n=null}=a,s=t.reduce((u,m)=>u*m,1),i=s?e.length/s:
 1;if(!(i in En))throw new Error(`the packing of the part "${a.name}" is invalid`);let[o,c]=t.length>2?t.slice(-2):[...t,
 1].slice(-2),l=new En[i](s);for(let u=0,m=0;u<c;u+=1)for(let p=u;p<s;p+=c,m+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+m]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let u=0;u<r[0];u+=1)for(let m=h;m<s;m+=1)l[m]+=l[m-h];for(let u=0;u<r[1];u+=1)for(let m=0;m<
-s;m+=h)for(let p=m+c;p<m+h;p+=1)l[p]+=l[p-c];return Tn(a,n?ri(l,n.map(u=>2**u)):l)}function ri(a,e){let t=e.length;return a instanceof
+s;m+=h)for(let p=m+c;p<m+h;p+=1)l[p]+=l[p-c];return Tn(a,n?ti(l,n.map(u=>2**u)):l)}function ti(a,e){let t=e.length;return a instanceof
 Uint16Array?a.map((r,n)=>br((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}function Ze(a,e,t){let{width:r,height:n,layers:s,channels:i,levels:o}=t,c=a.getParameter(a.MAX_TEXTURE_SIZE),l=a.getParameter(
 a.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(r,n)>c||s>l)throw new Error(`a texture of ${r} x ${n} texels in ${s} layers is n\
 eeded, but this graphics card supports at most ${c} x ${c} in ${l}; show fewer nodes`);let h=a.TEXTURE_2D_ARRAY;a.bindTexture(
@@ -202,7 +202,7 @@ this.poles.length,1)]}get angles(){let{cells:e}=this,[t,r]=this.raysSize,n=new F
 (s,i)=>{let o=[];for(let c=0;c<=e;c+=1){let[l,h]=this.ray(i,c),u=Math.atan2(h,l);for(;u<o[c-1];)u+=2*Math.PI;o.push(u)}o.
 forEach((c,l)=>{let h=o[0]+2*Math.PI*l/e+1e-6,u=o.findLastIndex(m=>m<=h);n.set([c,Math.hypot(...this.ray(i,l)),u],4*(i*t+
 l))})}),n}get uniforms(){let e=this.poles.flatMap(({line:r,inward:n,near:s},i)=>[r,n,s,this.shift(i)]),t=this.poles.flatMap(
-({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var Ln=32767,[ni,si,ai,ii]=[0,1,2,3],oi=2,ci=8,li=4,hi=4,mi=64,ui=64,pi=2e4,fi=1e30,kn=1e-5;function On(a,e,t){let[r,n]=t,
+({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var Ln=32767,[ri,ni,si,ai]=[0,1,2,3],ii=2,oi=8,ci=4,li=4,hi=64,mi=64,ui=2e4,pi=1e30,kn=1e-5;function On(a,e,t){let[r,n]=t,
 s=a.shape[1],[i,o]=e.drawn,c=new Float64Array(r*n*3);for(let l=0,h=0;l<r;l+=1){let u=3*((l+i+1)*s+o+1);for(let m=0;m<3*n;m+=
 1)c[h++]=a.data[u+m]+e.middle[m%3]}return{data:c,shape:[r,n,3]}}function Nn(a,e,t){let[r,n]=t,s=3*a.shape[1],[i,o]=e.drawn,
 c=new Int16Array(r*n*3);for(let l=0,h=0;l<r;l+=1)for(let u=0;u<n;u+=1,h+=3){let m=s*(l+i+1)+3*(u+o+1),p=g=>[0,1,2].map(y=>a.
@@ -211,7 +211,7 @@ line:h,inward:u}of e.poles??[]){let[m,p]=l?[h-i,n]:[h-o,r];if(m<0||m>=(l?r:n))co
 0,0,0];for(let b=0;b<p;b+=1)for(let v=0;v<3;v+=1)d[v]+=c[f(m+u,b)+v];let g=L(d)||1,y=d.map(b=>Math.round(b/g*Ln));for(let b=0;b<
 p;b+=1)c.set(y,f(m,b))}return{data:c,shape:[r,n,3]}}function ie({slices:a},e){let{trace:t,times:r,lags:n}=a;if(!t?.pathlines||
 !t.timed)return[e];let s=n[n.length-1]*t.timed.unit,i=r.map(c=>Math.abs(c-r[e])<s),o=c=>i[c]||i[c-1]||i[c+1];return[...r.
-keys()].filter(o)}function di({slices:a},e,t,r,n){let{trace:s,times:i}=a;if(!s?.pathlines||!s.timed)return[{from:r,to:n,
+keys()].filter(o)}function fi({slices:a},e,t,r,n){let{trace:s,times:i}=a;if(!s?.pathlines||!s.timed)return[{from:r,to:n,
 steps:[e,e],between:[0,1]}];let o=[],{unit:c}=s.timed,l=h=>t*(i[h]-i[e])/c;for(let h=e;r<n;h+=t){let u=!(h+t in i),m=u?n:
 l(h+t);if(m<=r+kn*n)continue;let p=u?[0,1]:[l(h),m],f=m>=n-kn*n;o.push({from:r,to:f?n:m,steps:[h,u?h:h+t],between:p}),r=
 f?n:m}return o}function tt({programs:a,floats:e},t,r){let{fullVertex:n,trace:s="",layers:i=""}=t.shaders,o=(h,...u)=>{let m=u.
@@ -231,7 +231,7 @@ TEXTURE_2D,1,r,e,t),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST)
 s.NEAREST),n&&s.texSubImage2D(s.TEXTURE_2D,0,0,0,e,t,s.RGBA,s.FLOAT,n),i}frame(){let e=this.graphics.context,t=this.graphics.
 counted(e.createFramebuffer());return this.frames.push(t),e.bindFramebuffer(e.FRAMEBUFFER,t),t}target(e,t){let r=this.graphics.
 context,n=this.texture(e,t,r.RGBA32UI,null),s=this.frame();return r.framebufferTexture2D(r.FRAMEBUFFER,r.COLOR_ATTACHMENT0,
-r.TEXTURE_2D,n,0),[n,s]}unbind(){let e=this.graphics.context;for(let t=0;t<ci;t+=1)e.activeTexture(e.TEXTURE0+t),e.bindTexture(
+r.TEXTURE_2D,n,0),[n,s]}unbind(){let e=this.graphics.context;for(let t=0;t<oi;t+=1)e.activeTexture(e.TEXTURE0+t),e.bindTexture(
 e.TEXTURE_2D,null),e.bindTexture(e.TEXTURE_2D_ARRAY,null);e.bindFramebuffer(e.FRAMEBUFFER,null)}flow(e){let{trace:t}=this,
 r=this.numbers(`flow/${e}`),n=this.data("unit"),s=r.length/n.length,i=new Float32Array(4*n.length);for(let c=0,l=0;c<n.length;c+=
 1,l+=s){let h=r[l+2],u=Re[n[c]]*t.unit;i[4*c]=r[l]*h/u,i[4*c+1]=r[l+1]*h/u,i[4*c+2]=h,i[4*c+3]=t.timed?t.timed.unit:u}let o=this.
@@ -242,8 +242,8 @@ trace.nodes,[r,n]=["open","nearest"].map(i=>this.find(i)?.data),s=new Float32Arr
 r?r[i]:1;for(let o of[0,1])s[4*i+1+o]=n?n[2*i+o]:0}return s}padded(){let e=this.data("padded"),t=new Float32Array(e.length/
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,i=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
-flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=hi)break;this.flows.delete(o),this.textures.delete(c),this.
-graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/mi),1,ui),n=s=>s===r?t:e+
+flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=li)break;this.flows.delete(o),this.textures.delete(c),this.
+graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/hi),1,mi),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,i)=>[n(i),n(i+1)])}layerTarget(e,t){let r=this.graphics.context,{width:n,height:s}=t;
 if(this.graphics.floats){let u=this.frame();return{begin:m=>(r.bindFramebuffer(r.FRAMEBUFFER,u),r.framebufferTextureLayer(
 r.FRAMEBUFFER,r.COLOR_ATTACHMENT0,e,0,m),[n,s]),end:()=>{},finish:()=>{r.activeTexture(r.TEXTURE0),r.bindTexture(r.TEXTURE_2D_ARRAY,
@@ -256,7 +256,7 @@ layers:o.count,channels:4,levels:i.levels},p=s.createTexture();this.result=p,s.a
 d=this.texture(f.size.width,f.size.height,s.RGBA32F,this.flow(e)),g=this.texture(...f.raysSize,s.RGBA32F,f.angles),y=[this.
 texture(l,c,s.RGBA32F,this.cells()),this.texture(l+2,c+2,s.RGBA32F,this.padded()),this.texture(l,c,s.RGBA32F,this.wholeSpeed(
 e))],b=[0,1,2,3,4].map(()=>this.target(l,c)),{lags:v,sides:x,count:w}=o,M={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,
-u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...f.uniforms,u_longest:r.longest??fi,u_nodes:[l,c],u_closed:[Number(r.closed[1]),
+u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...f.uniforms,u_longest:r.longest??pi,u_nodes:[l,c],u_closed:[Number(r.closed[1]),
 Number(r.closed[0])],u_first:[r.first[1],r.first[0]],u_texels:[u,h],u_offsetJ:r.offset.slice(0,3),u_offsetI:r.offset.slice(
 3,6),u_timed:r.timed?.speed??0,u_rest:r.rest,u_pace:r.pace,u_unit:o.unit,u_cell:o.cell/o.unit,u_planar:Number(i.planar),
 u_mostReach:2*v[v.length-1]},E=([U,se],we,me,Pe)=>{s.viewport(0,0,U,se);for(let X of[s.SCISSOR_TEST,s.DEPTH_TEST,s.BLEND,
@@ -264,185 +264,185 @@ s.CULL_FACE])s.disable(X);we.forEach((X,ee)=>{s.activeTexture(s.TEXTURE0+ee),s.b
 null),t.programs.use(me,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},A=this.layerTarget(p,m),T=(U,se,we,me)=>{E(A.begin(
 U),[d,...y,...we],se,me),A.end(U)},{follow:O,compose:R,slopes:C,tangents:$}=tt(t,n,r);T(0,$,[],{u_inCells:0}),w>1+x*v.length&&
 T(w-1,$,[],{u_inCells:1});let Y=0;for(let U=0;U<x;U+=1){let se=U?1:-1,we=1+U*v.length,[me,Pe,X]=[b[0],b[0],b[0]];for(let[
-ee,Ye]of v.entries()){let[Hr,zr]=[v[ee-1]??0,v[ee-2]??0],Gr=Ye>li&&zr>0?R:null,Xe=X;for(let cr of di(n,e,se,Hr,Ye)){let[
-Oa,Na]=cr.steps.map(lr=>this.flowTexture(lr)),Fa=Gr?[[Hr,Ye]]:this.partsOf(cr);for(let[lr,Ia]of Fa){let Wr=b.find(Ca=>![
-me,Pe,X,Xe].includes(Ca))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Wr[1]),E([l,c],[Oa,...y,Xe[0],Pe[0],Na,g],Gr??O,{u_lagEarlier:zr,
-u_from:lr,u_to:Ia,u_side:se,u_between:cr.between}),Xe=Wr,!((Y+=c*l)<pi)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,s.UNSIGNED_INT,
-new Uint32Array(4)),Y=0,yield)}}[Pe,X]=[X,Xe],ee||(me=X);let La=r.uncertain&&ee===oi,ka=ee===1&&!U?si:La?ii:ni;ee&&T(we+
-ee,C,[X[0],X[0]],{u_fourth:ka,u_lag:se*Ye})}T(we,C,[me[0],X[0]],{u_fourth:ai,u_lag:se*v[0]})}return A.finish(),p}};var gi={slices:[12,4],flow:[100,24]},bi=24,nt=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
+ee,Ye]of v.entries()){let[Hr,zr]=[v[ee-1]??0,v[ee-2]??0],Gr=Ye>ci&&zr>0?R:null,Xe=X;for(let cr of fi(n,e,se,Hr,Ye)){let[
+ka,Oa]=cr.steps.map(lr=>this.flowTexture(lr)),Na=Gr?[[Hr,Ye]]:this.partsOf(cr);for(let[lr,Fa]of Na){let Wr=b.find(Ia=>![
+me,Pe,X,Xe].includes(Ia))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Wr[1]),E([l,c],[ka,...y,Xe[0],Pe[0],Oa,g],Gr??O,{u_lagEarlier:zr,
+u_from:lr,u_to:Fa,u_side:se,u_between:cr.between}),Xe=Wr,!((Y+=c*l)<ui)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,s.UNSIGNED_INT,
+new Uint32Array(4)),Y=0,yield)}}[Pe,X]=[X,Xe],ee||(me=X);let Ra=r.uncertain&&ee===ii,La=ee===1&&!U?ni:Ra?ai:ri;ee&&T(we+
+ee,C,[X[0],X[0]],{u_fourth:La,u_lag:se*Ye})}T(we,C,[me[0],X[0]],{u_fourth:si,u_lag:se*v[0]})}return A.finish(),p}};var di={slices:[12,4],flow:[100,24]},gi=24,nt=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
 digest:r}=e;if(r&&this.all.get(t)?.digest===r)return!1;let n=this.graphics.hold(e);return this.remove(t),this.all.set(t,
 n),!0}remove(e){this.graphics.release(this.all.get(e)),this.all.delete(e)}clear(e=()=>!0){for(let t of[...this.all.keys()])
 e(t)&&this.remove(t)}trim(e,t,r){let{hasSteps:n=!1,hasMarks:s=!1,memory:i=0}=t??{};if(!e||!n)return;for(let h of s?Object.
-keys(Ee):[]){let u=[...this.all.keys()].filter(m=>m.startsWith(`${h}/`));for(let m of u.slice(0,-bi))r.includes(K(m))||this.
+keys(Ee):[]){let u=[...this.all.keys()].filter(m=>m.startsWith(`${h}/`));for(let m of u.slice(0,-gi))r.includes(K(m))||this.
 remove(m)}let o=e.slices.trace?"flow":"slices",c=h=>[...this.all.keys()].filter(u=>u.startsWith(h)),l=r.flatMap(h=>ie(e,
-h));for(let h of c(`${o}/`).slice(0,-gi[o][+(i>0)])){let u=K(h);if(l.includes(u))continue;for(let p of[o,"extra"])this.remove(
+h));for(let h of c(`${o}/`).slice(0,-di[o][+(i>0)])){let u=K(h);if(l.includes(u))continue;for(let p of[o,"extra"])this.remove(
 `${p}/${u}`);let m=i?c("scalars/"):[];for(let p of m)Ae(p,u,e)&&this.remove(p)}}};var st=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(e,t,r,n={}){(e===document||e===window)&&(this.globalListeners+=1);let{signal:s}=this.controller;
 e.addEventListener(t,r,{...n,signal:s})}later(e,t){let r=setTimeout(()=>{this.timers.delete(r),e()},t);return this.timers.
 add(r),r}cancel(e){e!==null&&(clearTimeout(e),this.timers.delete(e))}observe(e,t){e.observe(t),this.observers.add(e)}watch(e,t,r){
 e.observe(t,r),this.observers.add(e)}stats(){let{globalListeners:e,observers:t,timers:r}=this;return{listeners:e,observers:t.
 size,timers:r.size}}end(){this.controller.abort(),this.globalListeners=0;for(let e of this.observers)e.disconnect();this.
-observers.clear();for(let e of this.timers)clearTimeout(e);this.timers.clear()}};function In(a,e,t,r=null){let{geometry:n,slices:s,constants:i}=a,o=e,c=fe(a),l=2**(Math.floor(Math.log2(n.extent))-i.noiseDoublings),
-h=t.eye[3],u=F(n.frame,S(t.eye,k(n.center,h))),m=Cn(a,e),p=m?"ramp":o.kernel,f=c&&p==="ramp"?"hann":p;return{u_eye:[...S(
+observers.clear();for(let e of this.timers)clearTimeout(e);this.timers.clear()}};function Fn(a,e,t,r=null){let{geometry:n,slices:s,constants:i}=a,o=e,c=fe(a),l=2**(Math.floor(Math.log2(n.extent))-i.noiseDoublings),
+h=t.eye[3],u=F(n.frame,S(t.eye,k(n.center,h))),m=In(a,e),p=m?"ramp":o.kernel,f=c&&p==="ramp"?"hann":p;return{u_eye:[...S(
 u,k(t.anchor,h)),h],u_between:t.between,u_slicesSize:[n.columns.size,n.rows.size],u_deepest:n.levels,u_lags:s.lags,u_lagCount:s.
 lags.length,u_sides:o.two_sided||c||m?s.sides:1,u_unit:s.unit,u_rateLayer:s.count-1,u_cell:s.cell,u_samples:at(a,e,t.still)?
 2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
-contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...yi(a,o,
-t),...vi(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:vr(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
-d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?xi(a.paper,o,r,t.density):{}}}function at(a,e,t=!1){let r=e.
-motion!=="off"&&!fe(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function Cn(a,e){return!a.paper&&e.texture==="streaklet\
+contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...bi(a,o,
+t),...yi(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:vr(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
+d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?vi(a.paper,o,r,t.density):{}}}function at(a,e,t=!1){let r=e.
+motion!=="off"&&!fe(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function In(a,e){return!a.paper&&e.texture==="streaklet\
 s"}function Le(a,e){return Number(e.arrows)>0&&!fe(a)&&!a.paper}function vr({constants:a},{arrows:e}){return a.arrows.least*
 Math.max(Number(e),a.arrows.mostDense)}function it(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...S(t.
 eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...S(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:
-r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function Un(a,e,t,r){let n={FLOWTEX_CELLS:t,
-FLOWTEX_MOVING:at(a,e,r),FLOWTEX_SPARSE:Cn(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}var Fn=(a,e)=>a-e*Math.
-floor(a/e);function yi(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=n.steps>1,o=!i&&e.speed_in==="pixels",c=i?Fn((t.time-
-n.times[0])/(r.extent/n.pace),s.mostTurns):Fn(t.clock/e.period,1),l=i?r.extent:e.speed*e.period,h=Math.floor(c/s.clockStep)*
-s.clockStep;return{u_clock:[h,c-h],u_travel:l*(o?t.density:1),u_travelInPixels:o,u_travelBySpeed:i||e.motion==="speed",u_wave:s.
-wavePixels*t.density}}function vi(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,
-o=F(s,S(e.focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math.
-floor(p/l)*l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.
-map((p,f)=>p-m[f])}}function xi(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),
-u_noiseGrain:a.grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[
-Number(a.repeat[1]),Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function xr(a,e){if(a.length<2)return[0,0,
-0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,_(r,0,1)]}var wi=.5,Mi=6,Ei=60,Ai=.5,ot=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function Cn(a,e,t,r){let n={FLOWTEX_CELLS:t,
+FLOWTEX_MOVING:at(a,e,r),FLOWTEX_SPARSE:In(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}function bi(a,e,t){
+let{geometry:r,constants:n}=a,{times:s,pace:i}=a.slices,o=s.length>1,c=!o&&e.speed_in==="pixels",l=s[s.length-1]-s[0],h=l*
+i/r.extent,u=o?l/(Math.round(h)||h):e.period,m=(o?t.time-s[0]:t.clock)/u%n.mostTurns,p=u*(o?i:e.speed),f=m%n.clockStep;return{
+u_clock:[m-f,f],u_travel:p*(c?t.density:1),u_travelInPixels:c,u_travelBySpeed:o||e.motion==="speed",u_wave:n.wavePixels*
+t.density}}function yi(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=F(s,S(e.
+focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math.floor(p/l)*
+l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.map((p,f)=>p-
+m[f])}}function vi(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),u_noiseGrain:a.
+grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[Number(a.repeat[1]),
+Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function xr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.
+length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,_(r,0,1)]}var xi=.5,wi=6,Mi=60,Ei=.5,ot=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return xr(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
 times[t]-this.times[e])}seek(e){this.time=_(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
 r:o>=r),s=t.length,i=n<0?s:n;return t[(e>0?i:i-1+s)%s]}start(){this.playing=!0,this.lastFrame=0}range(e){if(this.varies)
 return{first:this.span[0],last:this.span[1],now:this.time};let t=Number(e.period);return{first:0,last:t,now:this.clock%t}}advance(e,t){
-let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,Ai)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
-r,!0;let[n,s]=this.span,i=_(wi*(this.times.length-1),Mi,Ei),o=this.time+r*(s-n)/i,[c,l]=xr(this.times,Math.min(o,s));return t(
-[c,l])?(this.time=o>s?n:o,!0):!1}};var Vn=()=>null,ct=class{};var G="",Dn=5,B=a=>a.join("/"),oe=a=>a.split("/").map(Number);function Bn(a,e){let[t,r,n]=["samples","spacing","grain"].
+let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,Ei)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
+r,!0;let[n,s]=this.span,i=_(xi*(this.times.length-1),wi,Mi),o=this.time+r*(s-n)/i,[c,l]=xr(this.times,Math.min(o,s));return t(
+[c,l])?(this.time=o>s?n:o,!0):!1}};var Un=()=>null,ct=class{};var G="",Vn=5,B=a=>a.join("/"),oe=a=>a.split("/").map(Number);function Dn(a,e){let[t,r,n]=["samples","spacing","grain"].
 map(i=>Number(e[i])),s=.5*t*r*n;return a.cellPixels*Math.max(1,2*s/(a.cellPixels*a.pathCells))}var lt=class{header;place;constructor(e,t){
-this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Dn*(n[s]+i*
-e.blocks[s][1]+o);return t.subarray(c,c+Dn)}}blocksOf(e,[t,r,n]){let[s,i]=this.header.blocks[t];if(e===G)return[0,0,s,i];
+this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Vn*(n[s]+i*
+e.blocks[s][1]+o);return t.subarray(c,c+Vn)}}blocksOf(e,[t,r,n]){let[s,i]=this.header.blocks[t];if(e===G)return[0,0,s,i];
 let{tileBlocks:o}=this.header,c=[Math.min(o*(r+1),s),Math.min(o*(n+1),i)];return[o*r,o*n,...c]}children(e,[t,r,n]){let{blocks:s,
 tileBlocks:i}=this.header,o=s[t-1].map(u=>Math.ceil(u/i)),[c,l]=e===G?[[0,0],o]:[[2*r,2*n],[r,n].map((u,m)=>Math.min(2*u+
 2,o[m]))],h=[];for(let u=c[0];u<l[0];u+=1)for(let m=c[1];m<l[1];m+=1)h.push([t-1,u,m]);return h}finerPart([,e,t],r){let{
 tileBlocks:n}=this.header,s=n/2,[,i,o]=r===G?[0,0,0]:oe(r);return[s*e-n*i,s*t-n*o,s]}choose(e){let t=new Map,{depth:r,finest:n}=this.
 header,s=[G];for(let i of s){let o=i===G?[r,0,0]:oe(i),c={key:o,needed:!1,pixels:0,finer:[]},[l,h,u,m]=this.blocksOf(i,o),
-p=this.header.blocks[o[0]][1],f=new Set;for(let d=l;d<u;d+=1)for(let g=h;g<m;g+=1){let y=this.place(o[0],d,g);if(!Si(e,y))
-continue;let b=Ti(e,y);o[0]>n&&b>e.cellPixels?f.add(d*p+g):c.needed=!0,f.has(d*p+g)||(c.pixels=Math.max(c.pixels,b))}f.size&&
+p=this.header.blocks[o[0]][1],f=new Set;for(let d=l;d<u;d+=1)for(let g=h;g<m;g+=1){let y=this.place(o[0],d,g);if(!Ai(e,y))
+continue;let b=Si(e,y);o[0]>n&&b>e.cellPixels?f.add(d*p+g):c.needed=!0,f.has(d*p+g)||(c.pixels=Math.max(c.pixels,b))}f.size&&
 (c.finer=this.children(i,o).filter(d=>{let[g,y,b]=this.finerPart(d,G);return[...f].some(v=>{let[x,w]=[Math.floor(v/p)-g,
-v%p-y];return x>=0&&x<b&&w>=0&&w<b})}).map(B)),t.set(i,c),s.push(...c.finer)}return t}};function Si({planes:a},[e,t,r,n]){
-return a.every(s=>N(s,[e,t,r])+s[3]>=-n*L(s.slice(0,3)))}function Ti({eye:a,halfHeight:e,pixels:t},[r,n,s,i,o]){let c=a?
-Math.max(L(S([r,n,s],a))-i,o):1;return o*.5*t/(e*c)}function Hn(a){return[...a].filter(([t,{needed:r}])=>t!==G&&r).sort(
+v%p-y];return x>=0&&x<b&&w>=0&&w<b})}).map(B)),t.set(i,c),s.push(...c.finer)}return t}};function Ai({planes:a},[e,t,r,n]){
+return a.every(s=>N(s,[e,t,r])+s[3]>=-n*L(s.slice(0,3)))}function Si({eye:a,halfHeight:e,pixels:t},[r,n,s,i,o]){let c=a?
+Math.max(L(S([r,n,s],a))-i,o):1;return o*.5*t/(e*c)}function Bn(a){return[...a].filter(([t,{needed:r}])=>t!==G&&r).sort(
 ([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function wr(a,e){let t=new Map,r=s=>{t.delete(s),a.get(s)?.finer.forEach(r)},
 n=s=>{let{needed:i=!1,finer:o=[]}=a.get(s)??{},c=o.filter(n);return s!==G&&!i&&c.length===o.length?!0:s!==G&&!e(s)?(c.forEach(
 r),!1):(t.set(s,c),!0)};return n(G),t}function ht(a,e,t){let r=s=>Math.min(s*2**e,t-1),n=Math.floor(a);return r(n)+(a-n)*
-(r(n+1)-r(n))}function zn(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/
-(Math.min((n+1)*r,t-1)-n*r)}var Gn=1e4,_i=20,Pi=4,Ri=4,Li="The surface is shown coarse",ki="A part of the surface is shown coarse",Oi="A time step c\
+(r(n+1)-r(n))}function Hn(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/
+(Math.min((n+1)*r,t-1)-n*r)}var zn=1e4,Ti=20,_i=4,Pi=4,Ri="The surface is shown coarse",Li="A part of the surface is shown coarse",ki="A time step c\
 annot be shown",Se=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
-now())}has(e){return this.now()-(this.times.get(e)??-1/0)<Gn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Se;constructor(e,t){
+now())}has(e){return this.now()-(this.times.get(e)??-1/0)<zn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Se;constructor(e,t){
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
 running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Se}next(){for(let e of this.jobs){if(this.
-running.size>=(this.source()?.atOnce??Pi))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
+running.size>=(this.source()?.atOnce??_i))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
 let{taker:t}=this,r=this.source();if(!r)return;let[n,s,i]=e,o=new AbortController,{signal:c}=o,l=h=>n?t.tiles?.has(B(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),o);try{let h=await r.load(n,s,c,l,i);if(!c.aborted)for(let u of h)t.setPart(
 u)}catch(h){c.aborted||this.fail(e,h)}c.aborted||(this.running.delete(String(e)),this.failed.has(String(e))||(this.jobs=
 this.jobs.filter(h=>String(h)!==String(e))),this.next())}fail(e,t){let[r,n]=e;this.failed.add(String(e)),setTimeout(()=>this.
-next(),Gn+_i);let s=t.fault==="unreachable",i=r&&!s?B(r):void 0;this.taker.lack(Wn(r?ki:Oi,t),i,n)}};function Wn(a,e){let{
+next(),zn+Ti);let s=t.fault==="unreachable",i=r&&!s?B(r):void 0;this.taker.lack(Gn(r?Li:ki,t),i,n)}};function Gn(a,e){let{
 fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?r:`${a}: ${r}`}var mt=class{tiles;wholes;marks;given;formula=null;constructor(e,t){
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
 source?.hasMarks??!1}setHeader(e){this.stop(),this.formula=e.formula?new ct(e,e.formula):null}follow(e){return this.formula?.
 follow(e)??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.tiles;this.source?.open?.().
-catch(t=>e.lack(Wn(Li,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
-,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+Ri);this.wholes.want(r.map(
+catch(t=>e.lack(Gn(Ri,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
+,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+Pi);this.wholes.want(r.map(
 n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){
-this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function jn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=F(o.
+this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Wn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=F(o.
 frame,S(l,o.center)),u=c.anchorRange*2*e.height,m=p=>p.some(f=>Math.abs(f)>u);return{focus:l,anchor:m(S(h,t))?m(h)?h:[0,
-0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var Ni=-1e9;function ut(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);for(let r=0;r<
-a.length;r+=1)t[r]=a[r]-e[r%3];return t}function $n(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
+0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var Oi=-1e9;function ut(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);for(let r=0;r<
+a.length;r+=1)t[r]=a[r]-e[r%3];return t}function jn(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
 for(let s of a)t[r++]=s,t[r++]=n;return t}function pt({shape:a,rows:e,columns:t}){let r=(n,{before:s,size:i})=>Array.from(
-{length:n},(o,c)=>(c+s+.5)/i);return $n(r(a[1],t),r(a[0],e))}function Yn({alongI:a,alongJ:e}){return $n(a,e)}function ft(a,e,t){
+{length:n},(o,c)=>(c+s+.5)/i);return jn(r(a[1],t),r(a[0],e))}function $n({alongI:a,alongJ:e}){return jn(a,e)}function ft(a,e,t){
 let r=new Float32Array(2*t),n=Sn(e);return a.forEach((s,i)=>{for(let o=0;o<t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(
-c)?c:Ni}}),r}function Xn([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],
+c)?c:Oi}}),r}function Yn([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],
 c=s*e+n,[l,h]=[Math.min(i,o),Math.max(i,o)],u=c+(i>=o?1:e);return[[c,1-h],[u,h-l],[c+e+1,l]]}function Oe(a,e){return a.reduce(
-(t,[r,n])=>t+n*e(r),0)}var Kn=180/Math.PI;var Fi=1e-4;function Ii(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function qn(a,e){let t=a*(e-1),r=_(
-Math.floor(t)-1,0,e-4);return[r,Ii(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=qn((i[0]-a)/(t-a),c),
-[u,m]=qn((i[1]-e)/(r-e),o),p=[0,0,0];return m.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((u+d)*
+(t,[r,n])=>t+n*e(r),0)}var Xn=180/Math.PI;var Ni=1e-4;function Fi(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Kn(a,e){let t=a*(e-1),r=_(
+Math.floor(t)-1,0,e-4);return[r,Fi(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Kn((i[0]-a)/(t-a),c),
+[u,m]=Kn((i[1]-e)/(r-e),o),p=[0,0,0];return m.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((u+d)*
 c+l+y)+b]})}),p}function dt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?Mr(a.map,t,e):e,i=[Math.atan2(n,r),Math.
-atan2(s,Math.hypot(r,n))];return i.every(Number.isFinite)?[i[0]*Kn,i[1]*Kn]:null}function Jn(a,e,t,r){let[n,s]=[e,t];if(a.
-map&&r){let{map:p,radius:f}=a,d=Fi*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
+atan2(s,Math.hypot(r,n))];return i.every(Number.isFinite)?[i[0]*Xn,i[1]*Xn]:null}function qn(a,e,t,r){let[n,s]=[e,t];if(a.
+map&&r){let{map:p,radius:f}=a,d=Ni*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
 n=Mr(p,r,e),s=y.map((b,v)=>f*(b-g[v])/(2*d))}let[i,o,c]=n,[l,h]=[Math.hypot(i,o)||1,Math.hypot(i,o,c)||1],u=(i*s[1]-o*s[0])/
-l,m=(i*s[0]+o*s[1])/l;return[u,(l*s[2]-c*m)/h]}var Er=[0,0,1,0,0,1],Ci=.86,Ui=1-1e-7;function Ar(a,e,t){let r=new a.constructor(t*e.length),n=0;for(let s of e)for(let i=t*
-s;i<t*s+t;i+=1)r[n++]=a[i];return r}function Zn(a){return Float32Array.from({length:Er.length*a},(e,t)=>Er[t%Er.length])}
-function Qn(a,e,t){let r=Ar(a,t,3),n=(s,i)=>[s[3*i],s[3*i+1],s[3*i+2]];for(let s=0;s<t.length;s+=3){let[i,o,c]=[0,1,2].map(
-h=>n(e,t[s+h])),l=V(I(S(o,i),S(c,i)));for(let h=s;h<s+3;h+=1){let u=n(r,h),m=L(u),p=N(l,u);Math.abs(p)<Ci*m&&r.set(l.map(
-f=>f*(p<0?-m:m)),3*h)}}return r}function es(a){let e=new Float32Array(3*a.length);for(let t=0;t<e.length;t+=1)e[t]=a[3*Math.
-floor(t/9)+t%3];return e}function bt(a,e,t){return[t,a+Math.min(Math.max(e,0),Ui)]}function ts(a,[e,t]){let r=Math.floor(
+l,m=(i*s[0]+o*s[1])/l;return[u,(l*s[2]-c*m)/h]}var Er=[0,0,1,0,0,1],Ii=.86,Ci=1-1e-7;function Ar(a,e,t){let r=new a.constructor(t*e.length),n=0;for(let s of e)for(let i=t*
+s;i<t*s+t;i+=1)r[n++]=a[i];return r}function Jn(a){return Float32Array.from({length:Er.length*a},(e,t)=>Er[t%Er.length])}
+function Zn(a,e,t){let r=Ar(a,t,3),n=(s,i)=>[s[3*i],s[3*i+1],s[3*i+2]];for(let s=0;s<t.length;s+=3){let[i,o,c]=[0,1,2].map(
+h=>n(e,t[s+h])),l=V(I(S(o,i),S(c,i)));for(let h=s;h<s+3;h+=1){let u=n(r,h),m=L(u),p=N(l,u);Math.abs(p)<Ii*m&&r.set(l.map(
+f=>f*(p<0?-m:m)),3*h)}}return r}function Qn(a){let e=new Float32Array(3*a.length);for(let t=0;t<e.length;t+=1)e[t]=a[3*Math.
+floor(t/9)+t%3];return e}function bt(a,e,t){return[t,a+Math.min(Math.max(e,0),Ci)]}function es(a,[e,t]){let r=Math.floor(
 t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[a[3*r+c],o])}var gt=class{shape;blocks;constructor(e,t){this.shape=[e.shape[0],
 e.shape[1]],this.blocks=t.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(e){let{blocks:t}=this,
 r=e.reduce((i,o,c)=>i|(o<0?0:1<<c),0),n=new Uint32Array(3*t.length),s=0;for(let i=0;i<t.length;i+=1)if(t[i]&r)for(let o=0;o<
-3;o+=1)n[s++]=3*i+o;return n.slice(0,s)}};var rs=8,Vi=4,Di=10,Bi=.05,as=1e-6,Hi=.001;function zi({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.header.
+3;o+=1)n[s++]=3*i+o;return n.slice(0,s)}};var ts=8,Ui=4,Vi=10,Di=.05,ss=1e-6,Bi=.001;function Hi({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.header.
 geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[o,c]=[e[0]+t+s.before,e[1]+r+n.before],
 [l,h]=[Math.floor(o),Math.floor(c)],[u,m]=[o-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map((p,f)=>{let d=_(l+(f&1),
-0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function is(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.header,
-s=zi(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),u=i===o?[1]:[1-c,c],m=fe(t.header)?Gi(s.
+0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function as(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.header,
+s=Hi(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),u=i===o?[1]:[1-c,c],m=fe(t.header)?zi(s.
 map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?-1:1)*
-n.lags.length,b=m[g]<0&&p>0?y:p;h.forEach((v,x)=>{u[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*u[x]*w*(M<3?m[g]:1)})})}),f}}function Gi(a){
-let e=[0,0,0];return a.map(([t,r,n])=>{let s=N(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function Wi(a,e,t,r,n){let[
+n.lags.length,b=m[g]<0&&p>0?y:p;h.forEach((v,x)=>{u[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*u[x]*w*(M<3?m[g]:1)})})}),f}}function zi(a){
+let e=[0,0,0];return a.map(([t,r,n])=>{let s=N(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function Gi(a,e,t,r,n){let[
 s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let u=a(t+h+1).slice(
-0,3);for(let m=1;m<=rs;m+=1){let p=m/rs,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(u[b]-y));if(l.push(
-k(g,r*f*n)),f===c)break}[s,i]=[u,e[h]]}return l}function os({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.header;
-if(!r)return l=>P(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[ns(s,e[0]),ns(i,e[1])],c=Ne(a,e);return([l,h])=>{let u=[ss(
-s,o[0]+l),ss(i,o[1]+h)];return u.some(Number.isNaN)?null:P(t,S(Ne(a,u),c))}}function Sr(a,e){return P(Ne(a,e),a.header.geometry.
+0,3);for(let m=1;m<=ts;m+=1){let p=m/ts,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(u[b]-y));if(l.push(
+k(g,r*f*n)),f===c)break}[s,i]=[u,e[h]]}return l}function is({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.header;
+if(!r)return l=>P(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[rs(s,e[0]),rs(i,e[1])],c=Ne(a,e);return([l,h])=>{let u=[ns(
+s,o[0]+l),ns(i,o[1]+h)];return u.some(Number.isNaN)?null:P(t,S(Ne(a,u),c))}}function Sr(a,e){return P(Ne(a,e),a.header.geometry.
 center)}function Ne(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>Oe(r,i=>t[3*i+s]));return Z(a.
-header.geometry.frame,n)}function ji(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Ne(a,bt(Math.floor(
+header.geometry.frame,n)}function Wi(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Ne(a,bt(Math.floor(
 e[1]),c,l));return[S(o(1,0),o(0,0)),S(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>_(o,.5,t[1-c]-1.5)),i=(o,c)=>Ne(a,[n+o,s+c]);
-return[S(i(.5,0),i(-.5,0)),S(i(0,.5),i(0,-.5))]}function ns(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function ss(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function $i({scene:a,place:e,position:t},r,n,s){let{
-geometry:i,paper:o}=a.header,c=I(...ji(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(N(V(c),h)),Bi),m=2*l/s;if(o){let[
+return[S(i(.5,0),i(-.5,0)),S(i(0,.5),i(0,-.5))]}function rs(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function ns(a,e){let t=a.findIndex(
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function ji({scene:a,place:e,position:t},r,n,s){let{
+geometry:i,paper:o}=a.header,c=I(...Wi(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(N(V(c),h)),Di),m=2*l/s;if(o){let[
 d,g]=[o.alongI,o.alongJ].map((b,v)=>{let x=Math.min(Math.floor(e[v]),b.length-2);return(b[x+1]-b[x])*o.size[v]}),y=Math.
 sqrt(L(c)/(d*g));return o.grain*(r.lod?Math.max(m/Math.sqrt(u),y):y)}let p=i.extent/Number(r.resolution),f=m/u*Number(r.
-grain);return r.lod?r.fixed_grain?Math.max(f,p):f:p}function Yi(a,e,t){let r=[],[n,s]=[a,t];for(let i of e){let o=L(S(i,
+grain);return r.lod?r.fixed_grain?Math.max(f,p):f:p}function $i(a,e,t){let r=[],[n,s]=[a,t];for(let i of e){let o=L(S(i,
 n));if(o>=s){s>0&&r.push(P(n,S(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r}function Tr(a){let{scene:e,position:t}=a,
-{slices:r,paper:n,speed:s}=e.header,i=is(a),[o,c,l]=i(0),h=[o,c,l],u=k(h,Hi*(n?1/n.size[0]:r.cell)/(L(h)||1)),m=L(h)>as?
-S(os(a)(u)??t,t):h;return k(V(m),i(2)[3]*s.typical)}function cs(a,e,t,r){let{scene:n,position:s}=a,{slices:i,paper:o}=n.
-header,c=is(a),l=!fe(n.header),h=c(0),u=[h[0],h[1],h[2]],m=os(a),p=[],f=e.two_sided||!l?i.sides:1;for(let w=0;w<f&&L(u)>
-as;w+=1){let M=o?1:h[3]*i.unit,A=Wi(c,i.lags,w*i.lags.length,w?1:-1,M).map(m),T=A.findIndex(O=>O===null);p.push(A.slice(
-0,T<0?void 0:T))}let d=Number(e.samples),g=at(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):g-1,b=Number(e.spacing)*$i(
-a,e,t,r),v=w=>{let[M=[],E=[]]=p.map(A=>Yi(s,A,w));return[...M.reverse(),s,...E]};return{path:v(Vi*Math.max(y,Di)*b),sampled:v(
-y*b),directed:l,velocity:Tr(a)}}var Xi=8,Ki=1e-6,qi=.001,Ji=89.99,Zi=a=>a-360*Math.round(a/360);function _r([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
-function yt({header:a},e){return e.map((t,r)=>_(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ls=([a,e])=>[(1-a)*(1-e),a*
-(1-e),(1-a)*e,a*e];function hs(a,e,[t,r],n){let{earth:s}=a.header,i=_r(e).map(d=>s&&dt(s,Sr(a,d),n));if(i.some(d=>!d||Math.
-abs(d[1])>Ji))return null;let[o,c,l,h]=i.map(d=>[Zi(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
-...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>qi*p)?null:[(o[1]*
-m[0]-o[0]*m[1])/f,(o[0]*u[1]-o[1]*u[0])/f]}function ms(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&dt(n,
-t,r);if(!i)return e;let o=yt(a,e);for(let c=0;c<Xi;c+=1){let l=hs(a,o,i,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
-.5+Ki?m:0),u=yt(a,o.map((m,p)=>m+h[p]));if(String(u)===String(o))return o.map((m,p)=>m+_(l[p],0,1));o=u}return e}function us(a,e){
-let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=yt(a,e),s=ls(e.map((i,o)=>i-n[o]));return _r(
-n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function ps(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
-o=s&&dt(s,n,e);if(!o)return null;let c=m=>Jn(s,m.position,Tr(m),e),l=yt(t,r);if(i.triangles||!hs(t,l,o,e))return c(a);let h=ls(
+{slices:r,paper:n,speed:s}=e.header,i=as(a),[o,c,l]=i(0),h=[o,c,l],u=k(h,Bi*(n?1/n.size[0]:r.cell)/(L(h)||1)),m=L(h)>ss?
+S(is(a)(u)??t,t):h;return k(V(m),i(2)[3]*s.typical)}function os(a,e,t,r){let{scene:n,position:s}=a,{slices:i,paper:o}=n.
+header,c=as(a),l=!fe(n.header),h=c(0),u=[h[0],h[1],h[2]],m=is(a),p=[],f=e.two_sided||!l?i.sides:1;for(let w=0;w<f&&L(u)>
+ss;w+=1){let M=o?1:h[3]*i.unit,A=Gi(c,i.lags,w*i.lags.length,w?1:-1,M).map(m),T=A.findIndex(O=>O===null);p.push(A.slice(
+0,T<0?void 0:T))}let d=Number(e.samples),g=at(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):g-1,b=Number(e.spacing)*ji(
+a,e,t,r),v=w=>{let[M=[],E=[]]=p.map(A=>$i(s,A,w));return[...M.reverse(),s,...E]};return{path:v(Ui*Math.max(y,Vi)*b),sampled:v(
+y*b),directed:l,velocity:Tr(a)}}var Yi=8,Xi=1e-6,Ki=.001,qi=89.99,Ji=a=>a-360*Math.round(a/360);function _r([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+function yt({header:a},e){return e.map((t,r)=>_(Math.floor(t),0,a.geometry.shape[1-r]-2))}var cs=([a,e])=>[(1-a)*(1-e),a*
+(1-e),(1-a)*e,a*e];function ls(a,e,[t,r],n){let{earth:s}=a.header,i=_r(e).map(d=>s&&dt(s,Sr(a,d),n));if(i.some(d=>!d||Math.
+abs(d[1])>qi))return null;let[o,c,l,h]=i.map(d=>[Ji(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
+...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Ki*p)?null:[(o[1]*
+m[0]-o[0]*m[1])/f,(o[0]*u[1]-o[1]*u[0])/f]}function hs(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&dt(n,
+t,r);if(!i)return e;let o=yt(a,e);for(let c=0;c<Yi;c+=1){let l=ls(a,o,i,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
+.5+Xi?m:0),u=yt(a,o.map((m,p)=>m+h[p]));if(String(u)===String(o))return o.map((m,p)=>m+_(l[p],0,1));o=u}return e}function ms(a,e){
+let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=yt(a,e),s=cs(e.map((i,o)=>i-n[o]));return _r(
+n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function us(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
+o=s&&dt(s,n,e);if(!o)return null;let c=m=>qn(s,m.position,Tr(m),e),l=yt(t,r);if(i.triangles||!ls(t,l,o,e))return c(a);let h=cs(
 r.map((m,p)=>m-l[p])),u=_r(l).map(m=>c({...a,place:m,position:Sr(t,m)}));return[0,1].map(m=>u.reduce((p,f,d)=>p+h[d]*f[m],
-0))}function fs(a,e,t){let{layers:r,camera:n,moment:s,anchor:i,canvas:o}=a,{graphics:c,header:l}=r[0].scene,[h]=r[0].scene.pickers,
+0))}function ps(a,e,t){let{layers:r,camera:n,moment:s,anchor:i,canvas:o}=a,{graphics:c,header:l}=r[0].scene,[h]=r[0].scene.pickers,
 u=z(l.geometry,n,i),m=an(u,[e,t],[o.width,o.height]),[p,f,d]=s,g=c.numbers(()=>{r[0].scene.bodies.hide(m,i),r.forEach(({
 scene:O},R)=>{c.programs.use(h,{u_matrix:m,u_between:d,u_part:R}),O.draw(p,f,i,!1)})});if(!g[3])return null;let[y,b]=new Float32Array(
-g.buffer,0,2),v=r[g[2]],{geometry:x}=v.scene.header,w=x.triangles?bt(g[3]-1,y,b):Qi(x,y,b),M=to(v.scene,n,v.scene.cornersAt(
-w),e,t),E=ms(v.scene,w,M,r[0].scene.parts.get("lonlat")),A=us(v.scene,E),T=x.triangles?E:eo(l,v,E);return{point:{position:M,
-index:T,values:ro(v.scene,s,A)},layer:v,place:E}}function Qi({rows:a,columns:e,shape:t},r,n){let s=(i,{size:o,before:c},l)=>_(
-i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function eo(a,{key:e},[t,r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,
-[h,u]=n?.shapes[0]??s.shape,m=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>ht(f+d*m,o,g);return[p(t,l,u),p(r,c,h)]}function to(a,e,t,r,n){
+g.buffer,0,2),v=r[g[2]],{geometry:x}=v.scene.header,w=x.triangles?bt(g[3]-1,y,b):Zi(x,y,b),M=eo(v.scene,n,v.scene.cornersAt(
+w),e,t),E=hs(v.scene,w,M,r[0].scene.parts.get("lonlat")),A=ms(v.scene,E),T=x.triangles?E:Qi(l,v,E);return{point:{position:M,
+index:T,values:to(v.scene,s,A)},layer:v,place:E}}function Zi({rows:a,columns:e,shape:t},r,n){let s=(i,{size:o,before:c},l)=>_(
+i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function Qi(a,{key:e},[t,r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,
+[h,u]=n?.shapes[0]??s.shape,m=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>ht(f+d*m,o,g);return[p(t,l,u),p(r,c,h)]}function eo(a,e,t,r,n){
 let{data:s}=a.part("position"),{frame:i,center:o}=a.header.geometry,c=[0,1,2].map(f=>Oe(t,d=>s[3*d+f])),l=P(Z(i,c),o),[h,
-u]=e.ray(r,n),m=e.axes[2],p=N(S(l,h),m)/N(u,m);return P(h,u,p)}function ro(a,e,t){let{header:r,parts:n}=a,{scalars:s}=r,
+u]=e.ray(r,n),m=e.axes[2],p=N(S(l,h),m)/N(u,m);return P(h,u,p)}function to(a,e,t){let{header:r,parts:n}=a,{scalars:s}=r,
 [i,o,c]=e,l={},h=s.choices.map(({name:u,steps:m},p)=>({name:u,steps:m,number:p}));for(let u of[s,...h]){let m=a.scalarParts(
 i,o,u),[p,f]=m.map(g=>n.get(g)?.data);if(u.name===null||u.name in l||!p||!f)continue;let d=g=>p[g]+c*(f[g]-p[g]);l[u.name]=
-Oe(t,d)}return l}function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
-t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function gs(a){return a[0]*a[3]-a[1]*a[2]}function bs(a,e,t){var r=e[0],n=e[1],
+Oe(t,d)}return l}function fs(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
+t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function ds(a){return a[0]*a[3]-a[1]*a[2]}function gs(a,e,t){var r=e[0],n=e[1],
 s=e[2],i=e[3],o=e[4],c=e[5],l=t[0],h=t[1],u=t[2],m=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+i*h,a[2]=r*u+s*m,a[3]=
-n*u+i*m,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var so=4,ao=.3,Pr=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
-i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(gs(o));if(!(c>ao**2&&c<so**2))return null;
-let[l,h,u,m,p,f]=vs(o),d=([M,E])=>Math.abs((l*M+u*E+p)/n-1)<1+Pr&&Math.abs((h*M+m*E+f)/s-1)<1+Pr,g=[[0,0],[t,0],[0,r],[t,
+n*u+i*m,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var no=4,so=.3,Pr=1e-6,bs=(a,e)=>gs([0,0,0,0,0,0],a,e),ys=a=>fs([0,0,0,0,0,0],a);function vs(a,e,t,r){let[n,s]=[t/2,r/2],
+i=M=>bs([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=bs(i(e),ys(i(a))),c=Math.abs(ds(o));if(!(c>so**2&&c<no**2))return null;
+let[l,h,u,m,p,f]=ys(o),d=([M,E])=>Math.abs((l*M+u*E+p)/n-1)<1+Pr&&Math.abs((h*M+m*E+f)/s-1)<1+Pr,g=[[0,0],[t,0],[0,r],[t,
 r]].every(d),[y,b,v,x]=o,w=Math.abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Pr;if(w)for(let M of[4,5])o[M]=Math.round(
-o[M]);return{matrix:o,covers:g,shifts:w}}var io=14,oo=40,ws=1.3,Ms=5e4,co=256;function Rr(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var lo=(a,e)=>a.
+o[M]);return{matrix:o,covers:g,shifts:w}}var ao=14,io=40,xs=1.3,ws=5e4,oo=256;function Rr(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var co=(a,e)=>a.
 getContext("2d",{alpha:e}),vt=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
 createElement("canvas");lastPen;lastCamera=null;coarse=document.createElement("canvas");coarsePen;front=document.createElement(
 "canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
 strip:4,draft:4};triangles=0;isCoarse=!1;constructor(e,t){this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=
-e.canvas;let{canvas:r,back:n,last:s,coarse:i}=this,o=[r,n,s,i].map(c=>lo(c,e.isClear??!1));[this.pen,this.backPen,this.lastPen,
+e.canvas;let{canvas:r,back:n,last:s,coarse:i}=this,o=[r,n,s,i].map(c=>co(c,e.isClear??!1));[this.pen,this.backPen,this.lastPen,
 this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.
 canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=!0}resize(e,t){let{canvas:r,back:n,last:s}=this;
 n.width=r.width,n.height=r.height,this.backPen?.drawImage(r,0,0),r.width=s.width=e,r.height=s.height=t,n.width>1&&this.pen?.
@@ -452,14 +452,14 @@ s=this.strip(e,t)&&!this.isRefined;while(!s&&performance.now()<r);return s}get i
 this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(e){this.isRefined=!1,this.layers=this.content.
 arrange(e)}draft(e,t,r){let{width:n,height:s}=this.canvas,i=Number(this.viewer.settings.samples),o=r?this.graphics.waiting.
 size+1:1;this.arrange(t),this.warm(e,t);let c=e.price*this.factor(i),l=this.viewer.player.playing&&!this.viewer.isHeld,h=un(
-c,this.fixed.draft,n*s,i,l),u=Math.max(h/o,io),m=mn(c,this.fixed.draft,n*s,i,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
+c,this.fixed.draft,n*s,i,l),u=Math.max(h/o,ao),m=mn(c,this.fixed.draft,n*s,i,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
 max(Math.round(s*m.scale),1);this.draftVersion=this.version;let d=m.scale<1?this.reuse():null;if(!d?.covers){let y={width:p,
 height:f,top:0,rows:f};this.timed(e,y,m.samples,()=>{this.render(e,t,y,m.samples),this.copy(this.pen,y,s,0)})}d&&this.pen&&
 (this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),Rr(this.pen,this.last),this.pen.setTransform(
 1,0,0,1,0,0)),this.isCoarse=m.scale<1||m.samples<i;let g=!this.isCoarse&&!this.content.smooth;return g&&this.complete(),
 this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,{settings:s}=this.viewer,{smooth:i}=this.
 content,o=Number(s.samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))return!1;
-this.warm(e,t);let c=e.price*this.factor(o),l=Math.min(n-this.rowsDone,i?co:n),h=Math.min(pn(oo,c,this.fixed.strip,r,o),
+this.warm(e,t);let c=e.price*this.factor(o),l=Math.min(n-this.rowsDone,i?oo:n),h=Math.min(pn(io,c,this.fixed.strip,r,o),
 l),u={width:r,height:n,top:this.rowsDone,rows:h};return this.timed(e,u,o,()=>{this.render(e,t,u,o,i);let m=i?{...u,height:h,
 top:0}:u;this.copy(this.backPen,m,m.height,this.rowsDone)}),this.rowsDone+=h,this.rowsDone<n?!1:(Rr(this.pen,this.back),
 this.complete(),this.drawLines(t),!0)}drawLines(e){let{front:t,frontPen:r,graphics:n}=this,{camera:s,ratio:i}=this.viewer,
@@ -471,11 +471,11 @@ width:c,height:l,ratio:i}),this.frontLook=f}this.pen?.drawImage(t,0,0)}complete(
 rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,Rr(this.lastPen,this.canvas),e&&!t.playing&&
 (this.lastCamera=new pe(e.state,e.limits,e.flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.
 content;if(!r?.header.geometry.planar||!t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,
-s=S(t.state.focal_point,n.center),i=F(n.frame,s),[o,c]=[e,t].map(l=>z(n,l,i));return xs(o,c,this.canvas.width,this.canvas.
+s=S(t.state.focal_point,n.center),i=F(n.frame,s),[o,c]=[e,t].map(l=>z(n,l,i));return vs(o,c,this.canvas.width,this.canvas.
 height)}factor(e){let{settings:t,player:r}=this.viewer;return t.motion!=="off"||r.varies&&r.playing?fn(e):1}timed(e,t,r,n){
 let s=performance.now();n();let i=performance.now()-s,o=t.width*t.rows,c=this.factor(r),l=t.rows<t.height?this.fixed.strip:
-this.fixed.draft;e.price=dn(e.price,i,l,o,r,c)}warm(e,t){let r=this.layers.reduce((u,m)=>u+m.triangles,0),n=(r+Ms)/(this.
-triangles+Ms);if(e.warm&&n<ws&&n>1/ws)return;let{width:s,height:i}=this.canvas,o={width:s,height:i,top:0,rows:1},[c,l]=[
+this.fixed.draft;e.price=dn(e.price,i,l,o,r,c)}warm(e,t){let r=this.layers.reduce((u,m)=>u+m.triangles,0),n=(r+ws)/(this.
+triangles+ws);if(e.warm&&n<xs&&n>1/xs)return;let{width:s,height:i}=this.canvas,o={width:s,height:i,top:0,rows:1},[c,l]=[
 s,i].map(u=>Math.max(Math.round(u*fr),1));e.warm||this.render(e,t,o,1),this.triangles=r;let h=[o,{width:c,height:l,top:0,
 rows:l}].map(u=>{let m=performance.now();return this.render(e,t,u,1),_(performance.now()-m,.5,500)});this.fixed={strip:h[0],
 draft:h[1]},e.warm=!0}render(e,t,r,n,s=!1){let{graphics:i,viewer:o}=this,{camera:c}=o,{scene:l}=this.content;if(!c||!l)return;
@@ -491,7 +491,7 @@ draw({...M,ratio:d.density},o.settings,t),s&&i.copySmooth(u,f),h.readPixels(0,0,
 o))return;let l={...i.sight(n/t.density),planes:i.planes};for(let[h,u]of c.arrows.share(l,o,this.layers)){let{arrows:m,header:p}=h,
 f=m.program(o,it(p,o,t));if(!f||!u.length)continue;h.bindTextures(e[0],e[1]);let d=h.scalarParts(e[0],e[1]);m.draw(f,u,d,
 t.anchor,{...s(h),u_picture:[r,n]})}}values({header:e,parts:t},{bodies:r},n,s,i,o){let{settings:c}=this.viewer,{columns:l,
-rows:h}=e.geometry,u=t.get("noise")?.shape??null,m=e.scalars.name!==null&&Le(e,c)&&c.arrow_color==="scalars";return{...In(
+rows:h}=e.geometry,u=t.get("noise")?.shape??null,m=e.scalars.name!==null&&Le(e,c)&&c.arrow_color==="scalars";return{...Fn(
 e,{...c,samples:i},s,u),...o?gn(c,i,s.density):{},u_matrix:z(e.geometry,n,s.anchor),u_mapped:e.scalars.name!==null&&!m,u_plain:m,
 u_padding:[l.before,h.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_opacity:r.areBehind?1:
 e.opacity,u_toEye:F(e.geometry.frame,k(n.axes[2],-1))}}copy(e,t,r,n){if(!e)return;let{width:s,height:i,top:o,rows:c}=t,{
@@ -518,25 +518,25 @@ let n=r/this.limits.octave,s=new St(n);for(let l of e)s.add(l.position);for(let 
 filter(({radius:l})=>l>=r).sort((l,h)=>h.radius-l.radius),o=new St(n),c=i.filter(l=>(l.radius=Math.min(l.radius,o.distance(
 l.position)),l.radius<r?!1:(o.add(l.position),!0)));return[...e,...c]}isNeeded(e,[t,r],n){let{octave:s,closer:i,aroundRadii:o}=this.
 limits,{cell:c,low:l,size:h}=e,u=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[m,p]=this.sides(e),f=.5*(L(m)+
-L(p)),d=Math.max(Ss(t,u)-f,0);return!(n<s*i*r*kr(t,d))&&this.sees(t,u,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
+L(p)),d=Math.max(As(t,u)-f,0);return!(n<s*i*r*kr(t,d))&&this.sees(t,u,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
 t);if(!r.length)return e;let n=r.map(i=>{let[o,c]=this.sides(i),l=L(c)>L(o)?1:0,h=[...i.size];h[l]*=.5;let u=[...i.low];
-return u[l]+=h[l],[{...i,size:h,key:ce(i.key+xt)},{...i,size:h,low:u,key:ce(i.key+ho)}]}),s=e.filter(i=>this.area(i)<=t);
+return u[l]+=h[l],[{...i,size:h,key:ce(i.key+xt)},{...i,size:h,low:u,key:ce(i.key+lo)}]}),s=e.filter(i=>this.area(i)<=t);
 return this.divided([...s,...n.map(([i])=>i),...n.map(([,i])=>i)],t)}sides({cell:e,low:t,size:r}){let n=(s,i)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*i]);return[S(n(1,.5),n(0,.5)),S(n(.5,1),n(.5,0))]}area(e){return L(I(...this.sides(e)))}};function Fe(a,e,[
 t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],i=new Array(n).fill(0);for(let o=0;o<Et;o+=1)for(let c=0;c<n;c+=1)i[c]+=
 s[o]*a[n*e[o]+c];return i}var St=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
-t/this.most))}add(e){let t=As(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
-n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=As(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
-cubes.get(o)??[])s=Math.min(s,L(S(e,c)))}return s}},xt=2654435769,ho=2246822507,mo=[739982445,695872825],Es=15;function As(a,e,t){
-return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of mo)
-e=Math.imul(e^e>>>Es,t)>>>0;return(e^e>>>Es)>>>0}var wt=a=>a/2**32;function Lr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var Ss=({eye:a},e)=>a?L(S(e,a)):1,kr=({halfHeight:a,pixels:e},t)=>2*a/e*t,Mt=(a,e)=>kr(a,Ss(a,e));var Ps=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],Ts=4,uo=Ps.reduce((a,[,e])=>a+e,0),po=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
-e[r]),_s=({tile:a})=>a?.[0]??1/0,Tt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
+t/this.most))}add(e){let t=Es(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
+n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Es(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
+cubes.get(o)??[])s=Math.min(s,L(S(e,c)))}return s}},xt=2654435769,lo=2246822507,ho=[739982445,695872825],Ms=15;function Es(a,e,t){
+return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of ho)
+e=Math.imul(e^e>>>Ms,t)>>>0;return(e^e>>>Ms)>>>0}var wt=a=>a/2**32;function Lr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
+a)}}var As=({eye:a},e)=>a?L(S(e,a)):1,kr=({halfHeight:a,pixels:e},t)=>2*a/e*t,Mt=(a,e)=>kr(a,As(a,e));var _s=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],Ss=4,mo=_s.reduce((a,[,e])=>a+e,0),uo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+e[r]),Ts=({tile:a})=>a?.[0]??1/0,Tt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new At(this.surface,n.constants.arrows);let i=this.seeds.seen(e,vr(n,t));if(s?.seeds===
-i&&po(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:u,place:m,radius:p})=>({corners:o.subarray(
-4*u,4*u+4),place:m,radius:p})),l=new Map(r.map(u=>[u,[]])),h=[...r].sort((u,m)=>_s(u)-_s(m));for(let u of c)for(let m of h){
+i&&uo(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:u,place:m,radius:p})=>({corners:o.subarray(
+4*u,4*u+4),place:m,radius:p})),l=new Map(r.map(u=>[u,[]])),h=[...r].sort((u,m)=>Ts(u)-Ts(m));for(let u of c)for(let m of h){
 let p=m.tile?this.inTile(u,m,m.tile):u;if(p){l.get(m)?.push(p);break}}return this.last={seeds:i,layers:r,shared:l},l}draw(e,t,r,n,s){
 let{graphics:i}=this,o=i.context;this.array??=this.make(),o.bindVertexArray(this.array);let{name:c,low:l,high:h,log:u}=this.
 header.scalars,m=r.map(f=>this.parts.get(f)?.digest),p=JSON.stringify([n,r,m,c,l,h,u]);(this.drawn?.placed!==t||this.drawn.
@@ -546,13 +546,13 @@ o.ONE),o.depthMask(!1),o.drawArraysInstanced(o.TRIANGLE_STRIP,0,2*(this.header.c
 !0),o.disable(o.BLEND),o.bindVertexArray(null)}forget(){this.known=this.seeds=this.last=this.drawn=null}dispose(){this.graphics.
 free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=null,this.forget()}inTile({
 corners:e,place:t,radius:r},n,[s,i,o]){let{geometry:c,pyramid:l,mesh:h}=this.header;if(!l||c.triangles)return null;let u=h.
-tileCells*l.tileBlocks,[m,p]=n.header.geometry.shape,f=c.shape[1],d=(v,x,w,M)=>{let E=l.shapes[0][x],A=zn(ht(v,l.depth,E),
+tileCells*l.tileBlocks,[m,p]=n.header.geometry.shape,f=c.shape[1],d=(v,x,w,M)=>{let E=l.shapes[0][x],A=Hn(ht(v,l.depth,E),
 s,E)-w*u,T=Math.min(Math.max(Math.floor(A),0),M-1);return A<0||A>M?null:[T,A-T]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(
 e[0]/f)+t[1],0,i,m-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*(p-1)+g[0]]===0)return null;let b=y[0]*p+g[0];return{corners:[
 b,b+1,b+p,b+p+1],place:[g[1],y[1]],radius:r}}make(){let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());
 this.buffer=this.graphics.counted(e.createBuffer()),e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;
-for(let[n,s]of Ps)e.enableVertexAttribArray(n),e.vertexAttribPointer(n,s,e.FLOAT,!1,uo*Ts,r),e.vertexAttribDivisor(n,1),
-r+=s*Ts;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,i=t.map(h=>this.parts.get(h)?.data??new Float32Array),
+for(let[n,s]of _s)e.enableVertexAttribArray(n),e.vertexAttribPointer(n,s,e.FLOAT,!1,mo*Ss,r),e.vertexAttribDivisor(n,1),
+r+=s*Ss;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,i=t.map(h=>this.parts.get(h)?.data??new Float32Array),
 o=ft(i,s,n.shape[0]*n.shape[1]),c=this.nodes,l=n.triangles?null:pt(n);return Float32Array.from(e.flatMap(({corners:h,place:u,
 radius:m})=>{let[p,f]=u,[d,g,y,b]=Array.from(h,x=>[...c.subarray(3*x,3*x+3)]),v=I(S(P(g,b),P(d,y)),S(P(y,b),P(d,g)));return[
 ...S(Fe(c,h,u,3),r),...l?Fe(l,h,u,2):[p*(1-f),f],...V(v),...Fe(o,h,u,2),...Array.from(h).slice(0,3),m]}))}get nodes(){return this.
@@ -560,10 +560,10 @@ parts.get("position")?.data??new Float32Array}get surface(){return this.known??=
 nodes,corners:this.corners()}}corners(){let{geometry:e}=this.header,[t,r]=e.shape,n=[];if(e.triangles){let i=this.parts.
 get("triangles")?.data??[];for(let o=0;o<i.length;o+=3)n.push(i[o],i[o+1],i[o+2],i[o+2]);return Uint32Array.from(n)}let s=this.
 parts.get("cells")?.data;for(let i=0;i<(t-1)*(r-1);i+=1){if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+
-r,o+r+1)}return Uint32Array.from(n)}};var Ie=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Rs=8,[fo,go]=[24,8],_t=[1,2],bo=.2;function Ce(a,e,t){
-let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function yo({
-geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Rs),o=i.map(({way:l,turns:h})=>{let u=P(P(k(r,l[0]),
-n,l[1]),s,-l[2]);return F(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Rs},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
+r,o+r+1)}return Uint32Array.from(n)}};var Ie=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Ps=8,[po,fo]=[24,8],_t=[1,2],go=.2;function Ce(a,e,t){
+let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function bo({
+geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Ps),o=i.map(({way:l,turns:h})=>{let u=P(P(k(r,l[0]),
+n,l[1]),s,-l[2]);return F(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Ps},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
 o),u_lightColours:c(i.map(({color:l})=>l))}}var Pt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
 e,this.header=t,this.parts=r}get labels(){return this.header.bodies?.labels??[]}get runs(){let{bodies:e}=this.header;return e&&
 Ie.every(t=>this.parts.has(t))?e.runs:[]}get areBehind(){return this.runs.length>0&&this.header.opacity<1}get programs(){
@@ -577,35 +577,35 @@ t.disable(t.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height:n,ratio:
 ({clear:E})=>E===o);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:u}=l,m=h.context,[p,f]=this.programs,d=this.
 drawn??=this.make(),g=z(u,e,t),[y,b,v,x]=e.eye,w=F(u.frame,S([y,b,v],k(u.center,x)));o&&(m.enable(m.BLEND),m.blendFuncSeparate(
 m.SRC_ALPHA,m.ONE_MINUS_SRC_ALPHA,m.ZERO,m.ONE),m.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,u_eye:[...S(w,k(
-t,x)),x],...yo(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(_t[1],_t[1]);for(let{faces:[
+t,x)),x],...bo(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(_t[1],_t[1]);for(let{faces:[
 E,A],ambient:T,diffuse:O}of c)A&&(h.programs.use(p,{u_ambient:T,u_diffuse:O}),m.drawElements(m.TRIANGLES,3*A,m.UNSIGNED_INT,
 12*E));m.disable(m.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,1]};h.programs.use(
 f,M),m.bindVertexArray(d.pieces);for(let{pieces:[E,A],width:T}of c)if(A){h.programs.use(f,{u_width:T*s});for(let[O,R,C,$,
-Y]of[[d.ends,3,m.FLOAT,fo,0],[d.colours,4,m.UNSIGNED_BYTE,go,2]]){m.bindBuffer(m.ARRAY_BUFFER,O);for(let U of[0,1])m.vertexAttribPointer(
+Y]of[[d.ends,3,m.FLOAT,po,0],[d.colours,4,m.UNSIGNED_BYTE,fo,2]]){m.bindBuffer(m.ARRAY_BUFFER,O);for(let U of[0,1])m.vertexAttribPointer(
 Y+U,R,C,R===4,$,$*(E+U/2))}m.drawArraysInstanced(m.TRIANGLE_STRIP,0,4,A)}m.bindVertexArray(null),m.depthMask(!0),m.disable(
 m.BLEND)}hide(e,t){let{runs:r,drawn:n,graphics:s}=this;if(!r.length||!n)return;let i=s.context;s.programs.use(this.programs[2],
 {u_matrix:e,u_anchor:t}),i.bindVertexArray(n.faces);for(let{faces:[o,c],clear:l}of r)l||i.drawElements(i.TRIANGLES,3*c,i.
 UNSIGNED_INT,12*o);i.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:i}){let{geometry:o}=this.
 header,c=z(o,t,r);for(let{text:l,position:h,size:u,color:m,plate:p}of this.labels){let f=S(F(o.frame,S(h,o.center)),r),[
 d,g,,y]=[0,1,2,3].map(A=>c[A]*f[0]+c[4+A]*f[1]+c[8+A]*f[2]+c[12+A]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
-s],x=u*i,w=bo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,E]=[e.measureText(l).width+2*w,x+
-2*w];e.fillStyle=Ls(p),e.beginPath(),e.roundRect(b,v-E,M,E,w),e.fill(),e.fillStyle=Ls(m),e.fillText(l,b+w,v-.5*E)}}make(){
+s],x=u*i,w=go*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,E]=[e.measureText(l).width+2*w,x+
+2*w];e.fillStyle=Rs(p),e.beginPath(),e.roundRect(b,v-E,M,E,w),e.fill(),e.fillStyle=Rs(m),e.fillText(l,b+w,v-.5*E)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,i,o,c]=Ie.map(y=>t.get(y)?.data??[]),l=()=>{let y=e.counted(r.createVertexArray());
 return r.bindVertexArray(y),y},h=(y,b=r.ARRAY_BUFFER)=>{let v=e.counted(r.createBuffer());return r.bindBuffer(b,v),r.bufferData(
 b,y,r.STATIC_DRAW),v},u=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[i,4,r.UNSIGNED_BYTE]].map(([y,b,v],x)=>{let w=h(y);return r.enableVertexAttribArray(
 x),r.vertexAttribPointer(x,b,v,v!==r.FLOAT,0,0),w});p.push(h(o,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ce(n,c,3)),g=h(Ce(
 i,c,4));for(let y=0;y<4;y+=1)r.enableVertexAttribArray(y),r.vertexAttribDivisor(y,1);return r.bindVertexArray(null),{faces:u,
-pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Ls([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}function ks(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push([]);let i=n.map((o,c)=>(n[c]=
-n[c]+a[s+c]&65535,e[c]+n[c]/65535*t[c]));r[r.length-1].push(i)}return r}function Os(a,e){return e?a.flatMap(t=>{let r=0,
+pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Rs([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
+join(" ")} / ${r})`}function Ls(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push([]);let i=n.map((o,c)=>(n[c]=
+n[c]+a[s+c]&65535,e[c]+n[c]/65535*t[c]));r[r.length-1].push(i)}return r}function ks(a,e){return e?a.flatMap(t=>{let r=0,
 n=t.filter((s,i)=>{let o=r;return i&&(r+=Math.hypot(...s.map((l,h)=>l-t[i-1][h]))),Math.floor(r/e)>Math.floor(o/e)||i===
-0||i===t.length-1});return r<e?[]:[n]}):a}function Ns(a,e){let t=a.reduce((s,i)=>s+i.length+1,0),r=new Float32Array(3*t).
-fill(1e30),n=0;for(let s of a){n+=3;for(let i of s)for(let o=0;o<3;o+=1)r[n++]=i[o]-e[o]}return r}function Fs(a){let e=[],
+0||i===t.length-1});return r<e?[]:[n]}):a}function Os(a,e){let t=a.reduce((s,i)=>s+i.length+1,0),r=new Float32Array(3*t).
+fill(1e30),n=0;for(let s of a){n+=3;for(let i of s)for(let o=0;o<3;o+=1)r[n++]=i[o]-e[o]}return r}function Ns(a){let e=[],
 t=a.length/3-1;for(let r=0;r<t;r+=256){let n=Math.min(256,t-r),[s,i]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let l=3*r;l<3*
 (r+n+1);l+=1)a[l]!==Math.fround(1e30)&&(s[l%3]=Math.min(s[l%3],a[l]),i[l%3]=Math.max(i[l%3],a[l]));let o=s.map((l,h)=>(l+
-i[h])/2),c=Math.hypot(...s.map((l,h)=>(i[h]-l)/2));e.push({first:r,count:n,middle:o,radius:c})}return e}function Is(a,e){
+i[h])/2),c=Math.hypot(...s.map((l,h)=>(i[h]-l)/2));e.push({first:r,count:n,middle:o,radius:c})}return e}function Fs(a,e){
 let t=[];for(let{first:r,count:n,middle:[s,i,o],radius:c}of a){let l=([u,m,p,f])=>u*s+m*i+p*o+f<-c*Math.hypot(u,m,p);if(e.
-some(l))continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var Cs=12,Us=2;var Rt=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
+some(l))continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var Is=12,Cs=2;var Rt=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
 this.version+=1,this.drop(e==="position"?"land":e)}dispose(){for(let e of[...this.drawn.keys()])this.drop(e)}drop(e){let t=this.
 drawn.get(e);if(t){for(let r of t.buffers)this.graphics.free("Buffer",r);this.graphics.free("VertexArray",t.array),this.
 drawn.delete(e)}}get lines(){let{earth:e}=this.header;return e?An.filter(t=>e[t]&&this.parts.has(t)):[]}drawLines(e,t){let{
@@ -616,8 +616,8 @@ let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y
 ...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:E,width:A}of s.strokes){
 if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let T=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
 use(o,{u_matrix:z(r.geometry,l,h),u_picture:[u,m],u_width:A*b*p,u_lineColour:[...M,E],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
-c.bindVertexArray(T.array),c.bindBuffer(c.ARRAY_BUFFER,T.buffers[0]);for(let[O,R]of Is(T.groups,g)){for(let C=0;C<Us;C+=
-1)c.vertexAttribPointer(C,3,c.FLOAT,!1,Cs,(O+C)*Cs);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,R)}t()}c.bindVertexArray(
+c.bindVertexArray(T.array),c.bindBuffer(c.ARRAY_BUFFER,T.buffers[0]);for(let[O,R]of Fs(T.groups,g)){for(let C=0;C<Cs;C+=
+1)c.vertexAttribPointer(C,3,c.FLOAT,!1,Is,(O+C)*Is);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,R)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders;
 return!this.lines.length||this.graphics.programs.get(e,t).ready}drawGround({camera:e,anchor:t}){let{header:r,graphics:n}=this,
 {earth:s,shaders:i,geometry:o}=r;if(!s?.land)return;let c=s.map===null;if(!(c?s.below:this.parts.has("land")))return;let l=n.
@@ -634,18 +634,18 @@ parallel?0:L(e.state.position)/t}}take(e,t,r,n=0){let s=this.drawn.get(e);if(s&&
 n]))return s;this.drop(e);let i={...r(),anchor:t,spacing:n};return this.drawn.set(e,i),i}emptyArray(){let{graphics:e}=this;
 return{array:e.counted(e.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(e,t){
 let{graphics:r}=this,n=r.context,s=r.counted(n.createBuffer());return n.bindBuffer(e,s),n.bufferData(e,t,n.STATIC_DRAW),
-s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.get(e)?.data??[],o=s?ks(i,s):[],c=Ns(Os(
-o,r),t),l={...this.emptyArray(),groups:Fs(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
-Us;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
+s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.get(e)?.data??[],o=s?Ls(i,s):[],c=Os(ks(
+o,r),t),l={...this.emptyArray(),groups:Ns(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
+Cs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
 get("land"),n=this.parts.get("position"),s=this.emptyArray();if(!r||!n)return s;let i=this.header.geometry.triangles?r.data:
-vo(r);t.bindVertexArray(s.array);let o=ut(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
-i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function vo({data:a,shape:[
+yo(r);t.bindVertexArray(s.array);let o=ut(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
+i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function yo({data:a,shape:[
 e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.floor(n/t),i=s+t+1;r.push(s,s+1,i+1,s,i+1,i)}return Uint32Array.
-from(r)}var[xo,wo]=[.01,.2],[re,Vs]=[4,24],Ds=9;function Bs(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+from(r)}var[vo,xo]=[.01,.2],[re,Us]=[4,24],Vs=9;function Ds(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/re,t.points);s+=1){let i=a[re*s+3];(r.points[i]??=[]).push(
 ...[0,1,2].map(o=>a[re*s+o]))}let n=NaN;for(let s=0;s<e.length/re;s+=1){let i=e[re*s+3];if(i>=Je.saddle*t.saddles)continue;
 let o=i&Je.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[o[i&Je.leaving?0:1]];i!==n&&c.push(
-[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function Mo(a,e){let t=[];for(let r=0;r<a.length;r+=re)
+[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function wo(a,e){let t=[];for(let r=0;r<a.length;r+=re)
 a[r+3]===e&&t.push(a[r],a[r+1],a[r+2]);return Float32Array.from(t)}function Ue(a,e=!1){let t=Float32Array.from(a.flat());
 if(e)return Ce(t,Array.from({length:2*t.length/3},(s,i)=>i>>1),3);let r=[],n=0;for(let s of a){let i=s.length/3;for(let o=n;o<
 n+i-1;o+=1)r.push(o,o+1);n+=i}return Ce(t,r,3)}var Lt=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(e,t,r){
@@ -655,7 +655,7 @@ r=>t.includes(r)&&Number(e[Ee[r]])>0)}lacking(e,t){let r=Or(t);return this.kinds
 OWTEX_BODY","FLOWTEX_MARK")}isReady(e){return!this.kinds(e).length||this.program.ready}shown(e,t,r){let s=this.kinds(e).
 includes(r)?this.parts.get(`${r}/${Or(t)}`):void 0;return[s?Number(e[Ee[r]]):0,s]}legend(e,t){let[r,n]=this.shown(e,t,"c\
 ritical"),s=new Set;for(let m=0;m<Math.min(r,n?.shape[0]??0);m+=1)s.add(Number(n?.data[re*m+3]));let{kinds:i=[],lines:o={},
-nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),u=Object.entries(Bs([],h?.data??[],{points:0,
+nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),u=Object.entries(Ds([],h?.data??[],{points:0,
 saddles:l}).lines).filter(([,m])=>m.length).map(([m])=>({name:m,color:o[m]}));return this.shown(e,t,"nullclines")[0]&&u.
 push(...c),[...i.filter((m,p)=>s.has(p)),...u.map(m=>({...m,isLine:!0}))]}draw({camera:e,anchor:t,width:r,height:n,ratio:s},i,o){
 let{header:c,graphics:l}=this,{structure:h,geometry:u}=c,m=h&&this.layers(h,i,o);if(!h||!m?.length)return;let p=l.context,
@@ -663,12 +663,12 @@ let{header:c,graphics:l}=this,{structure:h,geometry:u}=c,m=h&&this.layers(h,i,o)
 Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:z(u,e,t),u_anchor:t,u_eye:[...S(b,k(t,y)),
 y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:E,color:A,width:T,
-above:O}of m){let[R,C,$,Y=1]=A;l.programs.use(w,{u_width:T*v,u_nearer:xo*x*(1+wo*O)});for(let U of[0,1])p.vertexAttribPointer(
-U,3,p.FLOAT,!1,Vs,Vs*(M+U/2)),p.vertexAttrib4f(2+U,R,C,$,Y);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,E)}p.bindVertexArray(
+above:O}of m){let[R,C,$,Y=1]=A;l.programs.use(w,{u_width:T*v,u_nearer:vo*x*(1+xo*O)});for(let U of[0,1])p.vertexAttribPointer(
+U,3,p.FLOAT,!1,Us,Us*(M+U/2)),p.vertexAttrib4f(2+U,R,C,$,Y);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,E)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Or(r)]);if(this.drawn?.key===l)return this.
-drawn.layers;let h=Bs(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:u,dot:m,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,E,A)=>{
-let T=w.length/6;T&&d.push({first:y,count:T,color:M,width:E,above:A}),g.push(w),y+=T},v=e.nullclines.map((w,M)=>Mo(c?.data??
+drawn.layers;let h=Ds(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:u,dot:m,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,E,A)=>{
+let T=w.length/6;T&&d.push({first:y,count:T,color:M,width:E,above:A}),g.push(w),y+=T},v=e.nullclines.map((w,M)=>wo(c?.data??
 [],M));v.forEach(w=>b(w,p,u[0],0)),v.forEach((w,M)=>b(w,e.nullclines[M].color,u[1],1)),b(Ue(Object.values(h.lines).flat()),
 p,u[0],1.5),Object.entries(h.lines).forEach(([w,M],E)=>b(Ue(M),e.lines[w],u[1],2+E));let x=e.kinds.map((w,M)=>h.points[M]??
 []);return b(Ue(x,!0),p,m[0],6),e.kinds.forEach(({color:w},M)=>b(Ue([x[M]],!0),w,m[1],7)),b(Ue(x.filter((w,M)=>e.kinds[M].
@@ -676,15 +676,15 @@ turns),!0),f,m[2],8),this.send(g),this.drawn={key:l,layers:d},d}send(e){let{grap
 counted(r.createVertexArray()),this.buffer??=t.counted(r.createBuffer()),r.bindVertexArray(this.array),r.bindBuffer(r.ARRAY_BUFFER,
 this.buffer),r.bufferData(r.ARRAY_BUFFER,Float32Array.from(e.flatMap(n=>[...n])),r.STATIC_DRAW);for(let n of[0,1])r.enableVertexAttribArray(
 n),r.vertexAttribDivisor(n,1);r.bindVertexArray(null)}at({place:e,position:t,height:r},n,s,i){let{geometry:o,structure:c}=this.
-header,[l,h]=this.shown(s,i,"critical"),u=2*n.height/Math.max(r,1),[m,p]=["",Ds];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
+header,[l,h]=this.shown(s,i,"critical"),u=2*n.height/Math.max(r,1),[m,p]=["",Vs];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
 1){let[d,g,y,b]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),v=P(Z(o.frame,[d,g,y]),o.center),x=n.project(v);if(!x||Math.hypot(
-...S(v,t))>4*Ds*u)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([m,p]=[c?.kinds[b]?.name??"",w])}
+...S(v,t))>4*Vs*u)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([m,p]=[c?.kinds[b]?.name??"",w])}
 return m}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
-buffer=this.drawn=null}};function Or([a,e,t]){return t<.5?a:e}var Hs=5;function zs(a,e){let t=Math.max(Math.ceil((a-1)/e),1);return Array.from({length:t},(r,n)=>({first:n*e,cells:Math.
-min(a-1-n*e,e)}))}var kt=class{mesh;limits;rows;columns;constructor(e,t){this.mesh=e,this.limits=t,this.rows=zs(e.shape[0],
-t.tileCells),this.columns=zs(e.shape[1],t.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye:e,
+buffer=this.drawn=null}};function Or([a,e,t]){return t<.5?a:e}var Bs=5;function Hs(a,e){let t=Math.max(Math.ceil((a-1)/e),1);return Array.from({length:t},(r,n)=>({first:n*e,cells:Math.
+min(a-1-n*e,e)}))}var kt=class{mesh;limits;rows;columns;constructor(e,t){this.mesh=e,this.limits=t,this.rows=Hs(e.shape[0],
+t.tileCells),this.columns=Hs(e.shape[1],t.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye:e,
 halfHeight:t,pixels:r}){let{limits:n}=this,{blocks:s}=this.mesh,i=this.rows.length*this.columns.length,o=s.length/i,c=o-
-Hs-1;return Int8Array.from({length:i},(l,h)=>{let u=s.subarray(o*h,o*(h+1)),[m,p,f,d,g]=u.subarray(o-Hs),y=n.leastDistance*
+Bs-1;return Int8Array.from({length:i},(l,h)=>{let u=s.subarray(o*h,o*(h+1)),[m,p,f,d,g]=u.subarray(o-Bs),y=n.leastDistance*
 d,b=e?Math.max(L(S(e,[m,p,f]))-d,y):1,v=.5*r/(t*Math.max(b,Number.MIN_VALUE)),x=0;for(;x<c;x+=1){let w=u[x+1],M=g*v*2**(x+
 1);if(!(w*v<=n.maxErrorPixels||Number.isFinite(w)&&M<=1)||M>n.maxSideHeights*r)break}return x})}triangles(e,t){let r=Array.
 from(e,i=>i<0?0:this.limits.tileCells>>i),n=new Uint32Array(6*r.reduce((i,o)=>i+o*o,0)),s=0;return e.forEach((i,o)=>{i>=
@@ -694,26 +694,26 @@ A?E:E>>T<<T,x=new Uint32Array(m*m);for(let E=0;E<m;E+=1){let A=Math.min(E*u,p.ce
 min(T*u,f.cells),A];(E===0||E===m-1)&&(O=v(O,f.cells,E?g:d)),(T===0||T===m-1)&&(R=v(R,p.cells,T?b:y)),x[E*m+T]=(p.first+
 R)*l[1]+f.first+O}}let w=t,M=(E,A,T)=>{E===A||A===T||E===T||(e[w++]=E,e[w++]=A,e[w++]=T)};for(let E=0;E<m-1;E+=1){let A=Math.
 min(p.first+Math.min(E*u,p.cells),l[0]-2);for(let T=0;T<m-1;T+=1){let O=Math.min(f.first+Math.min(T*u,f.cells),l[1]-2);if(h&&
-!h[A*(l[1]-1)+O])continue;let R=E*m+T,[C,$,Y,U]=[x[R],x[R+1],x[R+m+1],x[R+m]];M(C,$,Y),M(C,Y,U)}}return w}},Eo=99,Ot=class{values;strides;count;width;constructor([
+!h[A*(l[1]-1)+O])continue;let R=E*m+T,[C,$,Y,U]=[x[R],x[R+1],x[R+m+1],x[R+m]];M(C,$,Y),M(C,Y,U)}}return w}},Mo=99,Ot=class{values;strides;count;width;constructor([
 e,t],r){[this.count,this.width]=r?[t+1,e]:[e+1,t],this.strides=r?[1,t+1]:[t,1],this.values=new Int16Array(this.count*this.
 width)}at(e,t){return e*this.strides[0]+t*this.strides[1]}close(){for(let e=0;e<this.width;e+=1){let[t,r]=[this.at(0,e),
-this.at(this.count-1,e)],n=Math.max(this.values[t],this.values[r]);this.values[t]=this.values[r]=n}}};function Gs({step:a,
+this.at(this.count-1,e)],n=Math.max(this.values[t],this.values[r]);this.values[t]=this.values[r]=n}}};function zs({step:a,
 row:e,column:t,shape:r},[n,s],i){let o=Math.min(e+(r[0]<<a),n),c=Math.min(t+(r[1]<<a),s);for(let l=e;l<o;l+=1){let h=(l-
-e>>a)*r[1];for(let u=t;u<c;u+=1)i(l*s+u,h+(u-t>>a))}}function Ao(a,[e,t],r){let n=(s,i,o,c)=>c?(s+i+o)%o:_(s+i,0,o-1);return a.
+e>>a)*r[1];for(let u=t;u<c;u+=1)i(l*s+u,h+(u-t>>a))}}function Eo(a,[e,t],r){let n=(s,i,o,c)=>c?(s+i+o)%o:_(s+i,0,o-1);return a.
 map((s,i)=>{let[o,c]=[Math.floor(i/t),i%t],l=s;for(let h of[-1,1]){let u=n(o,h,e,r[0]),m=n(c,h,t,r[1]);l=Math.min(l,a[u*
-t+c],a[o*t+m])}return l})}function Ws(a,e,t,r){let n=new Int16Array(e[0]*e[1]).fill(Eo),s=(l,h,u)=>Gs(h,e,(m,p)=>{h.levels[p]>=
-0&&(l[m]=u(h.levels[p]))});for(let l of a)s(n,l,()=>l.step);let i=Ao(n,e,t),o=new Int16Array(n.length);for(let l of a){let{
-levels:h,step:u}=l;Gs(l,e,(m,p)=>{h[p]=Math.min(h[p],i[m]+r-u)}),s(o,l,m=>m+u)}let c=[new Ot(e,0),new Ot(e,1)];for(o.forEach(
+t+c],a[o*t+m])}return l})}function Gs(a,e,t,r){let n=new Int16Array(e[0]*e[1]).fill(Mo),s=(l,h,u)=>zs(h,e,(m,p)=>{h.levels[p]>=
+0&&(l[m]=u(h.levels[p]))});for(let l of a)s(n,l,()=>l.step);let i=Eo(n,e,t),o=new Int16Array(n.length);for(let l of a){let{
+levels:h,step:u}=l;zs(l,e,(m,p)=>{h[p]=Math.min(h[p],i[m]+r-u)}),s(o,l,m=>m+u)}let c=[new Ot(e,0),new Ot(e,1)];for(o.forEach(
 (l,h)=>{let[u,m]=[Math.floor(h/e[1]),h%e[1]];[[u,m],[m,u]].forEach(([p,f],d)=>{let{values:g}=c[d];for(let y of[0,1]){let b=c[d].
-at(p+y,f);g[b]=Math.max(g[b],l)}})});;){c.forEach((h,u)=>t[u]&&h.close());let l=a.map(h=>So(h,c));if(!l.some(([,h])=>h))
-return l.map(([h])=>h)}}function So({step:a,row:e,column:t,shape:r,levels:n},s){let i=1<<a,o=new Int8Array(4*n.length),c=!1;
+at(p+y,f);g[b]=Math.max(g[b],l)}})});;){c.forEach((h,u)=>t[u]&&h.close());let l=a.map(h=>Ao(h,c));if(!l.some(([,h])=>h))
+return l.map(([h])=>h)}}function Ao({step:a,row:e,column:t,shape:r,levels:n},s){let i=1<<a,o=new Int8Array(4*n.length),c=!1;
 for(let l of[0,1,2,3]){let[h,u]=[l>>1,l&1],m=s[h],{values:p}=m;n.forEach((f,d)=>{let g=[Math.floor(d/r[1]),d%r[1]],[y,b]=h?
 [t,e]:[e,t],v=Math.min(y+(g[h]+u)*i,m.count-1),x=b+g[1-h]*i,w=Math.max(Math.min(x+i,m.width),x+1),M=0;for(let E=x;E<w;E+=
 1)M=Math.max(M,p[m.at(v,E)]);if(o[4*d+l]=M-a,!(f<0))for(let E=x;E<w;E+=1)c||=p[m.at(v,E)]!==M,p[m.at(v,E)]=M})}return[o,
-c]}var js={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","position",
+c]}var Ws={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","position",
 "coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},
-$s=["padded","unit","open","nearest","rays"],To=8*(4/3),_o=0,Te=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=_o+=1;constructor(e,t,r,n=null){this.
+js=["padded","unit","open","nearest","rays"],So=8*(4/3),To=0,Te=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=To+=1;constructor(e,t,r,n=null){this.
 tile=n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Rt(e,t,r),this.bodies=new Pt(e,t,r),this.arrows=new Tt(
 e,t,r),this.marks=new Lt(e,t,r)}isReady(e){let t=[!1,!0].map(n=>this.arrows.program(e,n));return[this.earth.isReady,this.
 bodies.isReady,this.marks.isReady(e)].every(Boolean)&&t.every(n=>n?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,
@@ -731,17 +731,17 @@ geometry:n}=this.header,{trace:s}=r;if(!s)return!0;let i=this.part("padded"),o=c
 "position",o("position"),()=>On(i,s,n.shape)),!n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Nn(
 i,s,n.shape)),e.every(c=>this.trace(c,t))}prepare(){let{trace:e}=this.header.slices;e&&tt(this.graphics,this.header,e)}trace(e,t){
 let{graphics:r,header:n}=this,{trace:s,lags:i,sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(
-n,e).map(m=>`flow/${m}`),h=this.key([...l,...$s],e,s,i,o,n.geometry.levels),u=null;if(!h||!r.common.has(`slices ${h}`)){
+n,e).map(m=>`flow/${m}`),h=this.key([...l,...js],e,s,i,o,n.geometry.levels),u=null;if(!h||!r.common.has(`slices ${h}`)){
 let{tracings:m}=r,p=h||`${this.number} ${e}`;this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=m.get(p)??
 new rt(r,n,s,f,e);if(m.set(this.tracing=p,d),u=d.advance(t),!u)return!1;this.stopTracing()}return this.take(c,"Texture",
 h,()=>u,()=>{}),!0}put(e,t,r){let{graphics:n,parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),
 digest:t};n.release(s.get(e)),s.set(e,n.hold(i)),this.forget(e)}isMade(e){return!this.missing(e[0],e[e.length-1]).length&&
 (!this.header.slices.trace||this.isLoaded(e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.
 tracings.delete(this.tracing),this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of \
-the scene is missing`);return t}forget(e){let[t,r]=e.split("/");js[t]?.includes("index")&&(this.meshLevels=this.drawn=null),
+the scene is missing`);return t}forget(e){let[t,r]=e.split("/");Ws[t]?.includes("index")&&(this.meshLevels=this.drawn=null),
 ["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].includes(t);!n&&t!=="\
-scalars"&&this.earth.forget(e),Ie.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:js[t]??[])this.drop(
-s);$s.includes(t)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(e){let t=this.resources.get(e);this.resources.delete(
+scalars"&&this.earth.forget(e),Ie.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:Ws[t]??[])this.drop(
+s);js.includes(t)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(e){let t=this.resources.get(e);this.resources.delete(
 e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){for(let e of[
 ...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose(),
 this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Boolean)?JSON.
@@ -752,23 +752,23 @@ i=o=>{let c=n?s.ELEMENT_ARRAY_BUFFER:s.ARRAY_BUFFER,l=r();return s.bindVertexArr
 c,l,s.STATIC_DRAW),l.length};return this.take(e,"Buffer",t,()=>s.createBuffer(),i)}mesh(){if(this.meshLevels)return this.
 meshLevels;let{geometry:e,mesh:t}=this.header;if(e.triangles)return this.meshLevels=new gt(this.part("mesh"),this.part("\
 blocks"));let{shape:r,periodic:n}=e,s={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=
-new kt({shape:r,periodic:n,...s},t)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?ts(this.part("tr\
-iangles").data,e):Xn(r,e)}levels(e){return{levels:this.mesh().levels(e),shape:this.mesh().shape}}get hasTriangles(){return this.
+new kt({shape:r,periodic:n,...s},t)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?es(this.part("tr\
+iangles").data,e):Yn(r,e)}levels(e){return{levels:this.mesh().levels(e),shape:this.mesh().shape}}get hasTriangles(){return this.
 drawn!==null}setTriangles(e,t=new Int8Array){let{drawn:r}=this;r&&String([e,t])===String([r.levels,r.joins])||(this.drawn=
 {levels:e,joins:t},this.drop("index"),this.drop("array"))}isLoaded(e){return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){
 let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*
-To*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e,t,r){let n=this.graphics.context,
+So*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e,t,r){let n=this.graphics.context,
 s=String(this.scalarParts(e,t)),i=s!==this.scalarSteps?["scalar","array"]:[];r.some((l,h)=>l!==this.anchor[h])&&i.push("\
 position","array");for(let l of i)this.drop(l);this.scalarSteps=s,this.anchor=r;let o=l=>this.fillArray(l,e,t),c=()=>n.createVertexArray();
 n.bindVertexArray(this.take("array","VertexArray","",c,o))}fillArray(e,t,r){let n=this.graphics.context,{geometry:s,paper:i}=this.
 header,{shape:o,rows:c,columns:l}=s,{levels:h,joins:u}=this.drawn??{levels:new Int8Array,joins:new Int8Array},m=(R,...C)=>this.
 key(["triangles",...R],...C),p=()=>this.mesh().triangles(h,u),f=m(["cells","mesh","blocks"],o,[...h],[...u]),d=this.buffer(
 "index",f,p,!0),g=s.triangles?this.part("triangles").data:null,y=(R,C)=>g?Ar(R,g,C):R,b=()=>y(ut(this.part("position").data,
-this.anchor),3),v=s.planar?null:this.part("normal").data,x=R=>g?Qn(R,this.part("position").data,g):R,[w,M]=this.shares(t,
-r),E=JSON.stringify([o,c,l,g?.length]),A=()=>g?Zn(g.length/3):pt(s),T=n.FLOAT;v instanceof Int8Array&&(T=n.BYTE),v instanceof
+this.anchor),3),v=s.planar?null:this.part("normal").data,x=R=>g?Zn(R,this.part("position").data,g):R,[w,M]=this.shares(t,
+r),E=JSON.stringify([o,c,l,g?.length]),A=()=>g?Jn(g.length/3):pt(s),T=n.FLOAT;v instanceof Int8Array&&(T=n.BYTE),v instanceof
 Int16Array&&(T=n.SHORT);let O=[[this.buffer("position",m(["position"],this.anchor),b),3,n.FLOAT],[this.buffer("coordinat\
-e",E,A),2,n.FLOAT],[v&&this.buffer("normal",m(["normal"]),()=>x(v)),3,T],[i&&this.buffer("along","",()=>Yn(i)),2,n.FLOAT],
-[g&&this.buffer("scalar",w,()=>y(M(),2)),2,n.FLOAT],[g&&this.buffer("corners",m([]),()=>es(g)),3,n.FLOAT]];n.bindVertexArray(
+e",E,A),2,n.FLOAT],[v&&this.buffer("normal",m(["normal"]),()=>x(v)),3,T],[i&&this.buffer("along","",()=>$n(i)),2,n.FLOAT],
+[g&&this.buffer("scalar",w,()=>y(M(),2)),2,n.FLOAT],[g&&this.buffer("corners",m([]),()=>Qn(g)),3,n.FLOAT]];n.bindVertexArray(
 e),n.bindBuffer(n.ELEMENT_ARRAY_BUFFER,d),O.forEach(([R,C,$],Y)=>{R&&(n.bindBuffer(n.ARRAY_BUFFER,R),n.enableVertexAttribArray(
 Y),n.vertexAttribPointer(Y,C,$,$!==n.FLOAT,0,0))})}shares(e,t){let{geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.
 scalarParts(e,t);return[this.key(["triangles",...new Set(i)],s,n.low,n.high,n.log),()=>ft(i.map(l=>this.part(l).data),n,
@@ -799,7 +799,7 @@ this.drop(n))}bindTextures(e,t){let r=this.graphics.context,{geometry:n,paper:s,
 n.triangles||i.name===null?null:this.nodalShares(e,t)].forEach((l,h)=>{r.activeTexture(r.TEXTURE0+h),r.bindTexture(h<4?r.
 TEXTURE_2D_ARRAY:r.TEXTURE_2D,l)}),r.activeTexture(r.TEXTURE0+dr.length)}get triangles(){return(this.resources.get("inde\
 x")?.count??0)/3}draw(e,t,r,n){let s=this.graphics.context;this.bindNodes(e,t,r),n&&(this.dropSlices(e,t),this.bindTextures(
-e,t)),s.drawElements(s.TRIANGLES,this.resources.get("index")?.count??0,s.UNSIGNED_INT,0),s.bindVertexArray(null)}};var Po=60,Ro=25,Lo=9e8,ko=3.5,Oo={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+e,t)),s.drawElements(s.TRIANGLES,this.resources.get("index")?.count??0,s.UNSIGNED_INT,0),s.bindVertexArray(null)}};var _o=60,Po=25,Ro=9e8,Lo=3.5,ko={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Se;constructor(e,t){this.
 host=e,this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.
 refine()}need(e,t){return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.
@@ -821,11 +821,11 @@ column:b,shape:d,levels:f}});return this.layers=o,this.setTriangles(c,h),o.map((
 pyramid?.finerPart(oe(r),n)??[0,0,0];for(let c=s;c<Math.min(s+o,e.length/t);c+=1)e.fill(-1,c*t+i,c*t+Math.min(i+o,t))}setTriangles(e,t){
 let r=String(t.map(({levels:u},m)=>[e[m],u]));if(r===this.drawn&&this.layers.every(({scene:u})=>u.hasTriangles))return;this.
 drawn=r;let{geometry:n,mesh:s,pyramid:i,formula:o}=this.root.header,c=Math.log2(s.tileCells),l=i?.blocks[0]??t[0].shape,
-h=n.triangles||o?[]:Ws(t,l,n.periodic,c);t.forEach(({levels:u},m)=>this.layers[m].scene.setTriangles(u,h[m]))}choose(e,t){
+h=n.triangles||o?[]:Gs(t,l,n.periodic,c);t.forEach(({levels:u},m)=>this.layers[m].scene.setTriangles(u,h[m]))}choose(e,t){
 let{header:r}=this.root,{settings:n,canvas:s,ratio:i}=this.host;if(!r.pyramid)return new Map;this.pyramid??=new lt(r.pyramid,
-Vn(r)??this.root.part("places").data);let o=this.pyramid.choose({...e.sight(s.height/i),planes:e.planes,cellPixels:Bn(r.
+Un(r)??this.root.part("places").data);let o=this.pyramid.choose({...e.sight(s.height/i),planes:e.planes,cellPixels:Dn(r.
 pyramid,n)});this.count+=1;for(let u of o.keys()){let m=this.tiles.get(u);m&&(m.used=this.count)}let c=performance.now()+
-Ro,l=this.obtainable(Hn(o),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
+Po,l=this.obtainable(Bn(o),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
 this.isHere(u,t)&&this.load(u,t,c);let h=wr(o,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
 l.filter(u=>!this.isHere(u,t)||!this.isLoaded(u,t)).length,this.chosen={choices:o,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
 let n=[t,...t.map(o=>[o])],s=o=>n.some(c=>this.failed.has(this.need(o,c))),i=e.map(o=>{let[c,l,h]=oe(o);for(;c<r&&s(B([c,
@@ -835,12 +835,12 @@ return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;!e||this.isWaiting||
 !(this.missing.length||this.hasAsked)||(this.isWaiting=!0,t.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=
 this.missing.length>0;let r=(i,o)=>this.tiles.get(i)?.scene?.lacking(o)??ie(this.root.header,o),n=this.missing.flatMap(i=>this.
-chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},Po))}trim(e){let t=0;
+chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},_o))}trim(e){let t=0;
 for(let[r,n]of[...this.tiles].sort(([,s],[,i])=>i.used-s.used)){let{parts:s,scene:i,used:o}=n,c=i?.header.slices.trace?"\
 flow":"slices",l=[...s.keys()].filter(u=>u.startsWith(`${c}/`)),h=i?e.flatMap(u=>ie(i.header,u)):e;for(let u of l.slice(
-0,Math.max(l.length-Oo[c],0))){let m=K(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
+0,Math.max(l.length-ko[c],0))){let m=K(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
 let p=[...s.keys()].filter(f=>Ae(f,m,this.root.header));for(let f of p)this.release(n,f)}for(let{data:u}of s.values())t+=
-ko*u.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??Lo)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
+Lo*u.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??Ro)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
 t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var Ft=class{scene=null;tiles=null;shown=null;view;renderer;next=[];constructor(e){this.view=e,this.renderer=new vt(e,this),
 !e.graphics.gl&&e.panel.fail("This browser has no WebGL2, which is needed to draw the picture.","Turn on hardware accele\
@@ -858,7 +858,7 @@ r.make(c.slice(0,2),e),m=t.requests.hasMarks?r.marks.lacking(t.settings,c):[];re
 wantMarks(m),t.root.dataset.lacking=String(s.length+m.length||+!u),t.panel.wait(s,u,this.renderer.leavesOut,m.length>0),
 t.panel.showKinds(r.marks.legend(t.settings,c)),u&&String(c.slice(0,2))!==String(n?.slice(0,2))&&(t.trim(),t.change()),u?
 this.shown=c:(s.length||t.request(),n&&r.isMade(n.slice(0,2))?n:null)}program(e,t=this.isClose(e),r=!this.view.player.playing){
-let{vertex:n,fragment:s}=e.shaders,i=Un(e,this.view.settings,t,r);return this.view.graphics.programs.get(n,s,...i)}isClose(e){
+let{vertex:n,fragment:s}=e.shaders,i=Cn(e,this.view.settings,t,r);return this.view.graphics.programs.get(n,s,...i)}isClose(e){
 let{view:t}=this;if(!t.camera)return!1;let r=t.view([0,0,0],t.ratio),n=this.tiles?.layers.slice(1).map(({scene:s})=>s.header)??
 [];return(n.length?n:[e]).some(s=>it(s,t.settings,r))}frame(e,t){let{view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||
 !s.gl||!r.isVisible||!i||!n||r.canvas.width<2)return;this.next=[],r.advance(e);let o=this.available(t);r.camera||r.place();
@@ -867,7 +867,7 @@ th this graphics driver.",c.error);if(!c.ready||!n.isReady(r.settings))return r.
 draw(c,o,t);l&&(n.pickers,i.slices.critical&&this.program(i,!0),r.player.varies&&this.program(i,this.isClose(i),!1)),r.painted(
 l)}get canPick(){let{scene:e,view:t}=this,{graphics:r}=t;return!!e&&!r.isLost&&!!r.gl&&e.pickers.every(({ready:n})=>n)}find(e,t){
 let{tiles:r,shown:n,view:s}=this,{camera:i,canvas:o}=s;if(!r?.layers.length||!i||!n)return null;let{anchor:c}=s.view(n,1),
-l=fs({layers:r.layers,camera:i,moment:n,anchor:c,canvas:o},e,t),{marks:h}=r.layers[0].scene;if(l){let u={place:[e,t],position:l.
+l=ps({layers:r.layers,camera:i,moment:n,anchor:c,canvas:o},e,t),{marks:h}=r.layers[0].scene;if(l){let u={place:[e,t],position:l.
 point.position,height:s.root.clientHeight};l.point.mark=h.at(u,i,s.settings,n)}return l}};var It=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=bn();lifetime=new st;player;held=new nt(
 this.graphics);parts=this.held.all;isClear=!0;isVisible=!0;panel;requests;options;header;settings;painter;camera=null;sharp=!1;ratio=1;host;isNew=!0;constructor(e,{
 header:t,settings:r,player:n,source:s,isComing:i}){this.host=e,this.header=t,this.settings=r,this.player=n,this.options=
@@ -887,8 +887,8 @@ this.change())}request(){this.lifetime.isOver||this.graphics.request(this)}chang
 player.playing,(this.isNew||e)&&this.host.painted(e),this.isNew=!1,this.sharp||this.request()}lost(){this.painter.open(this.
 header),this.sharp=!1}frame(e,t){if(!this.lifetime.isOver)try{this.painter.frame(e,t)}catch(r){this.player.playing=!1,this.
 host.failed("The flow cannot be drawn.",String(r))}}view(e,t){let{header:r,camera:n,player:s,rows:i}=this;if(!n)throw new Error(
-"no camera is set yet");let o=this.painter.scene?.anchor??[0,0,0];return jn({header:r,camera:n,anchor:o,player:s,rows:i},
-e,t)}get rows(){return this.canvas.height/this.ratio}find(e,t){return this.painter.canPick?this.painter.find(e,t):null}};var Ys=`// A picture of the flow on a web map; nothing beside it.
+"no camera is set yet");let o=this.painter.scene?.anchor??[0,0,0];return Wn({header:r,camera:n,anchor:o,player:s,rows:i},
+e,t)}get rows(){return this.canvas.height/this.ratio}find(e,t){return this.painter.canPick?this.painter.find(e,t):null}};var $s=`// A picture of the flow on a web map; nothing beside it.
 
 in vec3 flowtexPlaceOut;
 
@@ -904,7 +904,7 @@ void main()
     discard;
   flowtexOut = u_opacity * texture(u_flowPicture, place);
 }
-`;var Xs=`// A piece of a web map, in the cells of a grid over a box of a tile, and where it lies in a picture of the flow\
+`;var Ys=`// A piece of a web map, in the cells of a grid over a box of a tile, and where it lies in a picture of the flow\
 .
 // \`projectTile\` is the map's.
 
@@ -921,28 +921,28 @@ void main()
   flowtexPlaceOut = (u_flowMatrix * vec4(place, 0.0, 1.0)).xyw;
   gl_Position = projectTile(place);
 }
-`;var Ks=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,q=Math.PI/180,Io=88*q,qs='export it with projection="mercator"';
+`;var Xs=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,q=Math.PI/180,Fo=88*q,Ks='export it with projection="mercator"';
 function ge({lng:a,lat:e}){let t=Math.sin(_(e,-Ct,Ct)*q);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
-let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${qs}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
+let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${Ks}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/q,lat:Math.asin(v/Math.hypot(y,b,v))/q}),w=[r[0]+(r[2]-r[0])*g/(s-
 1),r[1]+(r[3]-r[1])*d/(n-1)];return{place:x,position:w}},[o,c,l]=[i(1,1),i(n>>1,s>>1),i(n-2,s-2)],h=d=>d+Math.ceil(o.place[0]-
 d),u=[h(l.place[0])-o.place[0],l.place[1]-o.place[1]];this.slope=[0,1].map(d=>u[d]/(l.position[d]-o.position[d])),this.origin=
-[0,1].map(d=>o.place[d]-this.slope[d]*o.position[d]);let[m,p]=this.placeOf(c.position);if(!(Math.abs(m-h(c.place[0]))<Ks&&
-Math.abs(p-c.place[1])<Ks))throw new Error(`the flow is on another map; ${qs}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
+[0,1].map(d=>o.place[d]-this.slope[d]*o.position[d]);let[m,p]=this.placeOf(c.position);if(!(Math.abs(m-h(c.place[0]))<Xs&&
+Math.abs(p-c.place[1])<Xs))throw new Error(`the flow is on another map; ${Ks}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
 this.slope[t]*e[t])}lngLatOf(e){let[t,r]=this.placeOf(e);return[360*(t-.5),Math.atan(Math.sinh(2*Math.PI*(.5-r)))/q]}positionOf(e){
 let[t,r]=e.map((s,i)=>(s-this.origin[i])/this.slope[i]),n=1/this.slope[0];return[t+n*Math.round((.5*(this.box[0]+this.box[2])-
 t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,s]=this.positionOf(ge(e.center)),i=f=>e.globe?this.globeLook(
 e,r,[f,s,t]):this.flatLook(e,r,[f,s,t]),o=[i(n)],[c,l]=e.globe?[.5*r*o[0].width,.5*r*o[0].width]:[.5*r*Math.min(e.width,
-e.height),r*Js(e)],[h,,u]=this.box,m=n+(n<.5*(h+u)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=u)&&Math.abs(m-_(m,h,u))<l&&
+e.height),r*qs(e)],[h,,u]=this.box,m=n+(n<.5*(h+u)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=u)&&Math.abs(m-_(m,h,u))<l&&
 o.push(i(m)),o}flatLook({width:e,height:t,bearing:r,pitch:n,fov:s},i,[o,c,l]){let[h,u]=[r*q,n*q],m=.5*t*i,p=m/Math.tan(.5*
 s*q);return{state:{position:[o-p*Math.sin(u)*Math.sin(h),c-p*Math.sin(u)*Math.cos(h),l+p*Math.cos(u)],focal_point:[o,c,l],
 up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:m,view_angle:s},width:e,height:t}}globeLook(e,t,[r,,n]){let s=1/
-(t*this.slope[0]),i=_(e.center.lat,-Ct,Ct)*q,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(Js(e)/o,1)),[l,h]=[i-c,i+c].
+(t*this.slope[0]),i=_(e.center.lat,-Ct,Ct)*q,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(qs(e)/o,1)),[l,h]=[i-c,i+c].
 map(g=>ge({lng:0,lat:g/q})[1]),u=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,m=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[u/Math.PI,l-h];return{state:{position:[r,m,n+1/this.slope[0]],focal_point:[r,m,n],up:[0,1,0],parallel:!0,
-parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function Js({width:a,height:e,pitch:t,fov:r}){
-let[n,s]=[t*q,.5*r*q],i=n+s;if(i>Io)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
-hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Nr=8192,Co=22,Uo=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
+parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function qs({width:a,height:e,pitch:t,fov:r}){
+let[n,s]=[t*q,.5*r*q],i=n+s;if(i>Fo)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
+hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Nr=8192,Io=22,Co=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
 e!==void 0,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.next=null}painted(e){let{camera:t}=this.view;t&&
 this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,next:t,shown:r}=this;return!this.isUsed||e.
@@ -953,15 +953,15 @@ e.TEXTURE_2D,e.TEXTURE_MIN_FILTER,t?e.LINEAR_MIPMAP_LINEAR:e.LINEAR),e.texParame
 LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercator:n,globe:s}=e,{vertexShaderPrelude:i,define:o}=e.
 shaderData,c=r.get(`${o}
 ${i}
-${Xs}`,Ys);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,Co)),u=n.placeOf(l.state.focal_point),m=2**h,
+${Ys}`,$s);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,Io)),u=n.placeOf(l.state.focal_point),m=2**h,
 p=[Math.floor(u[0]*m),_(Math.floor(u[1]*m),0,m-1)],f=Math.floor(p[0]/m),d={z:h,x:p[0]-f*m,y:p[1]},g=T=>T.map((O,R)=>(O*m-
-p[R])*Nr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(T=>g(n.placeOf(T)));t.bindVertexArray(e.array);let E=s?Uo:1,A=s?0:Math.
+p[R])*Nr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(T=>g(n.placeOf(T)));t.bindVertexArray(e.array);let E=s?Co:1,A=s?0:Math.
 round(ge(e.center)[0]-u[0]);for(let T of e.isRepeated&&!s?[-1,0,1]:[0]){let O={wrap:f+A+T,canonical:d},R=e.getProjectionData(
 {tileID:O,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:R.mainMatrix,u_projection_fallback_matrix:R.fallbackMatrix,u_projection_tile_mercator_coords:R.
 tileMercatorCoords,u_projection_clipping_plane:R.clippingPlane,u_projection_transition:R.projectionTransition,u_box:[...w,
-M[0]-w[0],M[1]-w[1]],u_mapCells:E,u_flowMatrix:Vo(this.view.header,l,n,p,1/(m*Nr)),u_flowPicture:0,u_opacity:e.opacity}),
-t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*E+2,E)}return t.bindVertexArray(null),!0}};function Vo({geometry:a},e,t,r,n){
+M[0]-w[0],M[1]-w[1]],u_mapCells:E,u_flowMatrix:Uo(this.view.header,l,n,p,1/(m*Nr)),u_flowPicture:0,u_opacity:e.opacity}),
+t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*E+2,E)}return t.bindVertexArray(null),!0}};function Uo({geometry:a},e,t,r,n){
 let{center:s,frame:i}=a,{focal_point:o}=e.state,c=F(i,S(o,s)),l=z(a,e,c),h=[0,1].map(f=>F(i,[0,1].map(d=>d===f?n/t.slope[f]:
 0).concat(0))),u=t.placeOf(o),m=[0,1].map(f=>(r[f]*n*Nr-u[f])/t.slope[f]).concat(0);return[...h,[0,0,0],F(i,m)].flatMap(
 (f,d)=>[0,1,2,3].map(g=>f.reduce((y,b,v)=>y+l[4*v+g]*b,d===3?l[12+g]:0)))}var Dt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
@@ -995,8 +995,8 @@ return this.#e.byteLength}get byteOffset(){return this.#e.byteOffset}get buffer(
 length/this.chars}get(e){let t=this.chars*e,r="";for(let n=0;n<this.chars;n++)r+=String.fromCodePoint(this.#e[t+n]);return r.
 replace(/\u0000/g,"")}set(e,t){let r=this.chars*e,n=this.#e.subarray(r,r+this.chars);n.fill(0);for(let s=0;s<this.chars;s++)
 n[s]=t.codePointAt(s)??0}fill(e){this.set(0,e);let t=this.#e.subarray(0,this.chars);for(let r=1;r<this.length;r++)this.#e.
-set(t,r*this.chars)}*[Symbol.iterator](){for(let e=0;e<this.length;e++)yield this.get(e)}};function Qs(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
-uires Cross-Origin-Opener-Policy and Cross-Origin-Embedder-Policy headers to be set.")}function ea(a,e){return e?new SharedArrayBuffer(
+set(t,r*this.chars)}*[Symbol.iterator](){for(let e=0;e<this.length;e++)yield this.get(e)}};function Zs(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
+uires Cross-Origin-Opener-Policy and Cross-Origin-Embedder-Policy headers to be set.")}function Qs(a,e){return e?new SharedArrayBuffer(
 a):new ArrayBuffer(a)}function He(a){let e=new TextDecoder().decode(a);try{return JSON.parse(e)}catch(t){throw new D("Fa\
 iled to decode JSON",{cause:t})}}function Ir(a,e){let t=e/2,r=e-1,n=0;for(let s=0;s<a.length;s+=e)for(let i=0;i<t;i+=1)n=
 a[s+i],a[s+i]=a[s+r-i],a[s+r-i]=n}function Wt(a){if(a==="v2:object")return globalThis.Array;let e=a.match(/v2:([US])(\d+)/);
@@ -1004,167 +1004,167 @@ if(e){let[,r,n]=e;return(r==="U"?zt:Ht).bind(null,Number(n))}if(a==="string")ret
 int16:Int16Array,int32:Int32Array,int64:globalThis.BigInt64Array,uint8:Uint8Array,uint16:Uint16Array,uint32:Uint32Array,
 uint64:globalThis.BigUint64Array,float16:globalThis.Float16Array,float32:Float32Array,float64:Float64Array,bool:Bt}[a];if(!t)
 throw new D(`Unknown or unsupported dataType: ${a}`);return t}function _e(a,e){let t=a.length;typeof e=="string"&&(e=e===
-"C"?Array.from({length:t},(s,i)=>i):Array.from({length:t},(s,i)=>t-1-i)),aa(t===e.length,"Order length must match the nu\
-mber of dimensions.");let r=1,n=new Array(t);for(let s=e.length-1;s>=0;s--)n[e[s]]=r,r*=a[e[s]];return n}function ta({name:a,
+"C"?Array.from({length:t},(s,i)=>i):Array.from({length:t},(s,i)=>t-1-i)),sa(t===e.length,"Order length must match the nu\
+mber of dimensions.");let r=1,n=new Array(t);for(let s=e.length-1;s>=0;s--)n[e[s]]=r,r*=a[e[s]];return n}function ea({name:a,
 configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r].join(t)}if(a==="v2"){let t=e?.separator??
-".";return r=>r.join(t)||"0"}throw new D(`Unknown chunk key encoding: ${a}`)}function Zs(a){if(a==="|O")return{dataType:"\
+".";return r=>r.join(t)||"0"}throw new D(`Unknown chunk key encoding: ${a}`)}function Js(a){if(a==="|O")return{dataType:"\
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new D(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new D(`Unsupported or unknown dtype: ${a}`);return t===
-"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Do(a){return(a.id==="fixedscaleoffset"||a.id==="num\
+"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Vo(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
-ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function ra(a,e={}){let t=[],r=Zs(a.dtype);a.order==="F"&&t.push({name:"\
+ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function ta(a,e={}){let t=[],r=Js(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
-scaleoffset"){if(!Do(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
-configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Zs(c).dataType;
+scaleoffset"){if(!Vo(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
+configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Js(c).dataType;
 if(!Gt(l,"number")&&!Gt(l,"bigint"))throw new D(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:i,...o}=s;t.
 push({name:`numcodecs.${i}`,configuration:o})}if("endian"in r&&r.endian==="big"&&t.push({name:"bytes",configuration:{endian:"\
 big"}}),a.compressor){let{id:s,...i}=a.compressor;t.push({name:`numcodecs.${s}`,configuration:i})}let n;return globalThis.
 Array.isArray(e._ARRAY_DIMENSIONS)&&(n=e._ARRAY_DIMENSIONS),{zarr_format:3,node_type:"array",shape:a.shape,data_type:r.dataType,
 chunk_grid:{name:"regular",configuration:{chunk_shape:a.chunks}},chunk_key_encoding:{name:"v2",configuration:{separator:a.
-dimension_separator??"."}},codecs:t,fill_value:a.fill_value,dimension_names:n,attributes:e}}function na(a,e={}){return{zarr_format:3,
+dimension_separator??"."}},codecs:t,fill_value:a.fill_value,dimension_names:n,attributes:e}}function ra(a,e={}){return{zarr_format:3,
 node_type:"group",attributes:e}}function Gt(a,e){if(e!=="number"&&e!=="bigint"&&e!=="boolean"&&e!=="object"&&e!=="string")
 return a===e;let t=a==="bool";if(e==="boolean")return t;let r=a.startsWith("v2:U")||a.startsWith("v2:S")||a==="string";if(e===
 "string")return r;let n=a==="int64"||a==="uint64";if(e==="bigint")return n;let s=a==="v2:object";return e==="object"?s:!r&&
-!n&&!t&&!s}function sa(a){return a?.name==="sharding_indexed"}function jt(a){if((a.data_type==="uint64"||a.data_type==="\
+!n&&!t&&!s}function na(a){return a?.name==="sharding_indexed"}function jt(a){if((a.data_type==="uint64"||a.data_type==="\
 int64")&&a.fill_value!=null)return BigInt(a.fill_value);let e=a.data_type==="float16"||a.data_type==="float32"||a.data_type===
 "float64";if(typeof a.fill_value=="string"&&e){let t={NaN:NaN,Infinity:1/0,"-Infinity":-1/0};if(a.fill_value in t)return t[a.
-fill_value]}return a.fill_value}function Cr(a,...e){if(!e.some(t=>a instanceof t))throw a}function aa(a,e=""){if(!a)throw new Error(e)}async function $t(a,{
+fill_value]}return a.fill_value}function Cr(a,...e){if(!e.some(t=>a instanceof t))throw a}function sa(a,e=""){if(!a)throw new Error(e)}async function $t(a,{
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
-a.byteLength);r=new Response(n.slice().buffer)}aa(r.body,"Response does not contain body.");try{return await new Response(
+a.byteLength);r=new Response(n.slice().buffer)}sa(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var ia=Bo();function Bo(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
-18}function oa(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var ze=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
+ed to decode ${e}`)}}var aa=Do();function Do(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+18}function ia(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var ze=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=Wt(t.dataType),this.#s=t.shape,this.#e=_e(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
-return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ia&&this.#n==="big"&&(t=t.slice(),Ir(t,oa(this.#t))),
-t}computeEncodedSize(e){return e}decode(e){return ia&&this.#n==="big"&&(e=e.slice(),Ir(e,oa(this.#t))),e.byteOffset%this.#r!==
+return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return aa&&this.#n==="big"&&(t=t.slice(),Ir(t,ia(this.#t))),
+t}computeEncodedSize(e){return e}decode(e){return aa&&this.#n==="big"&&(e=e.slice(),Ir(e,ia(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Yt=class{};function le(a){return()=>{throw new ye(`${a} encode`)}}var Xt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=le("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Kt=class{};var qt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=le("gzip");async decode(e){let t=await $t(
 e,{format:"gzip"});return new Uint8Array(t)}};var Ge=class{};var Jt=class{};var Zt=class{};var Qt=class{};var We=class a{kind="array_to_bytes";#e;#t;constructor(e){this.#e=e,this.#t=_e(e,"C")}static fromConfig(e,t){return new a(
 t.shape)}encode=le("vlen-utf8");decode(e){let t=new TextDecoder,r=new DataView(e.buffer),n=Array(r.getUint32(0,!0)),s=4;
 for(let i=0;i<n.length;i++){let o=r.getUint32(s,!0);s+=4,n[i]=t.decode(e.buffer.slice(s,s+o)),s+=o}return{data:n,shape:this.#e,
 stride:this.#t}}};var er=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=le("zlib");async decode(e){let t=await $t(
-e,{format:"deflate"});return new Uint8Array(t)}};function Ho(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"deflate"});return new Uint8Array(t)}};function Bo(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>qt,n=()=>er;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Qt).set("bytes",()=>ze).set("crc32c",()=>Xt).set("vlen-utf8",()=>We).set("json2",()=>Ge).set("bit\
 round",()=>Ve).set("cast_value",()=>Yt).set("scale_offset",()=>Jt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>We).set("numcodecs.shuf\
-fle",()=>Zt).set("numcodecs.delta",()=>Kt).set("numcodecs.bitround",()=>Ve).set("numcodecs.json2",()=>Ge)}var je=Ho();function $e(a){
-let e;function t(){return e||(e=zo(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new Be({direction:n,
+fle",()=>Zt).set("numcodecs.delta",()=>Kt).set("numcodecs.bitround",()=>Ve).set("numcodecs.json2",()=>Ge)}var je=Bo();function $e(a){
+let e;function t(){return e||(e=Ho(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new Be({direction:n,
 codec:s,cause:o})}}return{async encode(n){let s=await t();for(let{name:o,codec:c}of s.arrayToArray)n=await r("encode",o,
 ()=>c.encode(n));let i=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:o,codec:c}of s.
 bytesToBytes)i=await r("encode",o,()=>c.encode(i));return i},async decode(n){let s=await t();for(let o=s.bytesToBytes.length-
 1;o>=0;o--){let{name:c,codec:l}=s.bytesToBytes[o];n=await r("decode",c,()=>l.decode(n))}let i=await r("decode",s.arrayToBytes.
 name,()=>s.arrayToBytes.codec.decode(n));for(let o=s.arrayToArray.length-1;o>=0;o--){let{name:c,codec:l}=s.arrayToArray[o];
-i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=ca(s.arrayToBytes.name,s.arrayToBytes.
-codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=ca(o,c,i);return i}}}function ca(a,e,t){if(!e.computeEncodedSize)throw new D(
+i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=oa(s.arrayToBytes.name,s.arrayToBytes.
+codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=oa(o,c,i);return i}}}function oa(a,e,t){if(!e.computeEncodedSize)throw new D(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
-ine`);return e.computeEncodedSize(t)}async function zo(a){let e=a.codecs.map(async i=>{let o=await je.get(i.name)?.();if(!o)
+ine`);return e.computeEncodedSize(t)}async function Ho(a){let e=a.codecs.map(async i=>{let o=await je.get(i.name)?.();if(!o)
 throw new De(i.name);return{Codec:o,meta:i}}),t=[],r,n=[],s={...a};for await(let{Codec:i,meta:o}of e){let c=i.fromConfig(
 o.configuration,s);switch(c.kind){case"array_to_array":t.push({name:o.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
-s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!Go(s))throw new D(
+s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!zo(s))throw new D(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:ze.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function Go(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var la=18446744073709551615n;function ha(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function zo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var ca=18446744073709551615n;function la(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),i=$e({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),o=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let u=l.map((x,w)=>Math.floor(x/s[w])),
 m=a.resolve(t(u)).path;m in c||(c[m]=(async()=>{let x=await i.computeEncodedSize(o),w=await n(m,{suffixLength:x},h);return w?
 await i.decode(w):null})().catch(x=>{throw delete c[m],x}));let p=await c[m];if(p===null)return;let{data:f,shape:d,stride:g}=p,
-y=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*g[M],0),b=f[y],v=f[y+1];if(!(b===la&&v===la))return n(m,{offset:Number(b),length:Number(
+y=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*g[M],0),b=f[y],v=f[y+1];if(!(b===ca&&v===ca))return n(m,{offset:Number(b),length:Number(
 v)},h)}}var ne=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function rr(a){return new ne(
 a??new Map)}var ve=class extends ne{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function ma(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Wo(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function ua(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Wo(
-a,t):a;return _e(e,r)}}var tr=Symbol("zarrita.context");function jo(a,e){let{configuration:t}=e.codecs.find(sa)??{},r={encodeChunkKey:ta(e.chunk_key_encoding),TypedArray:Wt(e.data_type),
-fillValue:e.fill_value};if(t){let s=ma(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:$e({dataType:e.
-data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:ua(s),getChunkBytes:ha(a,e.chunk_grid.
-configuration.chunk_shape,r.encodeChunkKey,t)}}let n=ma(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
+function ha(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Go(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function ma(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Go(
+a,t):a;return _e(e,r)}}var tr=Symbol("zarrita.context");function Wo(a,e){let{configuration:t}=e.codecs.find(na)??{},r={encodeChunkKey:ea(e.chunk_key_encoding),TypedArray:Wt(e.data_type),
+fillValue:e.fill_value};if(t){let s=ha(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:$e({dataType:e.
+data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:ma(s),getChunkBytes:la(a,e.chunk_grid.
+configuration.chunk_shape,r.encodeChunkKey,t)}}let n=ha(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:$e({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
-getStrides:ua(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var he=class extends ne{kind="\
-array";#e;[tr];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:jt(r)},this[tr]=jo(this,this.#e)}get attrs(){return this.#e.
+getStrides:ma(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var he=class extends ne{kind="\
+array";#e;[tr];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:jt(r)},this[tr]=Wo(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[tr].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
-Qs();let n=this[tr],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
+Zs();let n=this[tr],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
- non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=ea(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
+ non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=Qs(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
 o=new n.TypedArray(i);return o.fill(n.fillValue),{data:o,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Gt(this.dtype,e)}};function pa(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function fa(a,...e){return pa(a,e)}async function ba(a){let e=a.store.arrayExtensions;return e?.length?await fa(a,...e):a}var nr=$o();function $o(){let a=new WeakMap;
+codec.decode(s)}is(e){return Gt(this.dtype,e)}};function ua(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function pa(a,...e){return ua(a,e)}async function ga(a){let e=a.store.arrayExtensions;return e?.length?await pa(a,...e):a}var nr=jo();function jo(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function Yo(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-He(t):{}}async function Xo(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Yo(t,r)),
-r?.throwIfAborted(),e.kind==="array"?da(t,n,r):e.kind==="group"?ga(t,n,r):da(t,n,r).catch(s=>(Cr(s,J,D),ga(t,n,r)))}async function da(a,e,t){
+return r.v3>r.v2?"v3":"v2"}}}async function $o(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+He(t):{}}async function Yo(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await $o(t,r)),
+r?.throwIfAborted(),e.kind==="array"?fa(t,n,r):e.kind==="group"?da(t,n,r):fa(t,n,r).catch(s=>(Cr(s,J,D),da(t,n,r)))}async function fa(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new J("v2 array",{path:r});return nr.increment(
-a.store,"v2"),ba(new he(a.store,a.path,ra(He(n),e)))}async function ga(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
-store.get(r,{signal:t});if(!n)throw new J("v2 group",{path:r});return nr.increment(a.store,"v2"),new ve(a.store,a.path,na(
-He(n),e))}async function Ko(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new J(
-"v3 array or group",{path:r});let s=He(n);return s.node_type==="array"&&(s.fill_value=jt(s)),s.node_type==="array"?ba(new he(
-t,a.path,s)):new ve(t,a.path,s)}async function qo(a,e={}){let t="store"in a?a:new ne(a),r=await Ko(t,e.signal);if(nr.increment(
+a.store,"v2"),ga(new he(a.store,a.path,ta(He(n),e)))}async function da(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
+store.get(r,{signal:t});if(!n)throw new J("v2 group",{path:r});return nr.increment(a.store,"v2"),new ve(a.store,a.path,ra(
+He(n),e))}async function Xo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new J(
+"v3 array or group",{path:r});let s=He(n);return s.node_type==="array"&&(s.fill_value=jt(s)),s.node_type==="array"?ga(new he(
+t,a.path,s)):new ve(t,a.path,s)}async function Ko(a,e={}){let t="store"in a?a:new ne(a),r=await Xo(t,e.signal);if(nr.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof he||e.kind==="group"&&r instanceof ve)return r;let n=r instanceof
 he?"array":"group";throw new J(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function Q(a,e={}){let t="store"in a?
-a.store:a,r=nr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(i=>(Cr(i,J,D),s(a,e)))}Q.v2=Xo;
-Q.v3=qo;var ya=[300,1e3,3e3],va=2e4,Zo=[401,403,404,410],wa=200,Qo=429,ec=500,tc=2197175160,Ur=4,rc=8,nc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
-super(t),this.fault=e,this.detail=r}},sc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
-8*(e+1);s+=1)n=n>>>1^(n&1?tc:0);return n}));function ac(a){let[e,t,r,n]=sc,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
+a.store:a,r=nr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(i=>(Cr(i,J,D),s(a,e)))}Q.v2=Yo;
+Q.v3=Ko;var ba=[300,1e3,3e3],ya=2e4,Jo=[401,403,404,410],xa=200,Zo=429,Qo=500,ec=2197175160,Ur=4,tc=8,rc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
+super(t),this.fault=e,this.detail=r}},nc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
+8*(e+1);s+=1)n=n>>>1^(n&1?ec:0);return n}));function sc(a){let[e,t,r,n]=nc,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
 s;o+=4)i^=a[o]|a[o+1]<<8|a[o+2]<<16|a[o+3]<<24,i=n[i&255]^r[i>>>8&255]^t[i>>>16&255]^e[i>>>24];for(let o=s;o<a.length;o+=
-1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function Ma(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
+1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function wa(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
 read()??{};if(i||!o)break;t.push(o),r+=o.length,e(r)}}catch(i){throw n?.cancel().catch(()=>{}),i}let s=new Uint8Array(r);
 return t.reduce((i,o)=>(s.set(o,i),i+o.length),0),s}var Vr=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Ur;if(t<0)throw new Error("the checksum is missing");
-let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Ur).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==ac(i))throw new Error(
+let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Ur).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==sc(i))throw new Error(
 "checksum mismatch");return i}computeEncodedSize(e){return e+Ur}},Dr=class a{kind="bytes_to_bytes";most;constructor(e){this.
-most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,rc),nc))}encode(){throw new Error("nothi\
-ng is written")}async decode(e){let t=new Blob([e]).stream();return Ma(t.pipeThrough(new DecompressionStream("gzip")),r=>{
+most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,tc),rc))}encode(){throw new Error("nothi\
+ng is written")}async decode(e){let t=new Blob([e]).stream();return wa(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};je.set("gzip",()=>Promise.resolve(
-Dr));je.set("crc32c",()=>Promise.resolve(Vr));function ic(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
-reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function oc(a,e){
-let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,va);try{e.throwIfAborted();
-let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await Ma(s===wa?i:null,()=>{clearTimeout(n),n=setTimeout(r,va)});
-return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function xa(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await oc(a,e);if(n===wa)return s;if(Zo.includes(n))return;if(r=`the server answer\
-s ${n}`,n<ec&&n!==Qo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===ya.length)throw new W(
-"unreachable",r);await ic(ya[t],e)}}var sr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+Dr));je.set("crc32c",()=>Promise.resolve(Vr));function ac(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
+reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function ic(a,e){
+let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,ya);try{e.throwIfAborted();
+let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await wa(s===xa?i:null,()=>{clearTimeout(n),n=setTimeout(r,ya)});
+return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function va(a,e){for(let t=0;;t+=1){
+let r="no server answers";try{let[n,s]=await ic(a,e);if(n===xa)return s;if(Jo.includes(n))return;if(r=`the server answer\
+s ${n}`,n<Qo&&n!==Zo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===ba.length)throw new W(
+"unreachable",r);await ac(ba[t],e)}}var sr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
-s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await xa(this.url+e,t);if(!r)
-throw new W("missing",`${e} is missing`);return r}description(e){let t=this.described.get(e);if(t)return t;let r=xa(this.
-url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>this.described.delete(e)),r}};function Ea(a){
+s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await va(this.url+e,t);if(!r)
+throw new W("missing",`${e} is missing`);return r}description(e){let t=this.described.get(e);if(t)return t;let r=va(this.
+url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>this.described.delete(e)),r}};function Ma(a){
 if(a instanceof W)return a;let e=a instanceof J&&!a.found?"missing":"broken";return new W(e,a instanceof Error?a.message:
 String(a))}var ar=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new sr(
 this.url,this.described);return(await Q.v3(rr(e),{kind:"group"})).attrs}async array(e){let t=new sr(this.url,this.described),
-r=await Q.v3(rr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new W("broken",`${e} has no numbers`);return r}};var cc=64,lc=32,ir=4096,hc=2**28,mc=["padded","unit","open","nearest","normal","rays"],uc={missing:"it is not in the sto\
+r=await Q.v3(rr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new W("broken",`${e} has no numbers`);return r}};var oc=64,cc=32,ir=4096,lc=2**28,hc=["padded","unit","open","nearest","normal","rays"],mc={missing:"it is not in the sto\
 re, or the store is not public.",broken:"its data in the store are corrupt.",unreachable:"the store does not answer. The\
- server or the network may be down, or the server does not allow this page to read it (CORS)."},pc=["format","fingerprin\
+ server or the network may be down, or the server does not allow this page to read it (CORS)."},uc=["format","fingerprin\
 t","parameter","lines"],xe=(a,e)=>Number.isInteger(a)&&Number(a)>0&&Number(a)<=e,j=(a,e)=>Array.isArray(a)&&a.every(Number.
-isFinite)&&(e??a.length)===a.length,fc=(a,e)=>j(a,e)&&a.every(Number.isInteger);function dc({nodes:a,longest:e=0,poles:t=[]}){
+isFinite)&&(e??a.length)===a.length,pc=(a,e)=>j(a,e)&&a.every(Number.isInteger);function fc({nodes:a,longest:e=0,poles:t=[]}){
 return Number.isFinite(e)&&t.length<=2&&t.every(({component:r,line:n,inward:s,near:i,plane:o})=>[0,1].includes(r)&&r===t[0].
-component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&xe(i,ir)&&j(o,6))}function gc(a,{geometry:e,slices:t}){let{geometry:r,
+component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&xe(i,ir)&&j(o,6))}function dc(a,{geometry:e,slices:t}){let{geometry:r,
 slices:n}=a,{shape:s,rows:i,columns:o}=r,{trace:c}=n;if(!(j(s,2)&&s.every(h=>xe(h,ir)&&h>1)&&[i,o].every(({before:h,size:u},m)=>Number.
 isInteger(h)&&xe(u,ir)&&h>=0&&h+s[m]<=u)&&Number.isInteger(r.levels)&&r.levels>=0&&2**r.levels<=Math.max(i.size,o.size)&&
 r.triangles===e.triangles&&r.planar===e.planar&&Number.isFinite(r.extent)&&j(r.periodic.map(Number),2)&&j(r.center,3)&&j(
-r.frame,9)&&xe(n.count,cc)&&[2,4].includes(n.channels)&&j(n.lags)&&xe(n.lags.length,lc)&&n.sides===t.sides&&j(n.extra)&&
-n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>mc.includes(
-h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>xe(h,ir)&&c.drawn[u]+s[u]<=h)&&fc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
-0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&dc(c)&&(!c.timed||j([c.timed.unit,c.
-timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function Sa({geometry:a,slices:e}){let{
+r.frame,9)&&xe(n.count,oc)&&[2,4].includes(n.channels)&&j(n.lags)&&xe(n.lags.length,cc)&&n.sides===t.sides&&j(n.extra)&&
+n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>hc.includes(
+h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>xe(h,ir)&&c.drawn[u]+s[u]<=h)&&pc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
+0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&fc(c)&&(!c.timed||j([c.timed.unit,c.
+timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function Aa({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:i,extra:o}=e,c=(p,...f)=>[...p,...f].reduce((d,g)=>d*g,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
 [c(t)]]};if(n){u.unit=[Uint16Array,[c(h)]],u.padded=[Float32Array,[c(h.map(f=>f+2),3)]],u.open=[Uint8Array,[c(h)]],u.nearest=
 [Int16Array,[c(h,2)]];let p=n.poles??[];u.rays=[Float32Array,[c(p.slice(0,1).map(f=>h[f.component]),2,p.length)]],u.flow=
 [Uint16Array,n.uncertain?[c(h,5)]:[c(h,3),c(h,4)]]}else u.position=[Float32Array,[c(t,3)]],u.slices=[Uint16Array,[c(l,s,
 i)]],u.extra=[Uint16Array,[c(l,o.length)]];let m=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:u,
-needed:m}}function Br(a,e,t){let{sizes:r}=Sa(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
+needed:m}}function Br(a,e,t){let{sizes:r}=Aa(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
 let c=r[s.split("/")[0]];if(!(c?i instanceof c[0]&&c[1].includes(i.length):s==="mesh"&&i instanceof Float32Array&&o.length===
-3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function bc(a,{
+3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function gc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[i,{drawn:o,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let u=(Math.floor(h/s)+o[0])*c[1]+h%s+o[1];l[h]=r*Re[Number(a.data[i*(u+1)-1-Number(t.
-trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function Aa(a){let e=Ea(a);return e.
-fault==="other"||e.detail!==e.message?e:new W(e.fault,uc[e.fault],e.message)}var or=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
+trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function Ea(a){let e=Ma(a);return e.
+fault==="other"||e.detail!==e.message?e:new W(e.fault,mc[e.fault],e.message)}var or=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
-r.url,t),this.store=new ar(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=Aa(e);throw t.fault===
+r.url,t),this.store=new ar(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=Ea(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
-file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(pc.every(n=>t?.[n]===
+file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(uc.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
 ion: export the page again.`;throw new W("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],i=B(s);return this.
 loaded(r,async o=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(i):
@@ -1173,33 +1173,33 @@ values()],p=async()=>{let{header:d,parts:g}=await h;if(e&&this.headers.set(i,d),
 [this.values(s,d,t,n,o,u),...m]);if(Br(b.flat(),d,this.header.mesh.tileCells),!b.every(v=>v.length))throw new Error(`til\
 e ${i} has no flow`);return[...g,...b.flat(),...y]},[f]=await Promise.all([p(),...m]);return e?f.map(d=>({...d,name:`til\
 e/${i}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEventListener("abort",()=>r.abort(),{once:!0});
-try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),Aa(n)}finally{r.abort()}}async file(e,t,r,n){
+try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),Ea(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),i=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},o=await i(0),[c,l]=yr(o),h=c.reduce((f,{bytes:d})=>f+d,l);if(!xe(
-h,hc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/o.length)*o.length);u.set(
+h,lc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/o.length)*o.length);u.set(
 o);for(let f=1;f*o.length<h;f+=1)u.set(await i(f),f*o.length);let m=new Map;for(let f of _n(u.buffer)){let[d,g]=de(f.name)??
 ["",f.name];if(d&&d!==B(t))throw new Error(`in place of tile ${B(t)} is ${d}`);m.set(g,{...f,name:g})}if(new TextDecoder().
 decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${B(t)} belongs to another flow`);return m.delete(
 "of"),m}async surface(e,t){let r=await this.file("surface",e,[e[1],e[2]],t),n=this.tileHeader(r.get("header"));if(r.delete(
-"header"),n){let o=Sa(n).needed.filter(c=>!r.has(c));if(o.length)throw new Error(`a tile has no ${o.join(", ")}`);Br([...r.
+"header"),n){let o=Aa(n).needed.filter(c=>!r.has(c));if(o.length)throw new Error(`a tile has no ${o.join(", ")}`);Br([...r.
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),i={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${B(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:i,pace:o}=this.header.
-slices;return gc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
+slices;return dc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(i=>{let[o,c]=i.name.split("\
 /");if(Number(c)!==n)throw new Error(`in place of step ${n} is ${i.name}`);return{...i,name:`${o}/${t}`}})}async values(e,t,r,n,s,i){
 let o=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,m=(l>1?r:[0]).map(d=>h?`scalars/${d}/${h}`:`scala\
 rs/${d}`),p=c===null?[]:m.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.values()];let f=await Promise.all(p.map(async d=>{
-let g=l>1?K(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...bc(x,
+let g=l>1?K(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...gc(x,
 t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await this.file("values",e,[y,e[1],e[2],h],s)).get(
 `scalars/${y}/${h}`);if(!v)throw new Error(`tile ${B(e)} has no values of step ${y}`);return{...v,name:d}}));Br(f,t,this.
-header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var yc=4096,vc=4,Ta=32,xc=.25,wc=1e4,_a=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var bc=4096,yc=4,Sa=32,vc=.25,xc=1e4,Ta=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Me(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
-ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await Mc(n):t;if(this.gl!==e)return;let o=Ec(s[0]),c=new Dt(
+ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await wc(n):t;if(this.gl!==e)return;let o=Mc(s[0]),c=new Dt(
 o,i.flatMap(([f,d,g])=>f?[]:[[d,g]]),new Map,new Map),l=o.store?new or(o,n):c,h={header:o,settings:{...o.settings,...o.own,
 ...this.own},player:new ot};this.shownOpacity=r??s[0].opacity;let u=async(f,d)=>{let g=!0,y=new It(f,{...h,source:l,isComing:()=>g});
 d(y);for(let b of c.parts){let v=await c.kept(b);if(y.lifetime.isOver)break;y.setPart(v)}return g=!1,Object.keys(this.colours).
@@ -1215,29 +1215,29 @@ shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(
 playing=!1),this.change()}set(e){Object.assign(this.own,e),Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){
 Object.assign(this.colours,e);for(let{view:t}of this.pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)
 e.change()}async pointAt(e){let{mercator:t,header:r}=this.scene??{};if(!t||!r)return null;let n=[...t.positionOf(ge(e)),
-r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Ra(()=>s.every(({painter:c})=>c.canPick&&
+r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Pa(()=>s.every(({painter:c})=>c.canPick&&
 c.shown));let i=s.map(c=>this.pointIn(c,n)).find(Boolean)??null;if(i&&!r.pyramid)return i;this.asked=this.asked.then(()=>this.
 pointClose(n)).catch(()=>null);let o=await this.asked;return o&&{...o,path:i?.path??o.path}}pointIn(e,t){let{camera:r,parts:n,
 settings:s}=e,{mercator:i}=this.scene??{},o=r?.project(t)??[2,2],c=Math.max(...o.map(Math.abs))>1?null:e.find(o[0],o[1]),
 l=e.painter.shown;if(!i||!r||!c||!l)return null;let h=c.point.position,u={scene:c.layer.scene,moment:l,place:c.place,position:h},
-[m,p]=ps(u,n.get("lonlat"))??[NaN,NaN],{path:f}=cs(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
+[m,p]=us(u,n.get("lonlat"))??[NaN,NaN],{path:f}=os(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
 map(d=>i.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:i}=t.mercator,{pyramid:o,geometry:c}=t.
-header,l=xc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
-parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Ta,Ta,1),await Ra(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
+header,l=vc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
+parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Sa,Sa,1),await Pa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
 projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],u=this.pictures.filter(({isUsed:d})=>d),{
 shaderData:m,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:m,getProjectionData:p,zoom:l,center:h,globe:c,
 opacity:o};for(let d of u){let g=d.draw({...f,mercator:n.mercator,isRepeated:u.length===1});typeof g=="string"&&g?this.failed(
 "The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,
-ratio:o,text:c}=Pa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
-[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(vc*i.width*i.height/(u*m));this.pictures[h]?.follow(l[h],
-Math.min(o,o*p,yc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
-scene||!t.every(r=>r.isComplete)?!1:this.look===Pa(e,this.globe).text}};function Pa(a,e){let{clientWidth:t,clientHeight:r}=a.
+ratio:o,text:c}=_a(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
+[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(yc*i.width*i.height/(u*m));this.pictures[h]?.follow(l[h],
+Math.min(o,o*p,bc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
+scene||!t.every(r=>r.isComplete)?!1:this.look===_a(e,this.globe).text}};function _a(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
-fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Ra(a){
-let e=performance.now()+wc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Mc(a){
+fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Pa(a){
+let e=performance.now()+xc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function wc(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function Ec(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
-graticule:!1}}}}export{_a as FlowtexLayer};
+json()}function Mc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
+graticule:!1}}}}export{Ta as FlowtexLayer};

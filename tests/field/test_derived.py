@@ -4,11 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
+from flowtex._util.notices import Notice
 from flowtex.field.derived import DERIVED
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps
@@ -147,9 +149,66 @@ def test_ftle_of_a_saddle_and_of_the_double_gyre() -> None:
     times = np.linspace(0, 6, 61)
     flow = [gyre(lattice(40), t) for t in times]
     field = FlowField.from_arrays((x, y), np.stack(flow), times=times)
-    rates = field.derive("ftle", horizon=5.0)
+    with pytest.warns(Notice, match="the longest valid horizon is 6 at time 0, and 0 at time 6"):
+        rates = field.derive("ftle", horizon=5.0)
     assert isinstance(rates, LazySteps)
     assert np.abs(rates[0] - gyre_ftle(x, y, 5.0)).mean() < 2e-3
+
+
+@pytest.mark.parametrize("horizon", [-2.0, 2.0, 7.0])
+@pytest.mark.parametrize("kind", ["grid", "triangles"])
+def test_ftle_is_masked_beyond_the_series(kind: str, horizon: float) -> None:
+    # A saddle whose strength grows in time: the exponent is its integral over the horizon.
+    p, times = lattice(10) - (1.0, 0.5), np.linspace(1, 7, 13)
+    flow = np.stack([0.05 * t * p * (1, -1) for t in times])
+    if kind == "grid":
+        field = FlowField.from_arrays(p, flow, times=times)
+    else:
+        p = p.reshape(-1, 2)
+        field = FlowField.from_triangles(
+            p, Delaunay(p).simplices, flow.reshape(13, -1, 2), times=times
+        )
+    longest = np.copysign(6, horizon)
+    with pytest.warns(Notice, match=f"longest valid horizon is {longest:g} at time"):
+        rates = field.derive("ftle", horizon=horizon)
+    inside = (np.abs(field.points) < 0.22).all(axis=-1)
+    for step, time in enumerate(times):
+        if 1 <= time + horizon <= 7:
+            expected = 0.025 * abs((time + horizon) ** 2 - time**2) / abs(horizon)
+            assert rates[step][inside] == pytest.approx(expected, abs=5e-3)
+        else:
+            assert np.isnan(rates[step]).all()
+
+
+@pytest.mark.parametrize("kind", ["grid", "triangles"])
+def test_ftle_holds_where_particles_rest(kind: str) -> None:
+    # At the centre of a sink, at a saddle whose velocity is rounding, and on a wall.
+    p = lattice(10)
+    sink = p - (1.0, 0.5)
+    x, y = np.moveaxis(np.pi * p, -1, 0)
+    cells = np.stack([-np.sin(x) * np.cos(y), np.cos(x) * np.sin(y)], axis=-1)
+    wall = np.stack([p[..., 1], 0 * x], axis=-1) * (1 - p[..., :1] / 4)
+    for flow, horizon, expected in ((-sink, 1.0, -1.0), (cells, 0.2, None), (wall, 0.1, None)):
+        if kind == "grid":
+            field = FlowField.from_arrays(p, flow)
+        else:
+            corners = Delaunay(p.reshape(-1, 2)).simplices
+            field = FlowField.from_triangles(p.reshape(-1, 2), corners, flow.reshape(-1, 2))
+        rate = field.derive("ftle", horizon=horizon)[0].reshape(p.shape[:2])
+        assert np.isfinite(rate[:, :-3]).all()
+        if expected is not None:
+            assert rate[2:-2, 2:-2] == pytest.approx(expected, abs=0.01)
+
+
+def test_ftle_is_blank_where_particles_meet_a_mask() -> None:
+    p = lattice(20)
+    flow = np.broadcast_to([1.0, 0.0], p.shape).copy()
+    flow[8:13, 20] = np.nan  # at x = 1
+    rate = FlowField.from_arrays(p, flow).derive("ftle", horizon=0.5)[0]
+    x, y = np.moveaxis(p, -1, 0)
+    behind, beside = (x > 0.5) & (x < 1) & (np.abs(y - 0.5) < 0.12), np.abs(y - 0.5) > 0.2
+    assert np.isnan(rate[behind]).all()
+    assert rate[(x < 1.45) & (beside | (x < 0.4))] == pytest.approx(0, abs=1e-6)
 
 
 def gyre(p: Floats, t: float) -> Floats:
@@ -175,6 +234,42 @@ def gyre_ftle(x: Floats, y: Floats, horizon: float, count: int = 200) -> Floats:
     by_y = np.gradient(p, y[1, 0] - y[0, 0], axis=0, edge_order=2)
     matrix = np.stack([by_x, by_y], axis=-1)
     return np.asarray(np.log(np.linalg.norm(matrix, 2, axis=(-2, -1))) / horizon)
+
+
+@pytest.mark.parametrize("kind", ["grid", "triangles"])
+def test_steps_without_data_are_not_differentiated(kind: str) -> None:
+    p = lattice(20)
+    field, hole = one_gap(kind, p)
+    for name in DERIVED:
+        values = np.asarray(field.derive(name)).reshape(3, *p.shape[:2])
+        exact = plane_flow(p)[1][name]
+        np.testing.assert_array_equal(np.isnan(values), hole)
+        error = np.abs(values - [exact * f ** (1 + (name == "okubo_weiss")) for f in (1, 2, 3)])
+        assert np.nanmax(error[1]) < 3 * max(np.nanmax(error[2]), 0.02)
+    with pytest.warns(Notice, match="longest valid horizon is 2 at time 0"):
+        rate = np.asarray(field.derive("ftle", horizon=1.0)).reshape(3, *p.shape[:2])
+    assert np.isnan(rate[:2][:, hole[1]]).all()
+
+
+def one_gap(kind: str, p: Floats) -> tuple[FlowField, NDArray[np.bool_]]:
+    """Return three steps of a flow that grows, of which the second one has a hole, and the hole."""
+    flow = plane_flow(p)[0] * np.array([1, 2, 3])[:, None, None, None]
+    hole = np.zeros(flow.shape[:3], bool)
+    hole[1, 6:9, 10:20] = True
+    flow[hole] = np.nan
+    if kind == "grid":
+        return FlowField.from_arrays(p, flow), hole
+    corners = Delaunay(p.reshape(-1, 2)).simplices
+    return FlowField.from_triangles(p.reshape(-1, 2), corners, flow.reshape(3, -1, 2)), hole
+
+
+def test_two_lines_of_triangles_have_a_linear_fit() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 41), [0, 0.05])
+    p = np.stack([x, y], axis=-1).reshape(-1, 2)
+    flow = p @ [[0.5, 2.0], [-3.0, 0.25]]  # columns are u and v
+    field = FlowField.from_triangles(p, Delaunay(p).simplices, flow)
+    assert field.derive("vorticity") == pytest.approx(5.0)
+    assert field.derive("divergence") == pytest.approx(0.75)
 
 
 def test_steps_that_are_read_late_stay_so() -> None:

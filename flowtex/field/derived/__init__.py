@@ -10,10 +10,9 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.derived.gradient import node_gradient, true_velocity
-from flowtex.field.earth import Projection
-from flowtex.field.steps import Steps, map_steps
-from flowtex.field.surface import Surface
+from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
+from flowtex.field.gaps import NO_DATA, known_nodes
+from flowtex.field.steps import LazySteps, Steps, map_steps
 
 #: Functions of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {
@@ -32,21 +31,26 @@ COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 
 
-def derived_steps(
-    name: str, surface: Surface, projection: Projection | None, velocity: Steps
-) -> Steps:
+def derived_steps(name: str, field: Any) -> Steps:
     """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data."""
     if name not in DERIVED:
         msg = f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
         raise FieldError(msg)
-    gradient, compute = node_gradient(surface, projection), DERIVED[name]
+    surface, projection, compute = field.surface, field.projection, DERIVED[name]
+    whole = node_gradient(surface, projection)
 
-    def scalar(step: Floats) -> Floats:
+    def scalar(step: Floats, gradient: NodeGradient = whole) -> Floats:
         with np.errstate(invalid="ignore"):
             moved = true_velocity(step, surface.points, projection)
             return gradient.with_poles(compute(gradient.of_vectors(moved)))
 
-    return map_steps(velocity, scalar)
+    def known_only(number: int) -> Floats:
+        gradient = node_gradient(surface, projection, known_nodes(field, number, number))
+        return scalar(field.velocity[number], gradient)
+
+    if field.uncertainty == NO_DATA:
+        return LazySteps(len(field.times), known_only)
+    return map_steps(field.velocity, scalar)
 
 
 def steps_of(field: Any, name: str) -> Steps:

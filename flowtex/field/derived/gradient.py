@@ -26,6 +26,8 @@ from flowtex.field.triangles.surface import TriangleSurface
 COLLAPSED_AREA = 1e-10
 #: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.
 QUADRATIC_NEIGHBOURS, REGULARISATION = 5, 1e-12
+#: Determinant of the correlations of the terms of a fit, at least.
+LEAST_INDEPENDENCE = 1e-9
 #: Approximate number of nodes by which the side of a surface is determined.
 MOST_JUDGED = 40_000
 
@@ -45,12 +47,18 @@ def true_velocity(velocity: Floats, points: Floats, projection: Projection | Non
     return Projection(GLOBE).vectors(lon, lat, *projection.components(lon, lat, velocity))
 
 
-def node_gradient(surface: Surface, projection: Projection | None) -> NodeGradient:
-    """Return the gradient at the nodes of a surface; on a flat map it is the one on the sphere."""
-    points = true_positions(surface.points, projection)
+def node_gradient(
+    surface: Surface, projection: Projection | None, known: Bools | None = None
+) -> NodeGradient:
+    """Return the gradient at the nodes of a surface; on a flat map it is the one on the sphere.
+
+    ``known`` are the nodes with values, (J, I), by default all that are valid.
+    """
+    points, valid = true_positions(surface.points, projection), surface.valid
+    valid = valid if known is None else valid & known
     if isinstance(surface, TriangleSurface):
-        return _triangle_gradient(surface, points)
-    return _GridGradient(surface, points).node_gradient
+        return _triangle_gradient(surface, points, valid)
+    return _GridGradient(surface, points, valid).node_gradient
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +98,11 @@ class NodeGradient:
 class _GridGradient:
     """Differences between the nodes of a structured surface."""
 
-    def __init__(self, surface: Surface, points: Floats) -> None:
-        self._valid, self._periodic = surface.valid, surface.periodic
+    def __init__(self, surface: Surface, points: Floats, valid: Bools) -> None:
+        self._valid, self._periodic = valid, surface.periodic
         # On the sphere one turn leads to the same place.
         self._offset = surface.offset if points is surface.points else np.zeros((2, 3))
-        self._poles = tuple(_poles(points, surface.valid))
+        self._poles = tuple(_poles(points, valid))
         self._points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
         self._gaps = [self._gap(axis) for axis in (0, 1)]
 
@@ -189,15 +197,15 @@ def _dot(one: Floats, two: Floats) -> Floats:
     return np.asarray(result)
 
 
-def _triangle_gradient(surface: TriangleSurface, points: Floats) -> NodeGradient:
+def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -> NodeGradient:
     """Fit quadratic functions to the nodes around each node, (C, 1, N), of a surface of triangles.
 
     Zhang and Naga 2005, A new finite element gradient recovery method: superconvergence property.
     The fit is of second order on triangles of any shape, unlike means of the gradients of
     triangles.
     """
-    if points is not surface.points:
-        surface = TriangleSurface(points, surface.triangles, surface.valid)
+    if points is not surface.points or valid is not surface.valid:
+        surface = TriangleSurface(points, surface.triangles, valid)
     points, (one, two) = surface.points[0], surface.tangents[:, 0]
     if _clockwise(one.T[:, None], two.T[:, None], points.T[:, None], surface.valid):
         two = -two
@@ -217,6 +225,10 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats) -> NodeGradient
         for b in range(a, 5):
             normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
             normal[:, b, a] = normal[:, a, b]
+    # Nodes on two lines only leave the quadratic terms open, and with them the linear ones.
+    scale = np.sqrt(np.maximum(np.einsum("nkk->nk", normal), 1e-300))
+    alike = np.linalg.det(normal / (scale[:, :, None] * scale[:, None])) < LEAST_INDEPENDENCE
+    normal[alike, 2:] = normal[alike, :, 2:] = 0.0
     largest = normal.max(axis=(1, 2))
     normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
     solvable = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)

@@ -27,13 +27,14 @@ class FieldQuantities:
             particles that start near a node separate.
         horizon
             How long particles are followed for ``"ftle"``, in the unit of time; backward if
-            negative.
+            negative. Where that leads beyond the series, a notice states the longest one.
 
         Returns
         -------
         numpy.ndarray
             (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
-            Okubo-Weiss); NaN where too few neighbours have data. Lazy where the velocity is.
+            Okubo-Weiss); NaN where too few neighbours have data at that time, and where a particle
+            leaves the domain or the series. Lazy where the velocity is.
 
         Raises
         ------
@@ -58,7 +59,7 @@ class FieldQuantities:
             raise FieldError(msg)
         if horizon is not None or name in FOLLOWED:
             return followed_steps(name, field, horizon)
-        return derived_steps(name, field.surface, field.projection, field.velocity)
+        return derived_steps(name, field)
 
     def with_derived(self, name: str, *, horizon: float | None = None) -> Self:
         """Return the field with the result of ``derive`` among its scalars.
