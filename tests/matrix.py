@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -103,6 +103,26 @@ def uncertain_gyre() -> FlowField:
     return uncertain(gyre())
 
 
+@cache
+def half_still(kind: str = "grid", steps: int = 1) -> FlowField:
+    """Return a flow that is slow or fast at the right, and zero or rounding at the left."""
+    x, y = np.meshgrid(np.linspace(0, 2, 61), np.linspace(0, 1, 31))
+    speed = np.where(x < 1, 1e-18, np.where(y < 0.5, 1e-4, 1.0))
+    velocity = speed[..., None] * np.stack([0.5 + 0 * x, np.cos(6 * x)], axis=-1)
+    velocity[y > 0.5] *= velocity[y > 0.5] > 1e-9 if kind == "grid" else 1
+    points = np.stack([x, y], axis=-1)
+    if kind == "triangles":
+        node = np.arange(x.size).reshape(x.shape)
+        a, b, c, d = node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1]
+        corners = np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+        return FlowField.from_triangles(points.reshape(-1, 2), corners, velocity.reshape(-1, 2))
+    if steps > 1:
+        return FlowField.from_arrays(
+            points, velocity * np.arange(1, steps + 1)[:, None, None, None]
+        )
+    return FlowField.from_arrays(points, velocity)
+
+
 #: Each is another part of the shaders, or of what they are given.
 VIEWS: dict[str, View] = {
     "whole": View(),
@@ -142,6 +162,10 @@ VIEWS: dict[str, View] = {
     "streamlines, near": View(
         swinging, straight(16, (0.11, 0.32)), {"lines": "streamlines"}, time=0.55
     ),
+    "half still": View(half_still),
+    "half still, streaming": View(half_still, straight(2, (1.006, 0.5)), MOTION, clock=1.7),
+    "half still, triangles": View(partial(half_still, "triangles")),
+    "half still, between two steps": View(partial(half_still, steps=3), time=0.55),
     "without a sign": View(lines, MIDDLE),
     "centre": View(camera=straight(64, (0.5, 0.5))),
     "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),

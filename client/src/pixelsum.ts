@@ -163,7 +163,7 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const alone = Math.hypot(...shares);
   const variance = shares.map((w, n) => w ** 2 * shared(apart * Math.SQRT1_2 ** n, near, c));
   const slow = u.u_fade ? clamp(layers(2)[3] / Number(u.u_fade), 0, 1) : 1;
-  const fade = slow ** 2 * (3 - 2 * slow);
+  const fade = moves ? slow ** 2 * (3 - 2 * slow) : 0;
   const gain = (fade * alone * total(weights)) / Math.sqrt(squares * total(variance));
   const moved = mover(at);
   const samples = steps.map(({ displacement, weight }) => {

@@ -2227,21 +2227,22 @@ Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera
 shaders}=header;if(header.paper||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.
 state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,anchor:[0,0,
 0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*
-grain,layers=layersAt(at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],sparse2=isSparse(
-header,settings),set=Number(u.u_samples),whole=u.u_sides===2?Math.floor(set/2):set-1,sine=sparse2&&!isSignFree(header)?partingAt(
-at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.
-max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,
-side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[
-0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(
-octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,
-octave,geometry.planar,sparse2,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),
-pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
-2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
-c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=slow**2*(3-2*slow)*alone*total(weights2)/Math.sqrt(squares*
-total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*
-fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??at.position,weight:weight/total(weights2),noise:value,
-grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*sample.noise));return{samples,middle:back.length,
-level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
+grain,layers=layersAt(at),moves=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(u.u_sides)).
+keys()]:[],sparse2=isSparse(header,settings),set=Number(u.u_samples),whole=u.u_sides===2?Math.floor(set/2):set-1,sine=sparse2&&
+!isSignFree(header)?partingAt(at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.
+TOGETHER[0]*cosine/Math.max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.
+map(side=>sideSteps(layers,side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[
+...back.reverse(),{displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,
+c.LAST_OCTAVE[0]),octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.
+center)),noise=noiseAround(local,octave,geometry.planar,sparse2,u,c),weights2=steps.map(({weight})=>weight),squares=total(
+weights2.map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(
+u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*
+Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=(moves?slow**2*(3-2*slow):0)*alone*
+total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{let[fine,
+coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??at.position,
+weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*sample.
+noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,Number(
+settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
 g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Noise seed",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
 hann:"smooth",box:"even",ramp:"falling"},ROW2=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"\
 svg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW2}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(

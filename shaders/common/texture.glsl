@@ -253,6 +253,7 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #ifdef FLOWTEX_UNCERTAIN
   value *= mix(FLOWTEX_FADED, 1.0, known);
 #endif
+  value *= step(FLOWTEX_LEAST_SPEED, speed); // a particle at rest has no direction
   if (u_fade > 0.0)
     value *= smoothstep(0.0, u_fade, flowtexLayer(coordinate, 2, sliceLevel).w);
   return value;

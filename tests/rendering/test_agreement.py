@@ -68,6 +68,20 @@ def test_vtk_agrees_with_numpy(plotter: Any, name: str) -> None:
     agree(drawn_by_vtk(plotter, VIEWS[name]), name, FINER)
 
 
+@pytest.mark.parametrize("name", [name for name in VIEWS if "half still" in name])
+def test_flow_at_rest_is_plain(plotter: Any, name: str) -> None:
+    picture = drawn_by_vtk(plotter, VIEWS[name]).astype(int)
+    ground = (picture == np.rint(255 * np.array(GROUND))).all(axis=-1)
+    columns = np.flatnonzero(~ground.all(axis=0))
+    middle = columns[0] + (columns[-1] - columns[0]) // 2  # x = 1, where the flow begins
+    rows = np.flatnonzero(~ground.all(axis=1))[5:-5]
+    still, moving = picture[rows, columns[3] : middle - 8], picture[rows, middle + 8 : columns[-5]]
+    assert np.ptp(still, axis=(0, 1)).max() == 0
+    # Also the slow flow has streaks, and the mean of the streaks is the plain grey.
+    for part in np.array_split(moving, 2):
+        assert part.std() > 15 and abs(part.mean() - still.mean()) < 12
+
+
 @pytest.mark.parametrize("name", ["spacing", "grain", "contrast"])
 def test_two_hundredths_more_would_be_noticed(name: str) -> None:
     view, (shown, ours) = VIEWS["many samples"], judged("many samples")

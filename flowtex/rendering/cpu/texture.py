@@ -155,8 +155,12 @@ class Summing:
         return np.asarray(0.5 * change)
 
     def faded(self, coordinate: Places, level: Floats, certainty: Floats) -> Floats:
-        """Return the factor of the texture, (N,), less than 1 for uncertain or slow flow."""
-        share = const.FADED + (1 - const.FADED) * certainty
+        """Return the factor of the texture, (N,), less than 1 for uncertain or slow flow.
+
+        A particle at rest has no direction, and no texture.
+        """
+        speed = np.linalg.norm(self._slices.layer(coordinate, 0, level)[:, :3], axis=-1)
+        share = (speed >= const.LEAST_SPEED) * (const.FADED + (1 - const.FADED) * certainty)
         if self._values["u_fade"] > 0:
             speed = self._slices.layer(coordinate, 2, level)[:, 3]
             usual = np.clip(speed / self._values["u_fade"], 0, 1)
