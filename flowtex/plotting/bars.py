@@ -123,8 +123,8 @@ class FlowBar:
         if self.key in self._bars:
             self._bars._scalar_bar_ranges[self.key] = limits
 
-    def look(self, colours: Callable[[], Bytes], *, anew: bool = False) -> None:
-        """Follow changes of what shares the bar; ``colours`` are those of the picture."""
+    def look(self, colours: Callable[[], Bytes], settings: object) -> None:
+        """Follow changes of what shares the bar; ``colours`` are the picture's with settings."""
         sharing = self._sharing
         if self._mapper not in sharing:  # a user has removed the bar
             self.key = None
@@ -136,8 +136,8 @@ class FlowBar:
             sharing = self._sharing
         flows = [mapper for mapper in sharing if isinstance(mapper, FlowMapper)]
         bar, limits = self._bars[self.key], self._mapper.scalar_range
-        shown = (bar.GetLookupTable(), limits, len(sharing))
-        if flows[0] is not self._mapper or (shown == self._shown and not anew):
+        shown = (bar.GetLookupTable(), limits, len(sharing), self._mapper.ends, settings)
+        if flows[0] is not self._mapper or shown == self._shown:
             return
         log_scale = self._mapper.lookup_table.log_scale
         is_mixed = len(flows) < len(sharing)

@@ -102,7 +102,6 @@ class FlowHandle(AppearanceAttributes):
         mapper = use_flow_mapper(self.actor, mesh)
         self._place, self._renderer = plotter.renderers.active_index, plotter.renderer
         self.bar = FlowBar(plotter, mapper, scalar_bar_args or {})
-        self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
         )
@@ -315,9 +314,6 @@ class FlowHandle(AppearanceAttributes):
             self.remove(render=False)
 
     def _changed(self, affects: Change) -> None:
-        if self._bar_look != (look := self._settings_of_bar):
-            self._bar_look = look
-            self._look_at_bar(anew=True)
         self._structure.show(self.scene)
         if affects == "uniform":
             self._show_moment()
@@ -366,17 +362,11 @@ class FlowHandle(AppearanceAttributes):
             self.bar.remove()
             self._show_colours()
             self.actor.mapper.scalar_range = self.actor.mapper.ends.limits
-        elif differs("clim") or self._has_other_limits:
+        elif differs("clim") or self.actor.mapper.ends.limits != self.scene.scalar_limits:
             self._show_colours()
             self.bar.set_range(new.clim if isinstance(new.clim, tuple) else None)
         if differs("scalars", "cmap", "clim", "log_scale", "visible", "show_scalar_bar"):
             self._show_bar()
-
-    @property
-    def _has_other_limits(self) -> bool:
-        """Whether the range of the data has been chosen instead of one that was kept."""
-        limits = self.scene.scalar_limits
-        return self.scene.scalar_name is not None and self.actor.mapper.ends.limits != limits
 
     def _show_colours(self) -> None:
         mapper, name, appearance = self.actor.mapper, self.scene.scalar_name, self.scene.appearance
@@ -400,15 +390,12 @@ class FlowHandle(AppearanceAttributes):
         title = self.scene.title_of(name)
         # The name alone is that of PyVista's bars; the speed is no array of theirs.
         self.bar.show(name if name in self.field.scalars else title, title)
-        self._look_at_bar(anew=True)
+        self._look_at_bar()
 
-    def _look_at_bar(self, *, anew: bool = False) -> None:
+    def _look_at_bar(self) -> None:
         """Show the mean colours of the picture in the bar, which the texture changes."""
-        self.bar.look(lambda: self.scene.legend_colours, anew=anew)
-
-    @property
-    def _settings_of_bar(self) -> tuple[float, float, str]:
-        return self.settings.strength, self.settings.contrast, self.settings.noise
+        settings = self.settings.strength, self.settings.contrast, self.settings.noise
+        self.bar.look(lambda: self.scene.legend_colours, settings)
 
     def _draw(self) -> None:
         if self._plotter is not None:

@@ -554,12 +554,13 @@ def share_field(field: FlowField) -> FlowField:
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)
     inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
-    inputs += (*field.scalars.values(), *field.volume_values.values())
+    inputs += tuple(field.scalars.values())
     # Lazy steps are identified by their object, which a field keeps alive.
     lazy_ids = tuple(id(a) for a in inputs if isinstance(a, LazySteps))
     arrays = (a for a in inputs if not isinstance(a, LazySteps))
     kind = (field.has_position is None, field.triangles is None)
-    names = (*field.scalars, field.uncertainty, *field.volume_values)
+    volume = tuple((k, len(v), float(v.sum())) for k, v in field.volume_values.items())
+    names = (*field.scalars, field.uncertainty, volume)
     key = digest(*arrays, words=(words, units, kind, lazy_ids, *names))
     return _fields.get(key, lambda: field)
 

@@ -18,7 +18,7 @@ from flowtex.sources.meshes.planes import Plane
 from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, values_of
 
 #: Values that are kept of an array, of all steps together, and at least of one.
-MOST_VALUES, LEAST_VALUES = 1 << 17, 1 << 10
+MOST_VALUES, LEAST_VALUES = 1 << 16, 1 << 10
 #: Distance between sampled values, as a share of their number: it fits no axis of a grid.
 GOLDEN_SHARE = (5**0.5 - 1) / 2
 #: Samples by the states of their arrays, which VTK numbers: a moving slice asks again and again.
