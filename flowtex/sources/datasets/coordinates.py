@@ -221,12 +221,15 @@ def _pairs(
 ) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
     """Yield pairs of possible coordinates, the likely ones first."""
     candidates: list[list[xr.DataArray]] = [[], []]
+    # All of them are looked up at each request.
+    own = {**array.cf.axes, **array.cf.coordinates}
+    others = [(ds, ds.cf.coordinates, ds.cf.standard_names) for ds in datasets]
     for coordinates, pattern, word in zip(candidates, patterns, words, strict=True):
-        declared = (*array.cf.coordinates.get(word, ()), *array.cf.axes.get(word, ()))
+        declared = tuple(own.get(word, ()))
         named = [n for n in (*declared, *array.coords) if n in declared or pattern.match(str(n))]
         coordinates += [array.coords[n] for n in dict.fromkeys(named) if n in array.coords]
-        for ds in datasets:
-            declared = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
+        for ds, places, names in others:
+            declared = (*places.get(word, ()), *names.get(word, ()))
             named = [n for n in ds.variables if pattern.match(str(n))]
             coordinates += [ds[n] for n in dict.fromkeys((*declared, *named)) if n in ds.variables]
     # Those in the middle of cells come before those on their sides.

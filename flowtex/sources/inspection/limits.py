@@ -12,6 +12,8 @@ from flowtex.errors import FieldError
 
 #: Share of the memory for data: a reader and later computations take several times as much.
 MEMORY_SHARE = 0.5
+#: Bytes that always fit: to ask for the available memory takes longer than to read them.
+SMALL = 100_000
 
 
 def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
@@ -27,6 +29,8 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
 
 def check_memory(nbytes: int, what: str) -> None:
     """Raise a FieldError if data take more than a share of the available memory."""
+    if nbytes < SMALL:
+        return
     budget = int(available_bytes() * MEMORY_SHARE)
     if nbytes > budget:
         msg = (

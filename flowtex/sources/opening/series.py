@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,9 @@ from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: Names of coordinates by what they are.
+Names = dict[str, list[Hashable]]
 
 #: Names of dates as text, which some models write beside less exact times, or instead of them.
 LETTERS = ("Times", "xtime")
@@ -176,10 +180,9 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
     import_extra("cf_xarray", "xarray")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        guessed: xr.Dataset = ds.cf.guess_coord_axis()
+        guessed, axes, places = _guessed(ds)
         # Asked for often, and slowly found: each coordinate is marked with its axis.
-        marks = {**guessed.cf.axes, "Z": guessed.cf.axes.get("Z", [])}
-        marks["Z"] = [*marks["Z"], *guessed.cf.coordinates.get("vertical", [])]
+        marks = {**axes, "Z": [*axes.get("Z", []), *places.get("vertical", [])]}
         for axis, names in marks.items():
             for name in names:
                 guessed[name].attrs.setdefault("axis", axis)
@@ -189,6 +192,29 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
             del c.attrs["axis"]
     return guessed
+
+
+def _guessed(ds: xr.Dataset) -> tuple[xr.Dataset, Names, Names]:
+    """Return what ``ds.cf.guess_coord_axis()`` returns, and its axes and coordinates.
+
+    That looks all of them up for each coordinate and pattern, which takes most of the time to open.
+    """
+    from cf_xarray.accessor import ATTRS
+    from cf_xarray.criteria import regex
+
+    ds = ds.copy(deep=False)
+    known: tuple[Names, Names] = ds.cf.axes, ds.cf.coordinates
+    for name, c in ds.coords.items():
+        dates = c.ndim == 1 and (c.dtype.kind == "m" or is_dates(c))
+        if dates and name not in chain(*known[1].values()):
+            kinds = ["time"]
+        else:
+            kinds = [kind for kind, pattern in regex.items() if pattern.match(str(name).lower())]
+        for kind in kinds:
+            if name not in chain(*known[kind not in "XYZT"].values()):
+                ds[name].attrs = {**ATTRS[kind], **ds[name].attrs}
+                known = ds.cf.axes, ds.cf.coordinates
+    return ds, *known
 
 
 def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:
