@@ -6,7 +6,7 @@ import math
 import uuid
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -324,7 +324,7 @@ class _Run:
     about: dict[str, Any]
     source: str
     progress: bool
-    name: str = ""
+    name: str = field(default_factory=lambda: uuid.uuid4().hex)
     made: int = 0
     kept: int = 0
 
