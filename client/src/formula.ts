@@ -185,6 +185,9 @@ export function placesOf(header: Header): PlaceOf | null {
   };
 }
 
+/** Most time steps of which the speeds are measured. */
+const MEASURED_STEPS = 8;
+
 /** Gives what a formula is at the nodes of the whole, and of tiles: a Source. */
 export class FormulaSource {
   readonly hasSteps = true;
@@ -210,7 +213,31 @@ export class FormulaSource {
     this.parameters = Object.fromEntries(own.map(([name, value]) => [name.slice(PARAMETER.length), Number(value)]));
     const before = this.state;
     this.state = JSON.stringify([this.header.formula, this.header.geometry, this.parameters]);
+    if (before && before !== this.state) this.measure();
     return before !== this.state;
+  }
+
+  /** Put the typical and the extreme speeds of the parameters into the header. */
+  private measure(): void {
+    const { speed, scalars, slices } = this.header;
+    const every = Math.ceil(slices.times.length / MEASURED_STEPS);
+    const steps = slices.times.flatMap((_, step) => (step % every ? [] : [this.flow(step).speeds]));
+    let [sum, count, least, most] = [0, 0, Infinity, 0];
+    for (const value of steps.flatMap((speeds) => Array.from(speeds))) {
+      if (!value) continue;
+      [sum, count] = [sum + value ** 2, count + 1];
+      [least, most] = [Math.min(least, value), Math.max(most, value)];
+    }
+    if (!count) return;
+    if (!slices.trace?.timed) speed.typical = Math.sqrt(sum / count);
+    const choice = scalars.choices[scalars.number];
+    if (choice) Object.assign(choice, { least, most });
+  }
+
+  /** The flow of the whole at a step. */
+  private flow(step: number): ReturnType<Grid["flow"]> {
+    const to = this.header.geometry.shape.map((n) => n - 1) as Pair;
+    return this.grid.flow({ level: this.header.pyramid?.depth ?? 0, from: [0, 0], to }, step, this.parameters);
   }
 
   /** Follow a camera: the nullclines of these parts that it sees otherwise than before. */

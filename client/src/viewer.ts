@@ -225,6 +225,7 @@ export class Viewer implements User, View {
     Object.assign(this.settings, settings);
     if (this.requests.follow(this.settings)) {
       this.renew();
+      this.panel.showLegend();
       this.card.update();
     }
     this.panel.update();

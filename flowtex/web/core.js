@@ -1495,14 +1495,20 @@ return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let s
 local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
 corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
 (x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
-0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
+0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var MEASURED_STEPS=8,FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
 this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
 settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
 slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
-header.geometry,this.parameters]),before!==this.state}look(camera,names){let{ends:ends2}=this.grid,side=Math.max(...ends2.
-map(([low,high])=>high-low)),size=side/2**Math.floor(Math.log2(side/(2*WINDOW_VIEWS*camera.height*Math.max(camera.aspect,
-1)))),step=size/WINDOW_STEPS,window2=ends2.map(([low,high],k)=>{let middle=low+step*Math.round((camera.state.focal_point[k]-
-low)/step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),isPart=size<side&&window2.every(([low,high])=>low<
+header.geometry,this.parameters]),before&&before!==this.state&&this.measure(),before!==this.state}measure(){let{speed,scalars,
+slices}=this.header,every=Math.ceil(slices.times.length/MEASURED_STEPS),steps=slices.times.flatMap((_,step)=>step%every?
+[]:[this.flow(step).speeds]),[sum,count2,least,most]=[0,0,1/0,0];for(let value of steps.flatMap(speeds=>Array.from(speeds)))
+value&&([sum,count2]=[sum+value**2,count2+1],[least,most]=[Math.min(least,value),Math.max(most,value)]);if(!count2)return;
+slices.trace?.timed||(speed.typical=Math.sqrt(sum/count2));let choice=scalars.choices[scalars.number];choice&&Object.assign(
+choice,{least,most})}flow(step){let to=this.header.geometry.shape.map(n=>n-1);return this.grid.flow({level:this.header.pyramid?.
+depth??0,from:[0,0],to},step,this.parameters)}look(camera,names){let{ends:ends2}=this.grid,side=Math.max(...ends2.map(([
+low,high])=>high-low)),size=side/2**Math.floor(Math.log2(side/(2*WINDOW_VIEWS*camera.height*Math.max(camera.aspect,1)))),
+step=size/WINDOW_STEPS,window2=ends2.map(([low,high],k)=>{let middle=low+step*Math.round((camera.state.focal_point[k]-low)/
+step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),isPart=size<side&&window2.every(([low,high])=>low<
 high);return String(this.window)===String(isPart?window2:null)?[]:(this.window=isPart?window2:null,[...names].filter(name=>name.
 startsWith("nullclines/")).map(name=>this.marks("nullclines",stepOf(name))))}load=(key,steps,_signal,_has,mark)=>mark?Promise.
 resolve(steps.map(step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){
@@ -2130,9 +2136,9 @@ name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});th
 this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),
 this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-requests.follow(this.settings)&&(this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){this.held.clear(
-name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(
-this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+requests.follow(this.settings)&&(this.renew(),this.panel.showLegend(),this.card.update()),this.panel.update(),this.change())}renew(){
+this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&
+this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
 this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
 camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
 this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(

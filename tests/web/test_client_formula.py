@@ -14,6 +14,7 @@ from pages import COMPLETE, acted, opened_page
 from PIL import Image
 
 import flowtex
+from flowtex.trace.lags import typical_speed
 from paper import quality
 
 if TYPE_CHECKING:
@@ -160,3 +161,30 @@ def test_a_click_shows_the_trajectory_which_follows_the_slider(
             x, y = (line[1:] + line[:-1]).T / 2
             lost = -b * y**2 / np.hypot(y, np.sin(x) + b * y) * lengths
             np.testing.assert_allclose(np.diff(energy)[1:-1], lost[1:-1], atol=2e-4)
+
+
+SPEEDS = """async (b) => {
+  const { first } = document.querySelector("flowtex-view");
+  first.setSettings({ "formula.b": b });
+  const { speed, scalars } = first.header;
+  const { most } = scalars.choices[scalars.number];
+  const ramp = first.root.shadowRoot.querySelector(".ramp");
+  return [speed.typical, most, scalars.high, ramp.classList.contains("above")];
+}"""
+
+
+def test_typical_and_greatest_speed_and_the_colour_bar_follow_the_slider(
+    browser: Browser, tmp_path: Path
+) -> None:
+    path = flowtex.export(pendulum(b=(0.2, -3, 3), resolution=65), tmp_path / "page.html", **LOOK)
+    high = None
+    with opened_page(browser, 320, 300) as page:
+        opened(page, path.path)
+        for b in (-3.0, -1.0, 0.0, 0.5, 2.5):
+            typical, most, end, is_above = page.evaluate(SPEEDS, b)
+            high = high or end
+            field = pendulum(b=b, resolution=65)
+            assert typical == pytest.approx(typical_speed(field), rel=5e-3)
+            assert most == pytest.approx(np.max(field.speed), rel=1e-4)
+            # The colours keep their range, and the bar says where values lie beyond it.
+            assert end == high and is_above == (most > 1.001 * high)
