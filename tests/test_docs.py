@@ -174,7 +174,8 @@ def close_all(names: dict[str, Any]) -> None:
             attrgetter(call)(sys.modules[name])(*arguments)
 
 
-# Pictures are smaller here than on the pages.
+# Pictures are smaller here than on the pages, and FTLE ends before the series.
+@pytest.mark.filterwarnings("ignore:FTLE is blank at")
 @pytest.mark.filterwarnings("ignore:a picture of .* has no room")
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
 def test_the_blocks_of_a_page_run(

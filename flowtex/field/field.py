@@ -234,7 +234,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         Warns
         -----
         UserWarning
-            When the velocity is zero everywhere, so that the picture is plain noise.
+            When the velocity is zero everywhere, so that the picture is plain.
 
         Notes
         -----
