@@ -26,7 +26,7 @@ const COMMON = {
   target: "es2022",
 };
 
-/** What a web map never asks for: flows from formulas, and packings that no store of ours has. */
+/** What a web map never asks for: flows from formulas, and packings and types that no store of ours has. */
 const UNUSED = {
   formula: "export const placesOf = () => null; export class FormulaSource {}",
   bitround: "export class BitroundCodec {}",
@@ -36,6 +36,7 @@ const UNUSED = {
   scale_offset: "export class ScaleOffsetCodec {}",
   shuffle: "export class ShuffleCodec {}",
   transpose: "export class TransposeCodec {}",
+  typedarray: "export class BoolArray {} export class ByteStringArray {} export class UnicodeStringArray {}",
 };
 const LESS = {
   name: "less",

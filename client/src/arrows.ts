@@ -34,6 +34,8 @@ interface Placed {
   corners: ArrayLike<number>;
   place: Pair;
   radius: number;
+  /** Where the values of its cell are: the first node, or the triangle. */
+  cell: number;
 }
 
 const isEqual = (a: readonly unknown[], b: readonly unknown[]) =>
@@ -75,7 +77,8 @@ export class Arrows {
     if (last?.seeds === seeds && isEqual(layers, last.layers)) return last.shared as Map<L, Placed[]>;
     const { corners } = this.surface;
     const whole = seeds.map(({ cell, place, radius }): Placed => {
-      return { corners: corners.subarray(4 * cell, 4 * cell + 4), place, radius };
+      const around = corners.subarray(4 * cell, 4 * cell + 4);
+      return { corners: around, place, radius, cell: header.geometry.triangles ? cell : around[0] };
     });
     const shared = new Map<L, Placed[]>(layers.map((layer) => [layer, []]));
     const finest = [...layers].sort((a, b) => levelOf(a) - levelOf(b));
@@ -151,7 +154,7 @@ export class Arrows {
     if (!i || !j) return null;
     if (layer.parts.get("cells")?.data[j[0] * (columns - 1) + i[0]] === 0) return null;
     const low = j[0] * columns + i[0];
-    return { corners: [low, low + 1, low + columns, low + columns + 1], place: [i[1], j[1]], radius };
+    return { corners: [low, low + 1, low + columns, low + columns + 1], place: [i[1], j[1]], radius, cell: low };
   }
 
   private make(): WebGLVertexArrayObject {
@@ -173,11 +176,11 @@ export class Arrows {
   private numbers(placed: Placed[], painted: string[], anchor: Vector): Float32Array {
     const { geometry, scalars } = this.header;
     const steps = painted.map((name) => this.parts.get(name)?.data ?? new Float32Array());
-    const colour = shares(steps, scalars, geometry.shape[0] * geometry.shape[1]);
+    const colour = shares(steps, scalars);
     const nodes = this.nodes;
     const coordinate = geometry.triangles ? null : coordinates(geometry);
     return Float32Array.from(
-      placed.flatMap(({ corners, place, radius }) => {
+      placed.flatMap(({ corners, place, radius, cell }) => {
         const [i, j] = place;
         const [a, b, c, d] = Array.from(corners, (n) => [...nodes.subarray(3 * n, 3 * n + 3)] as Vector);
         const across = cross(subtract(add(b, d), add(a, c)), subtract(add(c, d), add(a, b)));
@@ -185,7 +188,7 @@ export class Arrows {
           ...subtract(between(nodes, corners, place, 3), anchor),
           ...(coordinate ? between(coordinate, corners, place, 2) : [i * (1 - j), j]),
           ...unit(across),
-          ...between(colour, corners, place, 2),
+          ...(scalars.flat ? colour.subarray(2 * cell, 2 * cell + 2) : between(colour, corners, place, 2)),
           ...Array.from(corners).slice(0, 3),
           radius,
         ];

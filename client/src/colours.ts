@@ -51,8 +51,8 @@ export function recoloured(
   if (choice.scalars === false) scalars.name = null;
   const number = scalars.choices.findIndex(({ name }) => name === choice.scalars);
   if (number >= 0) {
-    const { name, label, unit, steps } = scalars.choices[number];
-    Object.assign(scalars, { name, label, unit, steps, number, auto: true });
+    const { name, label, unit, steps, flat } = scalars.choices[number];
+    Object.assign(scalars, { name, label, unit, steps, flat, number, auto: true });
   }
   if (choice.cmap) scalars.cmap = choice.cmap;
   if (Array.isArray(choice.clim)) [scalars.low, scalars.high] = choice.clim;

@@ -38,8 +38,9 @@ export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
   return grid(alongI, alongJ);
 }
 
-/** Values before and after, for each node, as shares of the colour map's range. */
-export function shares(steps: Data[], scalars: Header["scalars"], nodes: number): Float32Array {
+/** Values before and after, for each node or cell, as shares of the colour map's range. */
+export function shares(steps: Data[], scalars: Header["scalars"]): Float32Array {
+  const nodes = steps[0]?.length ?? 0;
   const result = new Float32Array(2 * nodes);
   const place = shareOf(scalars);
   steps.forEach((values, k) => {

@@ -62,9 +62,8 @@ export function pickedPoint(context: PickContext, x: number, y: number): Found |
   const near = geometry.triangles ? placeIn(bits[3] - 1, u, v) : placeAmong(geometry, u, v);
   const position = positionAt(layer.scene, camera, layer.scene.cornersAt(near), x, y);
   const place = placeOnEarth(layer.scene, near, position, layers[0].scene.parts.get("lonlat"));
-  const corners = cornersOn(layer.scene, place);
   const index = geometry.triangles ? place : wholeIndex(header, layer, place);
-  return { point: { position, index, values: valuesAt(layer.scene, moment, corners) }, layer, place };
+  return { point: { position, index, values: valuesAt(layer.scene, moment, place) }, layer, place };
 }
 
 /** Place between the nodes at a coordinate of the slices. */
@@ -100,19 +99,21 @@ function positionAt(scene: Scene, camera: Camera, corners: Corners, x: number, y
 export function valuesAt(
   scene: Scene,
   moment: Moment,
-  corners: Corners,
+  place: [number, number],
 ): Record<string, number> {
   const { header, parts } = scene;
-  const { scalars } = header;
+  const { scalars, geometry } = header;
+  const corners = cornersOn(scene, place);
+  const cell = geometry.triangles ? Math.floor(place[1]) : corners[0][0];
   const [from, to, between] = moment;
   const values: Record<string, number> = {};
-  const others = scalars.choices.map(({ name, steps }, number) => ({ name, steps, number }));
+  const others = scalars.choices.map((choice, number) => ({ ...choice, number }));
   for (const each of [scalars, ...others]) {
     const names = scene.scalarParts(from, to, each);
     const [before, after] = names.map((part) => parts.get(part)?.data);
     if (each.name === null || each.name in values || !before || !after) continue;
     const value = (n: number) => before[n] + between * (after[n] - before[n]);
-    values[each.name] = interpolated(corners, value);
+    values[each.name] = each.flat ? value(cell) : interpolated(corners, value);
   }
   return values;
 }

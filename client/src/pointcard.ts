@@ -4,7 +4,7 @@ import type { Camera } from "./camera.ts";
 import { dom, numberText, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
-import { cornersOn, velocityOnEarth } from "./onearth.ts";
+import { velocityOnEarth } from "./onearth.ts";
 import type { Options, Reading } from "./options.ts";
 import { pathShapes, type Dot, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
@@ -192,7 +192,7 @@ export class PointCard {
     const at = { scene, moment: shown, place, position };
     const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
     const eastNorth = velocityOnEarth(at, this.host.parts.get("lonlat")) ?? undefined;
-    this.tell({ ...point, values: valuesAt(scene, shown, cornersOn(scene, place)), eastNorth }, path, header, camera);
+    this.tell({ ...point, values: valuesAt(scene, shown, place), eastNorth }, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
     this.share(path, position, samples);

@@ -409,6 +409,7 @@ export class ProgressiveRenderer {
       u_matrix: projection(header.geometry, camera, view.anchor),
       u_mapped: header.scalars.name !== null && !plain,
       u_plain: plain,
+      u_flat: !!header.scalars.flat,
       u_padding: [columns.before, rows.before],
       u_colour: header.colour,
       u_lit: header.lighting,

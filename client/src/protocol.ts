@@ -324,6 +324,8 @@ export interface Header {
     high: number;
     steps: number;
     unit: string;
+    /** Whether the values belong to cells, which are flat. */
+    flat?: boolean;
     bar: boolean;
     /** Number of the scalar among those of the field, and what can be chosen in its place. */
     number: number;
@@ -339,6 +341,7 @@ export interface Header {
       least: number;
       most: number;
       steps: number;
+      flat?: boolean;
     }[];
     /** Whether the map is logarithmic, and whether its range is automatic. */
     log: boolean;

@@ -357,7 +357,7 @@ export class Scene {
 
   private fillArray(array: WebGLVertexArrayObject, before: number, after: number): void {
     const gl = this.graphics.context;
-    const { geometry, paper } = this.header;
+    const { geometry, paper, scalars } = this.header;
     const { shape, rows, columns } = geometry;
     const { levels, joins } = this.drawn ?? { levels: new Int8Array(), joins: new Int8Array() };
     const key = (names: string[], ...rest: unknown[]) => this.key(["triangles", ...names], ...rest);
@@ -365,8 +365,8 @@ export class Scene {
     const drawn = key(["cells", "mesh", "blocks"], shape, [...levels], [...joins]);
     const index = this.buffer("index", drawn, cells, true);
     const corners = geometry.triangles ? this.part("triangles").data : null;
-    const vertices = <T extends Data>(values: T, size: number) =>
-      corners ? atVertices(values, corners, size) : values;
+    const vertices = <T extends Data>(values: T, size: number, flat?: boolean) =>
+      corners ? atVertices(values, flat ? corners.map((_: number, n: number) => n / 3) : corners, size) : values;
     const nodes = () =>
       vertices(positions(this.part("position").data, this.anchor), 3);
     const normal = geometry.planar ? null : this.part("normal").data;
@@ -383,7 +383,7 @@ export class Scene {
       [this.buffer("coordinate", grid, place), 2, gl.FLOAT],
       [normal && this.buffer("normal", key(["normal"]), () => normals(normal)), 3, type],
       [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
-      [corners && this.buffer("scalar", colour, () => vertices(values(), 2)), 2, gl.FLOAT],
+      [corners && this.buffer("scalar", colour, () => vertices(values(), 2, scalars.flat)), 2, gl.FLOAT],
       [corners && this.buffer("corners", key([]), () => vertexCorners(corners)), 3, gl.FLOAT],
     ];
     gl.bindVertexArray(array);
@@ -402,7 +402,7 @@ export class Scene {
     const { shape } = geometry;
     const painted = this.scalarParts(before, after);
     const key = this.key(["triangles", ...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
-    const make = () => shares(painted.map((name) => this.part(name).data), scalars, shape[0] * shape[1]);
+    const make = () => shares(painted.map((name) => this.part(name).data), scalars);
     return [key, make];
   }
 

@@ -25,9 +25,9 @@ test("positions are counted from the anchor", () => {
 test("a node without a value has a share that no colour map has", () => {
   const steps = [Float32Array.of(2, NaN), Float32Array.of(3, 4)];
   const scalars = { low: 2, high: 4, log: false } as Header["scalars"];
-  assert.deepEqual([...shares(steps, scalars, 2)], [0, 0.5, -1e9, 1]);
+  assert.deepEqual([...shares(steps, scalars)], [0, 0.5, -1e9, 1]);
   const powers = { low: 1, high: 100, log: true } as Header["scalars"];
-  assert.deepEqual([...shares([Float32Array.of(0, 10)], powers, 2)], [0, 0, 0.5, 0]);
+  assert.deepEqual([...shares([Float32Array.of(0, 10)], powers)], [0, 0, 0.5, 0]);
 });
 
 test("values between nodes are those of the triangles", () => {

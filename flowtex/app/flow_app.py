@@ -33,7 +33,7 @@ from flowtex.settings import TABLE
 
 #: Arguments that choose a part of a file or a mesh, and those that change how it is read.
 CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))
-FIELD_ARGUMENTS = ("times", "periodic", "sign_free")
+FIELD_ARGUMENTS = ("times", "periodic", "sign_free", "preference")
 TEMPLATE = Path(__file__).parent / "ui" / "page.html"
 #: Mark of the view in the template.
 VIEW = "<!-- the view -->"

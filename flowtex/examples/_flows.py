@@ -393,7 +393,11 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
     grid.dimensions = (columns, rows, 1)
     grid.point_data["velocity"] = field.velocity[step].reshape(-1, 3)
     for name, values in field.scalars.items():
-        grid.point_data[name] = values[step if len(values) > 1 else 0].ravel()
+        step_values = values[step if len(values) > 1 else 0]
+        if name in field.on_cells:
+            grid.cell_data[name] = step_values[:-1, :-1].ravel()
+        else:
+            grid.point_data[name] = step_values.ravel()
     if not field.steady:
         grid.field_data["TimeValue"] = np.array([field.times[step]])
     if not field.valid.all():

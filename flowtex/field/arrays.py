@@ -93,6 +93,7 @@ class FieldArrays:
     times: ArrayLike | None = None
     valid: ArrayLike | None = None
     scalars: Mapping[str, Any] = field(default_factory=dict)
+    cell_scalars: Mapping[str, Any] = field(default_factory=dict)
     name: str = ""
     length_unit: str = ""
     time_unit: str = ""

@@ -37,6 +37,7 @@ class FieldConstructors:
         name: str = "",
         sign_free: bool = False,
         block: int | str | None = None,
+        preference: str | None = None,
     ) -> Self:
         """Make a field from a PyVista mesh, or from a series of them.
 
@@ -78,13 +79,17 @@ class FieldConstructors:
         block
             Number or path of the block of a MultiBlock to draw, such as ``"Base/Zone 1"``. Numbers
             count from 0 and include only blocks with cells.
+        preference
+            The array to read where points and cells have one of the same name: ``"point"``, the
+            default, or ``"cell"``.
 
         Returns
         -------
         FlowField
-            Positions are in the mesh's units. Arrays with one component become ``scalars``. Data on
-            cells are averaged over the visible cells around each node, on triangles weighted by
-            area. On a cut through a volume, arrays are interpolated.
+            Positions are in the mesh's units. Arrays with one component become ``scalars``; those
+            on cells are drawn flat, also on a cut, and between two layers of cells a plane has the
+            values of the second one. A velocity on cells is averaged over the visible cells around
+            each node, on triangles weighted by area, and so is its magnitude.
 
         Raises
         ------
@@ -123,6 +128,7 @@ class FieldConstructors:
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
         options |= {"plane": plane, "slice": slice, "contour": contour, "times": times}
+        options["preference"] = preference
         return cls.of(read_meshes(mesh, vectors=vectors, name=name, **options))
 
     @classmethod
@@ -138,6 +144,7 @@ class FieldConstructors:
         time: float | str | None = None,
         block: int | str | None = None,
         sign_free: bool = False,
+        preference: str | None = None,
         projection: str | None = None,
         globe: bool = False,
         level: float | str | None = None,
@@ -163,7 +170,7 @@ class FieldConstructors:
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
             ``Velocity``, computed from density and momentum.
-        plane, slice, contour, periodic, sign_free
+        plane, slice, contour, periodic, sign_free, preference
             As for :meth:`from_pyvista`.
         time
             One time of the file, drawn as a steady field. All times by default.
@@ -198,7 +205,7 @@ class FieldConstructors:
         options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
         options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
         options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
-        options |= {"mask": mask, "components": components}
+        options |= {"mask": mask, "components": components, "preference": preference}
         with errors_of(path):
             arrays = read_files(
                 path, vectors=vectors, time=time, uncertainty=uncertainty, **options

@@ -75,7 +75,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     periodic
         Whether the (j, i) axis closes on itself.
     scalars
-        Other nodal arrays, name to (T or 1, J, I).
+        Other nodal arrays, name to (T or 1, J, I). Those in ``on_cells`` are drawn flat: a cell has
+        the value of its first node (j, i), and triangles have one each, (T or 1, 1, M).
     name, length_unit, time_unit
         Text for captions; empty when unknown.
     has_position
@@ -104,6 +105,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     volume_values
         Values (N,) of scalars in the volume of a slice, at all times: the extremes, and a sample.
         Colours have their range.
+    on_cells
+        Names of the scalars that belong to cells.
 
     Examples
     --------
@@ -137,6 +140,7 @@ class FlowField(FieldConstructors, FieldQuantities):
     reading: Reading = NOTHING
     velocity_unit: str = ""
     volume_values: Mapping[str, Floats] = field(default_factory=dict)
+    on_cells: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -172,6 +176,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         valid: ArrayLike | None = None,
         periodic: str | None = None,
         scalars: Mapping[str, Any] | None = None,
+        cell_scalars: Mapping[str, Any] | None = None,
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
@@ -205,6 +210,8 @@ class FlowField(FieldConstructors, FieldQuantities):
             and global longitude on a flat map.
         scalars
             Further nodal arrays, name to (J, I) or (T, J, I); values beyond 1e100 become NaN.
+        cell_scalars
+            Arrays of one value for each cell, (J - 1, I - 1) or (T, J - 1, I - 1), drawn flat.
         name, length_unit, time_unit
             Text for captions.
         velocity_unit
@@ -253,7 +260,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=2)
         words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
         on_globe = projection is not None and projection.is_globe
-        parts = points, filled.velocity, t, valid, periodic, filled.scalars
+        parts = points, filled.velocity, t, valid, periodic, filled.scalars, cell_scalars or {}
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
         flow = cls(
             points=nodes.surface.points,
@@ -264,6 +271,7 @@ class FlowField(FieldConstructors, FieldQuantities):
             scalars=nodes.scalars,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
+            on_cells=tuple(cell_scalars or ()),
             **words,
         )
         flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
@@ -281,6 +289,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         times: ArrayLike | None = None,
         valid: ArrayLike | None = None,
         scalars: Mapping[str, Any] | None = None,
+        cell_scalars: Mapping[str, Any] | None = None,
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
@@ -309,6 +318,8 @@ class FlowField(FieldConstructors, FieldQuantities):
             Nodes that have data, (N,). All by default.
         scalars
             Further nodal arrays, name to (N,) or (T, N), to colour by.
+        cell_scalars
+            Arrays of one value for each triangle, (M,) or (T, M), drawn flat.
 
         Returns
         -------
@@ -338,7 +349,8 @@ class FlowField(FieldConstructors, FieldQuantities):
         texts = length_unit, time_unit, velocity_unit
         t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=1)
         words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
-        arrays = triangle_nodes(points, triangles, filled.velocity, t, valid, filled.scalars)
+        parts = points, triangles, filled.velocity, t, valid, filled.scalars, cell_scalars or {}
+        arrays = triangle_nodes(*parts)
         count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
@@ -348,6 +360,7 @@ class FlowField(FieldConstructors, FieldQuantities):
             periodic=(False, False),
             scalars=arrays.scalars,
             triangles=arrays.triangles,
+            on_cells=tuple(cell_scalars or ()),
             **words,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():

@@ -54,6 +54,7 @@ class SurfacePoint:
     index: tuple[float, float]  #: The point as (j, i), folded back into one period.
     nodes: Indices  #: Numbers of the K corners, (K,): j times the number of columns plus i.
     weights: Floats  #: Their shares, (K,).
+    cell: int  #: Number of the cell in scalars that belong to cells: of a node, or of a triangle.
 
     def corners(self, nodal: AnyArray) -> Floats:
         """Return values at the corners, (K, ...), of nodal data (J, I, ...)."""
@@ -73,7 +74,8 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
         raise FieldError(msg)
     place, number, weights = surface.triangle_at(at)
     nodes = surface.corners_of(np.array([number]))[0]
-    return SurfacePoint((float(place[0]), float(place[1])), nodes, weights)
+    cell = int(surface.cells_of(np.array([number]))[0])
+    return SurfacePoint((float(place[0]), float(place[1])), nodes, weights, cell)
 
 
 def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
@@ -85,7 +87,7 @@ def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
         if not _is_skew(field, _places(field, nodes)):
             t, s = point.index[0] - cell[0], point.index[1] - cell[1]
             weights = np.array([(1 - t) * (1 - s), (1 - t) * s, t * (1 - s), t * s])
-            return SurfacePoint(point.index, nodes, weights)
+            return SurfacePoint(point.index, nodes, weights, int(nodes[0]))
     return point
 
 

@@ -74,7 +74,8 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
     They are bilinear in cells that are parallelograms, in longitude and latitude or in space,
-    elsewhere linear in the triangles of the drawn surface; and linear in time.
+    elsewhere linear in the triangles of the drawn surface; and linear in time. Scalars that belong
+    to cells have the value of the cell.
 
     Parameters
     ----------
@@ -112,6 +113,12 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
             return corners(steps[0])
         return corners(steps[before]) * (1 - share) + corners(steps[after]) * share
 
+    def scalar(name: str) -> float:
+        steps = field.scalars[name]
+        if name in field.on_cells:
+            return float(value(steps, lambda step: np.ravel(step)[point.cell]))
+        return float(weights @ value(steps))
+
     scale, weights = field.speed_scale, point.weights
     vectors = scale * value(field.velocity)
     velocity = weighted_axis(vectors, weights) if field.sign_free else weights @ vectors
@@ -119,7 +126,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
         "position": point.interpolate(field.surface.points),
         "velocity": velocity,
         "speed": float(np.linalg.norm(velocity)),
-        "scalars": {name: float(weights @ value(steps)) for name, steps in field.scalars.items()},
+        "scalars": {name: scalar(name) for name in field.scalars},
     }
     if field.leaves_surface:
         values["speed"] = float(weights @ value(field.index_velocity.speed) * scale)

@@ -98,6 +98,10 @@ class Surface(ABC):
         """Return nodes (N, 3) at the corners of triangles (N,), counted row by row."""
 
     @abstractmethod
+    def cells_of(self, number: Indices) -> Indices:
+        """Return the places of triangles (N,) in scalars of cells: first nodes, or triangles."""
+
+    @abstractmethod
     def beside(self, number: Indices, corner: int) -> Indices:
         """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
 

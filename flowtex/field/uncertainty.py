@@ -12,12 +12,16 @@ import numpy as np
 
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Floats
+from flowtex._util.vectors import norm
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import fill_blanked
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Steps, map_steps
+from flowtex.field.triangles.arrays import nodal_means
 
 #: A :class:`flowtex.FlowField`.
 Field = TypeVar("Field")
+#: Offsets of the cells around a node.
+CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
 #: Name of the scalar of an uncertainty that is an array.
 UNCERTAINTY = "uncertainty"
 
@@ -35,9 +39,9 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     field
         The flow.
     value
-        The name of a scalar of the field, or of the dimension over which a dataset was averaged; or
-        an array, (J, I) or (T, J, I), on triangles (N,) or (T, N): the standard deviation of the
-        velocity over its magnitude.
+        The name of a scalar of the field, which is averaged to the nodes if it is on cells; or of
+        the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I), on
+        triangles (N,) or (T, N): the standard deviation of the velocity over its magnitude.
 
     Raises
     ------
@@ -55,13 +59,17 @@ def with_uncertainty(field: Field, value: Any) -> Field:
         msg = f"uncertainty is {value!r}, which is not a scalar; {near_names(value, scalars)}"
         raise FieldError(msg)
     steps = scalars[value]
+    on_cells = tuple(name for name in flow.on_cells if name != value)
+    if value in flow.on_cells:
+        steps = _at_nodes(flow, steps)
+        scalars = {**scalars, value: steps}
     if not isinstance(steps, LazySteps) and (least := np.min(steps, initial=0, where=steps < 0)):
         msg = (
             f"uncertainty is {least:g} at a node; expected 0 where the direction is known, up to 1 "
             "where it is not, such as a standard deviation over the speed"
         )
         raise FieldError(msg)
-    changed: Field = flow.same_flow(scalars=scalars, uncertainty=value)
+    changed: Field = flow.same_flow(scalars=scalars, uncertainty=value, on_cells=on_cells)
     return changed
 
 
@@ -80,6 +88,23 @@ def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
         )
         raise FieldError(msg)
     return steps
+
+
+def _at_nodes(field: Any, steps: Steps) -> Steps:
+    """Return means at the nodes, (T, J, I), of values that belong to cells."""
+    if field.triangles is not None:
+        areas, count = norm(field.surface.crosses), field.shape[1]
+        flat = map_steps(steps, lambda step: step[0])
+        return map_steps(nodal_means(flat, field.triangles, areas, count), lambda step: step[None])
+
+    def mean(step: Floats) -> Floats:
+        cells = np.pad(step[:-1, :-1], 1, constant_values=np.nan)
+        around = np.stack([cells[j : j + len(step), i : i + step.shape[1]] for j, i in CORNERS])
+        known = np.isfinite(around)
+        total = np.where(known, around, 0.0).sum(axis=0)
+        return np.where(known.any(axis=0), total / np.maximum(known.sum(axis=0), 1), np.nan)
+
+    return map_steps(steps, mean)
 
 
 def unknown_share(field: Any, step: int) -> Floats:

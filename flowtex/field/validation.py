@@ -6,7 +6,7 @@ arrays into the form that the rest of the package uses.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -146,14 +146,28 @@ def nodal_faults(
         faults += time_faults(times, steps)
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid}, as points")
-    allowed = [grid, (steps, *grid)]
-    for name, array in scalars.items():
-        if np.shape(array) not in allowed:
-            faults.append(
-                f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
-                f"{allowed[1]}, as points and velocity have"
-            )
-    return faults
+    return faults + scalar_faults("scalars", grid, steps, scalars, "as points and velocity have")
+
+
+def scalar_faults(
+    argument: str, shape: tuple[int, ...], steps: int, arrays: Mapping[str, Floats], reason: str
+) -> list[str]:
+    """Return faults in the shapes of scalars at nodes or cells of this shape."""
+    return [
+        f"{argument}[{name!r}] has shape {np.shape(array)}; expected {shape} or "
+        f"{(steps, *shape)}, {reason}"
+        for name, array in arrays.items()
+        if np.shape(array) not in (shape, (steps, *shape))
+    ]
+
+
+def cell_faults(
+    shape: tuple[int, ...], steps: int, cells: Mapping[str, Floats], nodal: Iterable[str]
+) -> list[str]:
+    """Return faults in the shapes of scalars at cells, and in their names."""
+    faults = scalar_faults("cell_scalars", shape, steps, cells, "one value for each cell")
+    twice = [name for name in cells if name in nodal]
+    return faults + [f"{n!r} is in scalars and in cell_scalars; expected one" for n in twice]
 
 
 def time_faults(t: Floats | None, count: int) -> list[str]:

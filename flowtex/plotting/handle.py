@@ -379,7 +379,11 @@ class FlowHandle(AppearanceAttributes):
         mapper.lookup_table = table
         mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name))
         mapper.SelectColorArray(name)
-        self._surface.set_scalars(name, lambda field: self.scene.scalar(name, field))
+        self._surface.set_scalars(
+            name,
+            lambda field: self.scene.scalar(name, field),
+            on_cells=name in self.scene.field.on_cells,
+        )
 
     def _show_bar(self) -> None:
         """Show a legend of the current colours, or none."""

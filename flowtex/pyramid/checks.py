@@ -120,6 +120,7 @@ _ABOUT: dict[str, Check] = {
     **dict.fromkeys(("uncertainty", "velocity_unit"), _or_none(_text)),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
+    "on_cells": _or_none(_list(_text, 0, MOST_SCALARS)),
     "ranges": _or_none(_by_name(_ENDS)),
 }
 

@@ -148,6 +148,7 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "late": source.late or len(field.times) > MOST_HELD,
         "has_position": source.has_position is not None,
         "scalars": dict(source.scalars),
+        "on_cells": list(field.on_cells),
         "uncertainty": field.uncertainty,
         "units": dict(field.units),
         "long_names": dict(field.long_names),
@@ -281,4 +282,5 @@ def empty_field(about: About) -> FlowField:
         start=date_of(about["start"]),
         projection=Projection.of(about["projection"]),
         uncertainty=about.get("uncertainty", ""),
+        on_cells=tuple(about.get("on_cells") or ()),
     )

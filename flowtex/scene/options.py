@@ -2,11 +2,9 @@
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
 :func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
-three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view. All
-other arguments are settings of :class:`flowtex.Settings`.
-
-:func:`accepts_options` puts the names, defaults and texts of the fields into the signature and
-the docstring of a function, so that ``help`` and an editor show them there.
+three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view.
+Others are settings. :func:`accepts_options` puts the names, defaults and texts of the fields into
+the signature and the docstring of a function.
 """
 
 from __future__ import annotations
@@ -60,7 +58,7 @@ AXES = ("ticks", "scale", "none")
 
 #: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
-OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
+OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: The scalar that every flow has, and the range of colours without outliers.
@@ -135,6 +133,7 @@ class FieldOptions:
         Form(read=or_none("")),
     )
     sign_free: bool | None = _option(None, "Whether v and -v mean the same, as in a field of axes.")
+    preference: str | None = _option(None, 'Of two arrays of a name, ``"point"`` or ``"cell"``.')
     projection: str | None = _option(
         None,
         "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "

@@ -21,7 +21,7 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
-from flowtex.field.derived import DERIVED, SIGNED, steps_of
+from flowtex.field.derived import DERIVED, SIGNED, drawn_mask, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
@@ -300,7 +300,7 @@ class Scene:
         return before if share < 0.5 else after
 
     def scalar(self, name: str, field: FlowField | None = None) -> Floats:
-        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors.
+        """Values at the time that is shown, (J, I); :func:`steps_of` has the errors.
 
         They are those of a part of the field, or of a coarser form of it, where one is given.
         """
@@ -379,7 +379,7 @@ class Scene:
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes, or of the volume that they cut, at all times."""
-        typical, valid = self.field.typical, self.field.valid
+        typical, valid = self.field.typical, drawn_mask(self.field, name)
         if (values := typical.volume_values.get(name)) is not None:
             return values
         if self.pyramid is None or name in self.field.scalars:
@@ -560,7 +560,7 @@ def share_field(field: FlowField) -> FlowField:
     arrays = (a for a in inputs if not isinstance(a, LazySteps))
     kind = (field.has_position is None, field.triangles is None)
     volume = tuple((k, len(v), float(v.sum())) for k, v in field.volume_values.items())
-    names = (*field.scalars, field.uncertainty, volume)
+    names = (*field.scalars, field.on_cells, field.uncertainty, volume)
     key = digest(*arrays, words=(words, units, kind, lazy_ids, *names))
     return _fields.get(key, lambda: field)
 

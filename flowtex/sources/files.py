@@ -86,7 +86,7 @@ _KNOWN_FORMATS = (
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
 #: Arguments for meshes; the others are for datasets.
-OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
+OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free", "preference")
 
 
 @dataclass(frozen=True)

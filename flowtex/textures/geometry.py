@@ -214,7 +214,7 @@ class DrawnSurface:
 
     @property
     def corners(self) -> Floats32 | None:
-        """Numbers of the nodes around each vertex's triangle, (V, 3), where shaders read those."""
+        """Numbers of the nodes around each vertex's triangle and its own, (V, 4), for shaders."""
         return None
 
     @property
@@ -222,8 +222,15 @@ class DrawnSurface:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
         raise NotImplementedError
 
-    def at_vertices(self, nodal: AnyArray) -> AnyArray:
-        """Return values at the vertices of a mesh, (V, ...), from nodal ones, (J, I, ...)."""
+    def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
+        """Return the values of a scalar (..., J, I) at the nodes or cells that are drawn.
+
+        Cells have their first node's place, and triangles their own, (..., 1, M).
+        """
+        raise NotImplementedError
+
+    def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
+        """Return values at the vertices of a mesh, (V, ...), from drawn ones, (J, I, ...)."""
         raise NotImplementedError
 
     @property
@@ -421,8 +428,14 @@ class SurfaceGeometry(DrawnSurface):
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
         return np.stack([u, v], axis=-1).astype(np.float32)
 
-    def at_vertices(self, nodal: AnyArray) -> AnyArray:
-        """Return values at the vertices of a mesh, (V, ...), from nodal ones, (J, I, ...)."""
+    def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
+        """Return the values (..., J, I) of a scalar at the drawn nodes, or first nodes of cells."""
+        del on_cells
+        return values[..., self.rows.drawn, self.columns.drawn]
+
+    def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
+        """Return values at the vertices of a mesh, (V, ...), from drawn ones, (J, I, ...)."""
+        del on_cells
         return nodal.reshape(-1, *nodal.shape[2:])
 
     @property
@@ -430,8 +443,9 @@ class SurfaceGeometry(DrawnSurface):
         """Unit normals at the vertices, (V, 3), in the mesh's own axes."""
         return self.normal.reshape(-1, 3)
 
-    def as_image(self, values: AnyArray) -> AnyArray:
+    def as_image(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
         """Return values at the vertices (V,) as an image of the nodes, (J, I)."""
+        del on_cells
         return values.reshape(self.shape)
 
     def write_texels(self, data: Floats32, texels: AnyArray) -> None:

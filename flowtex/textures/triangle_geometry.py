@@ -30,6 +30,7 @@ class TriangleGeometry(DrawnSurface):
     field: FlowField  #: The flow, with nodes (1, N).
     nodes: slice | Indices  #: Numbers of the nodes that are drawn, (n,), or all of them.
     triangles: Indices  #: Nodes at the corners of what is drawn, (m, 3), as numbers among these.
+    members: Indices  #: Numbers of these triangles among those of the field, (m,).
     whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
     #: Blocks that each triangle lies in, (m,): bit b is the block at row b // C of C columns, and
     #: column b % C.
@@ -46,10 +47,10 @@ class TriangleGeometry(DrawnSurface):
         """Lay out a field's surface."""
         surface = field.surface
         assert isinstance(surface, TriangleSurface)
-        triangles = surface.triangles[surface.cells]
-        return cls(
-            field, slice(None), triangles, surface, *_one_block(surface.points[0], triangles)
-        )
+        members = surface.drawn
+        triangles = surface.triangles[members]
+        blocks = _one_block(surface.points[0], triangles)
+        return cls(field, slice(None), triangles, members, surface, *blocks)
 
     @classmethod
     def of_tile(
@@ -57,18 +58,20 @@ class TriangleGeometry(DrawnSurface):
         field: FlowField,
         nodes: Indices,
         triangles: Indices,
+        members: Indices,
         whole: Surface,
         blocks: tuple[NDArray[np.uint16], Floats] | None = None,
     ) -> TriangleGeometry:
         """Lay out some nodes (n,) and triangles (m, 3) of a field, as a part of a larger surface.
 
+        ``members`` (m,) are the triangles' numbers.
         The triangles have numbers of the field's nodes, and are drawn as one block unless there are
         ``blocks`` with their places.
         """
         number = np.zeros(field.shape[1], dtype=np.intp)
         number[nodes] = np.arange(len(nodes))
         blocks = blocks or _one_block(field.surface.points[0], triangles)
-        return cls(field, nodes, number[triangles], whole, *blocks)
+        return cls(field, nodes, number[triangles], members, whole, *blocks)
 
     @property
     def drawn(self) -> tuple[slice, slice | Indices]:
@@ -93,9 +96,7 @@ class TriangleGeometry(DrawnSurface):
     @cached_property
     def size(self) -> tuple[int, int]:
         """Rows and columns (H, W) of texels: about a square, with a power of two as W."""
-        count = self.shape[1]
-        width = 1 << int(np.ceil(np.log2(max(count, 1)) / 2))
-        return -(-count // width), width
+        return _image_size(self.shape[1])
 
     @property
     def normal(self) -> Floats32:
@@ -121,11 +122,21 @@ class TriangleGeometry(DrawnSurface):
 
     @cached_property
     def corners(self) -> Floats32:
-        """Numbers of the three nodes at each vertex, (3 m, 3)."""
-        return np.repeat(self.triangles.astype(np.float32), 3, axis=0)
+        """Numbers of the three nodes, and of the triangle, at each vertex, (3 m, 4)."""
+        numbers = np.column_stack([self.triangles, np.arange(len(self.triangles))])
+        return np.repeat(numbers.astype(np.float32), 3, axis=0)
 
-    def at_vertices(self, nodal: AnyArray) -> AnyArray:
-        """Return values at the vertices, (3 m, ...), from nodal ones, (1, n, ...)."""
+    def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
+        """Return the values of a scalar at the drawn nodes, (..., 1, n), or triangles, (..., 1, m).
+
+        They are given at those of the field.
+        """
+        return values[..., self.members if on_cells else self.nodes]
+
+    def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
+        """Return values at the vertices, (3 m, ...), from drawn nodes or triangles, (1, n, ...)."""
+        if on_cells:
+            return np.repeat(nodal[0], 3, axis=0)
         return np.asarray(nodal[0][self.triangles.ravel()])
 
     @property
@@ -139,10 +150,12 @@ class TriangleGeometry(DrawnSurface):
         """Mask of the vertices that belong to a triangle, (3 m,): all."""
         return np.ones(self.triangles.size, dtype=bool)
 
-    def as_image(self, values: AnyArray) -> AnyArray:
-        """Return values at the vertices (3 m,) as an image of the nodes (H, W), as in textures."""
-        image = np.zeros(self.size, values.dtype)
-        image.reshape(-1)[self.triangles.ravel()] = values
+    def as_image(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
+        """Return values at the vertices (3 m,) as an image of the nodes or triangles, (H, W)."""
+        size = _image_size(len(self.triangles)) if on_cells else self.size
+        at = np.repeat(np.arange(len(self.triangles)), 3) if on_cells else self.triangles.ravel()
+        image = np.zeros(size, values.dtype)
+        image.reshape(-1)[at] = values
         return image
 
     def write_texels(self, data: Floats32, texels: AnyArray) -> None:
@@ -150,6 +163,11 @@ class TriangleGeometry(DrawnSurface):
         flat = texels.reshape(-1, texels.shape[-1])
         flat[: data.shape[1]] = data[0]
         flat[data.shape[1] :] = 0
+
+
+def _image_size(count: int) -> tuple[int, int]:
+    width = 1 << int(np.ceil(np.log2(max(count, 1)) / 2))
+    return -(-count // width), width
 
 
 def _one_block(points: Floats, triangles: Indices) -> tuple[NDArray[np.uint16], Floats]:

@@ -47,11 +47,11 @@ let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8A
 scalars.name,name].map(each=>scalars.choices.find(one=>one.name===each)),cmap=after?.cmap!==before?.cmap&&scalars.cmap===
 before?.cmap?after?.cmap:void 0;return{scalars:name,clim:null,...cmap&&{cmap}}}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,label,unit:unit3,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
-unit:unit3,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
-high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
-low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.
-includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
+choice.scalars);if(number>=0){let{name,label,unit:unit3,steps,flat}=scalars.choices[number];Object.assign(scalars,{name,
+label,unit:unit3,steps,flat,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.
+low,scalars.high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){
+let{low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.
+diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
 earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
 opacity=header.opacity}=choice,colours={scalars,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,
 part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};
@@ -256,12 +256,12 @@ data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];retur
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
 middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
-function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);return steps.forEach((values,k)=>{
-for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?share:NO_VALUE}}),result2}function cornersAt([
-rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],
-corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);return[[corner,1-most],
-[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+
-share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
+function shares(steps,scalars){let nodes=steps[0]?.length??0,result2=new Float32Array(2*nodes),place=shareOf(scalars);return steps.
+forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?share:NO_VALUE}}),
+result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),
+rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);
+return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.
+reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
 start,along2]=camera.ray(x,y),nearest2=dot2(start,along2),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
 Math.sqrt(square);return depth>0?add(start,along2,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
@@ -820,19 +820,20 @@ before,after,between3]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.
 graphics.programs.use(program,{u_matrix:matrix,u_between:between3,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
 return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,near=geometry.
 triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),position=positionAt(layer.scene,camera,layer.scene.cornersAt(
-near),x,y),place=placeOnEarth(layer.scene,near,position,layers[0].scene.parts.get("lonlat")),corners=cornersOn(layer.scene,
-place),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.
-scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
-share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
-i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
-tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
-j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
-geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}
-function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.
-choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(
-from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)
-continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
+near),x,y),place=placeOnEarth(layer.scene,near,position,layers[0].scene.parts.get("lonlat")),index=geometry.triangles?place:
+wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,place)},layer,place}}function placeAmong({
+rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-1);return[at(u,columns,
+shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,[level,row2,
+column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
+n+tile*side,level,nodes);return[at(i,column,columns),at(j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{
+data}=scene.part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+
+k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,
+start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}function valuesAt(scene,moment,place){let{header,parts}=scene,
+{scalars,geometry}=header,corners=cornersOn(scene,place),cell=geometry.triangles?Math.floor(place[1]):corners[0][0],[from,
+to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[scalars,
+...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
+null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
+each.flat?value(cell):interpolated(corners,value)}return values}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
 let element=document.createElementNS(SVG2,tag);for(let[name,value]of Object.entries(attributes))element.setAttribute(name,
 `${value}`);return element}function fitting2(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,
 -y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(
@@ -878,9 +879,9 @@ ask(this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=th
 scene,position=point.position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)
 return;let now={...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now,header,camera),this.share(now,
 position,[])}let at={scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},
-eastNorth2=velocityOnEarth(at,this.host.parts.get("lonlat"))??void 0;this.tell({...point,values:valuesAt(scene,shown,cornersOn(
-scene,place)),eastNorth:eastNorth2},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.
-explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{unit:unit3}=header.
+eastNorth2=velocityOnEarth(at,this.host.parts.get("lonlat"))??void 0;this.tell({...point,values:valuesAt(scene,shown,place),
+eastNorth:eastNorth2},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.
+explain(pixel)??[];this.share(path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{unit:unit3}=header.
 speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),
 lines=new Map,where=placeText(point.position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;
 lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(
@@ -1666,13 +1667,13 @@ shown[0],shown[1]);arrows.draw(program,placed,painted,view.anchor,{...values(lay
 header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get(
 "noise")?.shape??null,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{
 ...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
-header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,
-rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?
-1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;
-let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=
-w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.
-drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,rows*height/h),pen.drawImage(
-canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,
+u_padding:[columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],
+u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
+if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
+if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
+coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,
+rows*height/h),pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1726,34 +1727,35 @@ this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isCl
 this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
 get(shaders.arrowVertex,shaders.arrowFragment,...variant)}share(view,settings,layers){let{header,last}=this;this.seeds??=
 new ArrowSeeds(this.surface,header.constants.arrows);let seeds=this.seeds.seen(view,arrowDistance(header,settings));if(last?.
-seeds===seeds&&isEqual(layers,last.layers))return last.shared;let{corners}=this.surface,whole=seeds.map(({cell,place,radius})=>({
-corners:corners.subarray(4*cell,4*cell+4),place,radius})),shared2=new Map(layers.map(layer=>[layer,[]])),finest=[...layers].
-sort((a,b)=>levelOf(a)-levelOf(b));for(let seed of whole)for(let layer of finest){let placed=layer.tile?this.inTile(seed,
-layer,layer.tile):seed;if(placed){shared2.get(layer)?.push(placed);break}}return this.last={seeds,layers,shared:shared2},
-shared2}draw(program,placed,painted,anchor,values){let{graphics}=this,gl=graphics.context;this.array??=this.make(),gl.bindVertexArray(
-this.array);let{name,low,high,log}=this.header.scalars,digests=painted.map(part=>this.parts.get(part)?.digest),key=JSON.
-stringify([anchor,painted,digests,name,low,high,log]);(this.drawn?.placed!==placed||this.drawn.key!==key)&&(gl.bindBuffer(
-gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(placed,painted,anchor),gl.DYNAMIC_DRAW),this.drawn=
-{placed,key}),graphics.programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,
-gl.ZERO,gl.ONE),gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.header.constants.arrows.pieces+1),placed.
-length),gl.depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){this.known=this.seeds=this.last=this.drawn=
-null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=
-null,this.forget()}inTile({corners,place,radius},layer,[level,row2,column]){let{geometry,pyramid,mesh}=this.header;if(!pyramid||
-geometry.triangles)return null;let side=mesh.tileCells*pyramid.tileBlocks,[rows,columns]=layer.header.geometry.shape,width=geometry.
-shape[1],line=(at,axis,tile,cells)=>{let nodes=pyramid.shapes[0][axis],own=levelIndex(fullIndex(at,pyramid.depth,nodes),
-level,nodes)-tile*side,cell=Math.min(Math.max(Math.floor(own),0),cells-1);return own<0||own>cells?null:[cell,own-cell]},
-i=line(corners[0]%width+place[0],1,column,columns-1),j=line(Math.floor(corners[0]/width)+place[1],0,row2,rows-1);if(!i||
-!j||layer.parts.get("cells")?.data[j[0]*(columns-1)+i[0]]===0)return null;let low=j[0]*columns+i[0];return{corners:[low,
-low+1,low+columns,low+columns+1],place:[i[1],j[1]],radius}}make(){let gl=this.graphics.context,array=this.graphics.counted(
-gl.createVertexArray());this.buffer=this.graphics.counted(gl.createBuffer()),gl.bindVertexArray(array),gl.bindBuffer(gl.
-ARRAY_BUFFER,this.buffer);let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(attribute),gl.vertexAttribPointer(
-attribute,size,gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(placed,painted,anchor){
-let{geometry,scalars}=this.header,steps=painted.map(name=>this.parts.get(name)?.data??new Float32Array),colour=shares(steps,
-scalars,geometry.shape[0]*geometry.shape[1]),nodes=this.nodes,coordinate=geometry.triangles?null:coordinates(geometry);return Float32Array.
-from(placed.flatMap(({corners,place,radius})=>{let[i,j]=place,[a,b,c,d]=Array.from(corners,n=>[...nodes.subarray(3*n,3*n+
-3)]),across=cross2(subtract2(add(b,d),add(a,c)),subtract2(add(c,d),add(a,b)));return[...subtract2(between2(nodes,corners,
-place,3),anchor),...coordinate?between2(coordinate,corners,place,2):[i*(1-j),j],...unit(across),...between2(colour,corners,
-place,2),...Array.from(corners).slice(0,3),radius]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
+seeds===seeds&&isEqual(layers,last.layers))return last.shared;let{corners}=this.surface,whole=seeds.map(({cell,place,radius})=>{
+let around2=corners.subarray(4*cell,4*cell+4);return{corners:around2,place,radius,cell:header.geometry.triangles?cell:around2[0]}}),
+shared2=new Map(layers.map(layer=>[layer,[]])),finest=[...layers].sort((a,b)=>levelOf(a)-levelOf(b));for(let seed of whole)
+for(let layer of finest){let placed=layer.tile?this.inTile(seed,layer,layer.tile):seed;if(placed){shared2.get(layer)?.push(
+placed);break}}return this.last={seeds,layers,shared:shared2},shared2}draw(program,placed,painted,anchor,values){let{graphics}=this,
+gl=graphics.context;this.array??=this.make(),gl.bindVertexArray(this.array);let{name,low,high,log}=this.header.scalars,digests=painted.
+map(part=>this.parts.get(part)?.digest),key=JSON.stringify([anchor,painted,digests,name,low,high,log]);(this.drawn?.placed!==
+placed||this.drawn.key!==key)&&(gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(placed,
+painted,anchor),gl.DYNAMIC_DRAW),this.drawn={placed,key}),graphics.programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(
+gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.
+header.constants.arrows.pieces+1),placed.length),gl.depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){
+this.known=this.seeds=this.last=this.drawn=null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("V\
+ertexArray",this.array),this.array=this.buffer=null,this.forget()}inTile({corners,place,radius},layer,[level,row2,column]){
+let{geometry,pyramid,mesh}=this.header;if(!pyramid||geometry.triangles)return null;let side=mesh.tileCells*pyramid.tileBlocks,
+[rows,columns]=layer.header.geometry.shape,width=geometry.shape[1],line=(at,axis,tile,cells)=>{let nodes=pyramid.shapes[0][axis],
+own=levelIndex(fullIndex(at,pyramid.depth,nodes),level,nodes)-tile*side,cell=Math.min(Math.max(Math.floor(own),0),cells-
+1);return own<0||own>cells?null:[cell,own-cell]},i=line(corners[0]%width+place[0],1,column,columns-1),j=line(Math.floor(
+corners[0]/width)+place[1],0,row2,rows-1);if(!i||!j||layer.parts.get("cells")?.data[j[0]*(columns-1)+i[0]]===0)return null;
+let low=j[0]*columns+i[0];return{corners:[low,low+1,low+columns,low+columns+1],place:[i[1],j[1]],radius,cell:low}}make(){
+let gl=this.graphics.context,array=this.graphics.counted(gl.createVertexArray());this.buffer=this.graphics.counted(gl.createBuffer()),
+gl.bindVertexArray(array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(
+attribute),gl.vertexAttribPointer(attribute,size,gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,
+1),offset+=size*FLOAT_BYTES;return array}numbers(placed,painted,anchor){let{geometry,scalars}=this.header,steps=painted.
+map(name=>this.parts.get(name)?.data??new Float32Array),colour=shares(steps,scalars),nodes=this.nodes,coordinate=geometry.
+triangles?null:coordinates(geometry);return Float32Array.from(placed.flatMap(({corners,place,radius,cell})=>{let[i,j]=place,
+[a,b,c,d]=Array.from(corners,n=>[...nodes.subarray(3*n,3*n+3)]),across=cross2(subtract2(add(b,d),add(a,c)),subtract2(add(
+c,d),add(a,b)));return[...subtract2(between2(nodes,corners,place,3),anchor),...coordinate?between2(coordinate,corners,place,
+2):[i*(1-j),j],...unit(across),...scalars.flat?colour.subarray(2*cell,2*cell+2):between2(colour,corners,place,2),...Array.
+from(corners).slice(0,3),radius]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry}=this.
 header,[rows,columns]=geometry.shape,result2=[];if(geometry.triangles){let nodes=this.parts.get("triangles")?.data??[];for(let n=0;n<
 nodes.length;n+=3)result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.
@@ -1964,23 +1966,23 @@ columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(bef
 steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
 this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
 anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
-array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,paper}=this.header,
-{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,paper,scalars}=this.
+header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
 key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,
 [...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
-null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
-osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
-nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify([shape2,rows,
-columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof
-Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["po\
-sition"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",
-key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[corners&&
-this.buffer("scalar",colour,()=>vertices(values(),2)),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(
-corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,
-size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,
-kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,painted=this.
-scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,scalars.log),
-()=>shares(painted.map(name=>this.part(name).data),scalars,shape2[0]*shape2[1])]}nodalShares(before,after){let gl=this.graphics.
+null,vertices=(values2,size,flat)=>corners?atVertices(values2,flat?corners.map((_,n)=>n/3):corners,size):values2,nodes=()=>vertices(
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
+vertexNormals(nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify(
+[shape2,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;
+normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("\
+position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.
+buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
+2,gl.FLOAT],[corners&&this.buffer("scalar",colour,()=>vertices(values(),2,scalars.flat)),2,gl.FLOAT],[corners&&this.buffer(
+"corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
+index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
+n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,
+painted=this.scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,
+scalars.log),()=>shares(painted.map(name=>this.part(name).data),scalars)]}nodalShares(before,after){let gl=this.graphics.
 context,[rows,columns]=this.header.geometry.shape,[key,values]=this.shares(before,after);return this.texture("scalar",key,
 texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.texImage2D(gl.TEXTURE_2D,0,gl.RG32F,columns,rows,0,gl.RG,gl.FLOAT,values()),
 gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.

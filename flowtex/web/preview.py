@@ -173,7 +173,7 @@ def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between
         return np.asarray(colours.plain)
     before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = before * (1 - between) + after * between
-    share = colours.shares(values.ravel()[picture.nearest])
+    share = colours.shares(values.ravel()[picture.cell if colours.flat else picture.nearest])
     entry = (np.nan_to_num(share) * 256).clip(0, 255).astype(int)
     return np.where(
         np.isnan(share)[..., None], rgb(NO_VALUE_COLOR), colours.table[entry, :3] / 255.0

@@ -146,6 +146,7 @@ def colours_of(
         cmap=look.cmap if isinstance(look.cmap, str) else "",
         auto=look.clim is None,
         values=None if name is None else steps_of(field, name),
+        flat=name in scene.field.on_cells,
         low=low,
         high=high,
         log_scale=look.log_scale,
@@ -179,6 +180,7 @@ def choices_of(scene: Scene) -> tuple[Header, ...]:
                 "least": least,
                 "most": most,
                 "steps": steps,
+                "flat": name in scene.field.on_cells,
             }
         )
     return tuple(choices)

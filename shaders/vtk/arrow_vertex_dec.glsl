@@ -5,7 +5,7 @@ in float flowtexRadius;
 in vec3 flowtexNormal;
 #endif
 #ifdef FLOWTEX_TRIANGLES
-in vec3 flowtexCorners;
+in vec4 flowtexCorners;
 #endif
 out vec2 flowtexPlaceVSOutput;
 out float flowtexSizeVSOutput;

@@ -1,5 +1,6 @@
 #ifdef FLOWTEX_TRIANGLES
-  flowtexSetCorners(flowtexCorners);
+  flowtexSetCorners(flowtexCorners.xyz);
+  flowtexTriangleNumber = int(flowtexCorners.w);
 #endif
 #ifdef FLOWTEX_PLANAR
   const vec3 flowtexNormal = vec3(0.0, 0.0, 1.0);

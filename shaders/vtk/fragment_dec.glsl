@@ -4,7 +4,7 @@ in vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexNormalVSOutput;
 #endif
 #ifdef FLOWTEX_TRIANGLES
-flat in vec3 flowtexCornersVSOutput;
+flat in vec4 flowtexCornersVSOutput;
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput;

@@ -1,5 +1,6 @@
 #ifdef FLOWTEX_TRIANGLES
-  flowtexSetCorners(flowtexCornersVSOutput);
+  flowtexSetCorners(flowtexCornersVSOutput.xyz);
+  flowtexTriangleNumber = int(flowtexCornersVSOutput.w);
 #endif
   flowtexPlaced = flowtexCoordinateVSOutput;
 #if defined(FLOWTEX_PAPER)

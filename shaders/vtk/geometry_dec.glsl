@@ -9,8 +9,8 @@ in vec3 flowtexNormalVSOutput[];
 out vec3 flowtexNormalGSOutput;
 #endif
 #ifdef FLOWTEX_TRIANGLES
-flat in vec3 flowtexCornersVSOutput[];
-flat out vec3 flowtexCornersGSOutput;
+flat in vec4 flowtexCornersVSOutput[];
+flat out vec4 flowtexCornersGSOutput;
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput[];

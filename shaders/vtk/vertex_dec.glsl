@@ -7,8 +7,8 @@ in vec3 flowtexNormal;
 out vec3 flowtexNormalVSOutput;
 #endif
 #ifdef FLOWTEX_TRIANGLES
-in vec3 flowtexCorners; // numbers of the three nodes, the same at each
-flat out vec3 flowtexCornersVSOutput;
+in vec4 flowtexCorners; // numbers of the three nodes and of the triangle, the same at each
+flat out vec4 flowtexCornersVSOutput;
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;

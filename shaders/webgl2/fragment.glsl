@@ -6,6 +6,7 @@ in vec3 flowtexNormalOut;
 #ifdef FLOWTEX_TRIANGLES
 flat in vec3 flowtexCornersOut;
 in float flowtexScalarOut;
+flat in float flowtexFlatOut;
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseOut;
@@ -19,6 +20,7 @@ in vec2 flowtexNoiseOut;
 uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
 uniform vec2 u_padding;           // texels of the slices before the first node
 #endif
+uniform bool u_flat;       // values belong to cells: they lie at first nodes, or are those of triangles
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
@@ -41,6 +43,8 @@ float flowtexShareAt(vec2 coordinate)
   vec2 share = (1.0 - most) * texelFetch(u_shares, cell, 0).xy
     + (most - least) * texelFetch(u_shares, cell + aside, 0).xy
     + least * texelFetch(u_shares, cell + 1, 0).xy;
+  if (u_flat)
+    share = texelFetch(u_shares, cell, 0).xy;
 #ifdef FLOWTEX_UNSTEADY
   return mix(share.x, share.y, u_between);
 #else
@@ -62,7 +66,7 @@ void main()
   float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, flowtexNormalOut);
 #endif
 #ifdef FLOWTEX_TRIANGLES
-  vec3 colour = u_mapped ? flowtexMapped(flowtexScalarOut) : u_colour;
+  vec3 colour = u_mapped ? flowtexMapped(u_flat ? flowtexFlatOut : flowtexScalarOut) : u_colour;
 #else
   vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(flowtexCoordinateOut)) : u_colour;
 #endif

@@ -27,6 +27,7 @@ out vec3 flowtexNormalOut;
 flat out vec3 flowtexCornersOut;
 flat out highp int flowtexTriangleOut; // its number
 out float flowtexScalarOut;
+flat out float flowtexFlatOut; // the same of a triangle, exactly
 #endif
 #ifdef FLOWTEX_PAPER
 out vec2 flowtexNoiseOut;
@@ -47,6 +48,7 @@ void main()
 #else
   flowtexScalarOut = flowtexScalar.x;
 #endif
+  flowtexFlatOut = flowtexScalarOut;
 #endif
 #ifdef FLOWTEX_PAPER
   flowtexNoiseOut = flowtexNoise;

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 import xarray as xr
 from flows import gyre, scattered_gyre
 from small_tiles import shrink
@@ -81,6 +82,18 @@ def test_a_scalar_is_named_and_an_array_becomes_one() -> None:
     share = unknown_share(with_uncertainty(holed, sigma), 0)
     assert share[3, 4] == 1 and np.array_equal(share[:, 0], share[:, 2])
     assert share_field(given) is not share_field(field)
+
+
+def test_a_scalar_on_cells_is_averaged_to_the_nodes() -> None:
+    grid = pv.ImageData(dimensions=(4, 3, 1))
+    grid["U"], grid.cell_data["sigma"] = np.ones((12, 2)), np.arange(6) / 10
+    expected = grid.cell_data_to_point_data().point_data["sigma"]
+    field = with_uncertainty(FlowField.from_pyvista(grid), "sigma")
+    assert field.on_cells == ()
+    np.testing.assert_allclose(field.scalars["sigma"][0].ravel(), expected)
+    triangles = with_uncertainty(FlowField.from_pyvista(grid.cast_to_unstructured_grid()), "sigma")
+    assert triangles.on_cells == () and triangles.scalars["sigma"].shape == (1, 1, 12)
+    assert triangles.scalars["sigma"].max() <= 0.5
 
 
 @pytest.mark.parametrize(

@@ -123,8 +123,9 @@ def test_a_tile_has_the_values_of_its_nodes() -> None:
     whole = rippled()
     surface = surface_of(whole)
     nodes = np.flatnonzero(whole.points[0, :, 0] > 0.3)
-    triangles = surface.triangles[np.isin(surface.triangles, nodes).all(axis=1)]
-    tile = TriangleGeometry.of_tile(whole, nodes, triangles, surface)
+    members = np.flatnonzero(np.isin(surface.triangles, nodes).all(axis=1))
+    triangles = surface.triangles[members]
+    tile = TriangleGeometry.of_tile(whole, nodes, triangles, members, surface)
     assert tile.shape == (1, len(nodes))
     np.testing.assert_array_equal(
         tile.at_vertices(tile.points), surface.points[0][triangles.ravel()]
@@ -138,8 +139,13 @@ def test_a_tile_has_the_values_of_its_nodes() -> None:
     at = len(nodes) - 1
     np.testing.assert_allclose(texels[at // width, at % width], tile.points[0, at, :2], atol=1e-6)
     values = tile.at_vertices(tile.points[..., 0])
-    image = tile.as_image(values)
+    image = tile.as_image(values, on_cells=False)
     np.testing.assert_array_equal(image.ravel()[: len(nodes)], tile.points[0, :, 0])
+    cells = np.arange(len(surface.triangles), dtype=float)[None, None]
+    drawn = tile.drawn_values(cells, on_cells=True)
+    np.testing.assert_array_equal(drawn, members[None, None])
+    image = tile.as_image(tile.at_vertices(drawn[0], on_cells=True), on_cells=True)
+    np.testing.assert_array_equal(image.ravel()[: len(members)], members)
 
 
 def test_triangles_are_drawn_where_one_of_their_blocks_is() -> None:
@@ -155,6 +161,7 @@ def test_triangles_are_drawn_where_one_of_their_blocks_is() -> None:
         whole,
         np.arange(whole.shape[1]),
         surface.triangles[:4],
+        np.arange(4),
         surface,
         (masks, np.zeros((2, 2, 5))),
     )

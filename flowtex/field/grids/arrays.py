@@ -17,6 +17,7 @@ from flowtex.field.grids.surface import GridSurface, known_positions
 from flowtex.field.steps import LazySteps, Steps, first_step
 from flowtex.field.validation import (
     as_numbers,
+    cell_faults,
     finite_nodes,
     node_faults,
     node_positions,
@@ -47,6 +48,7 @@ def grid_nodes(
     valid: ArrayLike | None,
     periodic: str | None,
     scalars: Mapping[str, Any],
+    cell_scalars: Mapping[str, Any],
     *,
     sign_free: bool,
     on_globe: bool,
@@ -59,9 +61,12 @@ def grid_nodes(
     v, masked_velocity = as_numbers("velocity", first_step(velocity))
     late = {name: steps for name, steps in scalars.items() if isinstance(steps, LazySteps)}
     in_memory = {k: with_gaps(f"scalars[{k!r}]", s) for k, s in scalars.items() if k not in late}
+    on_cells = {k: with_gaps(f"cell_scalars[{k!r}]", s) for k, s in cell_scalars.items()}
     mask = None if valid is None else with_gaps("valid", valid)
     count = len(velocity) if isinstance(velocity, LazySteps) or v.ndim == 4 else 1
     faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
+    cells = max(p.shape[0] - 1, 0), max(p.shape[1] - 1, 0)
+    faults = faults or cell_faults(cells, count, on_cells, scalars)
     raise_faults(faults + (sign_free_faults(v) if sign_free else []))
     v = v[None] if v.ndim == 3 else v
     # Arguments are copied once, and not changed.
@@ -76,6 +81,9 @@ def grid_nodes(
     p[~known_positions(p, ok)] = np.nan
     v = with_equal_ends(v) if sign_free else v
     data = {key: scalar_steps(values, p.shape[:2]) for key, values in in_memory.items()}
+    for key, values in on_cells.items():
+        ends = ((0, 0), (0, 1), (0, 1))
+        data[key] = np.pad(scalar_steps(values, cells), ends, constant_values=np.nan)
     nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
     v, ok = nodal.velocity, nodal.valid
     surface = GridSurface(nodal.points, ok, closed, on_globe=on_globe)
@@ -97,5 +105,5 @@ def grid_nodes(
 
     steps = velocity.map(moving) if isinstance(velocity, LazySteps) else v
     read = {name: scalar.map(closed_as_nodes) for name, scalar in late.items()}
-    ordered = {name: {**nodal.scalars, **read}[name] for name in scalars}
+    ordered = {name: {**nodal.scalars, **read}[name] for name in (*scalars, *on_cells)}
     return GridNodes(surface, steps, ok, closed, ordered, bool(v.any()))

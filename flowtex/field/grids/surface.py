@@ -115,6 +115,10 @@ class GridSurface(Surface):
         j, i = np.moveaxis(CORNERS[number & 1], -1, 0)
         return np.asarray((row[:, None] + j) * self.shape[1] + column[:, None] + i)
 
+    def cells_of(self, number: Indices) -> Indices:
+        """Return the first nodes of the cells of triangles (N,), counted row by row."""
+        return self.corners_of(number)[:, 0]
+
     def beside(self, number: Indices, corner: int) -> Indices:
         """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
         lines = self.shape[0] - 1, self.shape[1] - 1

@@ -18,6 +18,7 @@ from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edges, repeated
 from flowtex.field.validation import (
     as_numbers,
+    cell_faults,
     finite_nodes,
     nodal_faults,
     range_faults,
@@ -48,6 +49,7 @@ def triangle_nodes(
     times: Floats | None,
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
+    cell_scalars: Mapping[str, Any],
 ) -> TriangleNodes:
     """Check arrays, join nodes at one place, and leave out parts that cannot be drawn."""
     p, masked_points = as_numbers("points", points)
@@ -59,8 +61,12 @@ def triangle_nodes(
         raise FieldError(msg) from error
     mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
     arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
+    on_cells = {
+        k: with_gaps(f"cell_scalars[{k!r}]", first_step(s)) for k, s in cell_scalars.items()
+    }
     count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
-    raise_faults(_faults(p, corners, v, count, times, mask, arrays))
+    faults = _faults(p, corners, v, count, times, mask, arrays)
+    raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
     p = three_components(p)
     v = three_components(v)
     v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
@@ -77,7 +83,8 @@ def triangle_nodes(
         else scalar_steps(s, (1, len(p)))
         for name, s in arrays.items()
     }
-    corners, pairs = _usable(p, corners.astype(np.intp))
+    drawn, pairs = _usable(p, corners.astype(np.intp))
+    cells, corners = len(corners), corners[drawn].astype(np.intp)
     if not (ok[corners].all(axis=1)).any():
         msg = (
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
@@ -92,7 +99,7 @@ def triangle_nodes(
         moved = is_joined[corners].any(axis=1)
         corners = same[corners]
         moved[moved] = ~solid_triangles(p, corners[moved])
-        corners = corners[~moved]
+        corners, drawn = corners[~moved], drawn[~moved]
     is_used = np.zeros(len(p), dtype=bool)
     is_used[corners] = True
     used = np.flatnonzero(is_used)
@@ -101,6 +108,12 @@ def triangle_nodes(
         ok, steps, data = _joined(number[same], len(used), ok, steps, data)
         p = p[used]
     steps = map_steps(steps, lambda step: np.where(ok[:, None], step, 0.0))
+    for name, s in on_cells.items():
+        late = cell_scalars[name]
+        if isinstance(late, LazySteps):
+            data[name] = late.map(lambda step: step[None, drawn])
+        else:
+            data[name] = scalar_steps(s, (1, cells))[..., drawn]
     return TriangleNodes(p[None].copy("C"), number[corners], steps, ok[None], data)
 
 
@@ -145,7 +158,7 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
 
 
 def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Return solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
+    """Return numbers of solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
     finite = finite_nodes(p[None])[0]
     placed = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = placed.copy()
@@ -161,7 +174,7 @@ def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
     listed = ", ".join(f"{count:,} {reason}" for count, reason in counts if count)
     if listed:
         notify(f"triangles are left out: {listed}", UserWarning)
-    return corners[good & once], edges_of(flat)[is_point]
+    return np.flatnonzero(good & once), edges_of(flat)[is_point]
 
 
 def nodal_means(

@@ -165,6 +165,10 @@ class TriangleSurface(Surface):
         """Return nodes (N, 3) at the corners of triangles (N,)."""
         return np.asarray(self.triangles[number])
 
+    def cells_of(self, number: Indices) -> Indices:
+        """Return the numbers of triangles (N,)."""
+        return number
+
     def beside(self, number: Indices, corner: int) -> Indices:
         """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
         return np.asarray(self.neighbours[number, corner])

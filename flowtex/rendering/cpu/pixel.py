@@ -44,7 +44,8 @@ def cover_place(
     inverse = np.linalg.inv(free)
     shares = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
     first = np.zeros(1, dtype=np.intp)
-    return Coverage(first, place.nodes[None], place.weights[None], shares[:1], shares[1:])
+    nodes, weights, cell = place.nodes[None], place.weights[None], np.array([place.cell])
+    return Coverage(first, nodes, weights, shares[:1], shares[1:], cell)
 
 
 def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:

@@ -13,7 +13,7 @@ is lost between them, and it belongs to one: the nearer, or else the first.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,7 @@ class Coverage:
     weights: Floats  #: Share of each corner at the middle of the pixel, in perspective, (N, 3).
     dx: Floats  #: Derivatives of the shares for a pixel to the right and a pixel down, (N, 3).
     dy: Floats
+    cell: Indices  #: Place of its cell in scalars of cells, (N,): its first node, or the triangle.
 
     @property
     def nearest(self) -> Indices:
@@ -65,11 +66,12 @@ def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
     points = (surface.points - surface.center).reshape(-1, 3)
     matrix = camera.matrix(size[0] / size[1], surface.center)
     clip = points @ matrix[:, :3].T + matrix[:, 3]
-    return rasterise(clip, surface.corners_of(surface.drawn), size)
+    coverage = rasterise(clip, surface.corners_of(surface.drawn), size)
+    return replace(coverage, cell=surface.cells_of(surface.drawn[coverage.cell]))
 
 
 def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Coverage:
-    """Find the triangle in front at every pixel of a picture of some width and height.
+    """Find the triangle in front at every pixel of a picture of some width and height, its cell.
 
     The points are in clip space, (P, 4), as :meth:`Camera.matrix` gives them; ``triangles`` has
     the numbers of three, (M, 3). Both sides are drawn; those without area are not.
@@ -78,7 +80,8 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
     x = (clip[:, 0] + clip[:, 3]) * (0.5 * width)
     y = (clip[:, 3] - clip[:, 1]) * (0.5 * height)
     flat = np.stack([x, y, clip[:, 3]], axis=-1)
-    triangles, edges, area, rows = _prepare(flat, triangles, size)
+    numbers, edges, area, rows = _prepare(flat, triangles, size)
+    triangles = triangles[numbers]
     slack = _slack(flat, triangles, size)
     depths = clip[:, 2][triangles] / area[:, None]
     nearest = np.full(width * height, np.inf)
@@ -95,13 +98,14 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
         first = np.flatnonzero(depth == nearest[pixel])[::-1]
         owner[pixel[first]] = triangle[first]
     pixel = np.flatnonzero(owner >= 0)
-    return _coverage(pixel, triangles[owner[pixel]], edges[owner[pixel]], width)
+    owner = owner[pixel]
+    return _coverage(pixel, triangles[owner], edges[owner], width, numbers[owner])
 
 
 def _prepare(
     flat: Floats, triangles: Indices, size: tuple[int, int]
 ) -> tuple[Indices, Floats, Floats, Indices]:
-    """Return visible triangles, edges |det| M^-1 (M, 3, 3), determinants and their rows."""
+    """Return numbers of visible triangles, edges |det| M^-1 (M, 3, 3), determinants, and rows."""
     rows, seen = _rows(flat, triangles, size)
     triangles, rows = triangles[seen], rows[seen]
     a, b, c = (flat[triangles[:, k]] for k in range(3))
@@ -110,7 +114,7 @@ def _prepare(
     solid = np.abs(determinant) > _slack(flat, triangles, size).max(axis=-1)
     determinant = determinant[solid]
     edges = edges[solid] * np.sign(determinant)[:, None, None]
-    return triangles[solid], edges, np.abs(determinant), rows[solid]
+    return np.flatnonzero(seen)[solid], edges, np.abs(determinant), rows[solid]
 
 
 def _slack(flat: Floats, triangles: Indices, size: tuple[int, int]) -> Floats:
@@ -183,7 +187,9 @@ def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])
 
 
-def _coverage(pixel: Indices, corners: Indices, edges: Floats, width: int) -> Coverage:
+def _coverage(
+    pixel: Indices, corners: Indices, edges: Floats, width: int, cell: Indices
+) -> Coverage:
     """Return the shares of the corners with their derivatives."""
     row, column = np.divmod(pixel, width)
     shares = _at_pixels(edges, row, column)
@@ -193,4 +199,4 @@ def _coverage(pixel: Indices, corners: Indices, edges: Floats, width: int) -> Co
         (edges[..., k] - weights * edges[..., k].sum(axis=-1, keepdims=True)) / total
         for k in range(2)
     )
-    return Coverage(pixel, corners, weights, dx, dy)
+    return Coverage(pixel, corners, weights, dx, dy, cell)

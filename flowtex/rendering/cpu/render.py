@@ -41,6 +41,8 @@ class Picture:
     #: Number of the node that has the greatest share, (H, W): j times the number of columns plus i;
     #: 0 where there is no surface.
     nearest: Indices
+    #: Place of the cell in scalars that belong to cells, (H, W): its first node, or the triangle.
+    cell: Indices
     position: Floats  #: Points of the mesh, in its own coordinates, (H, W, 3).
     slice_level: Floats  #: Mip level of the slices, and level of detail of the noise, (H, W).
     noise_level: Floats
@@ -104,6 +106,7 @@ def render(
         covered=np.isfinite(image(level)),
         coordinate=image(fragments.coordinate.value),
         nearest=np.nan_to_num(image(coverage.nearest)).astype(np.intp),
+        cell=np.nan_to_num(image(coverage.cell)).astype(np.intp),
         position=image(coverage.mix(points)[0] + geometry.center),
         slice_level=image(level),
         noise_level=image(np.concatenate(noise_level)),

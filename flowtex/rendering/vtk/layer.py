@@ -177,6 +177,8 @@ class FlowLayer:
         self._variant: frozenset[str] | None = None
         self._mesh_levels = mesh_levels
         self._colours: MappedColours | None = None
+        #: Name of the point array whose values belong to cells.
+        self.flat_array: str | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
@@ -283,6 +285,7 @@ class FlowLayer:
         arrows = has_arrows(self._textures, self._settings)
         coloured = arrows and self._settings.arrow_color == "scalars"
         values["u_mapped"] = self._colours is not None
+        values["u_flat"] = self._colours is not None and self._colours.on_cells
         values["u_plain"] = coloured and self._colours is not None
         values["u_plainColour"] = tuple(self._actor.prop.color.float_rgb)
         for name, value in values.items():
@@ -421,7 +424,8 @@ class FlowLayer:
 
     def _follow_colours(self) -> None:
         """Use the colours of the mapper, which users may have changed."""
-        before, self._colours = self._colours, MappedColours.of(self._mapper, self._mesh)
+        colours = MappedColours.of(self._mapper, self._mesh, self.flat_array)
+        before, self._colours = self._colours, colours
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")
 

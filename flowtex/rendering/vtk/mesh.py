@@ -133,11 +133,15 @@ class MappedColours(NamedTuple):
     table: pv.LookupTable  #: The colour map.
     low: float  #: Range of the table.
     high: float
+    on_cells: bool  #: Whether the values belong to cells, which are flat.
     state: tuple[object, ...]  #: Equal as long as the colours are the same.
 
     @classmethod
-    def of(cls, mapper: vtkMapper, mesh: pv.PolyData) -> MappedColours | None:
-        """Return the colours of a mapper, or None where its mesh is not coloured by a table."""
+    def of(cls, mapper: vtkMapper, mesh: pv.PolyData, flat: str | None) -> MappedColours | None:
+        """Return the colours of a mapper, or None where its mesh is not coloured by a table.
+
+        ``flat`` is the name of the array whose values belong to cells.
+        """
         name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
         values = mesh.GetPointData().GetArray(name) if name else None
         table = mapper.GetLookupTable()
@@ -148,15 +152,16 @@ class MappedColours(NamedTuple):
         if table.UsingLogScale() and not low > 0:
             return None
         state = (name, values.GetMTime(), table, table.GetMTime(), low, high)
-        return cls(values, table, low, high, state)
+        return cls(values, table, low, high, name == flat, state)
 
     def shares(self, geometry: SurfaceGeometry | TriangleGeometry) -> Floats32:
         """Return texels (1, J, I, 2): shares of the range, and 1; both 0 where there is no value.
 
-        Those of triangles lie as in the slices. So interpolated, the first over the second is the
-        mean of those that are known.
+        Those of the nodes of triangles lie as in the slices. So interpolated, the first over the
+        second is the mean of those that are known.
         """
-        values = geometry.as_image(vtk_to_numpy(self.values).astype(float))
+        nodal = vtk_to_numpy(self.values).astype(float)
+        values = geometry.as_image(nodal, on_cells=self.on_cells)
         with np.errstate(all="ignore"):
             shares = (self._scaled(values) - self._scaled(self.low)) / (
                 self._scaled(self.high) - self._scaled(self.low)

@@ -93,7 +93,7 @@ class FlowSurface:
         self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
         self._base = FlowLayer(actor, renderer, textures, settings)
         self._moment = (0, 0, 0.0)
-        self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
+        self._scalars: tuple[str, Callable[[FlowField], Floats], bool] | None = None
         self._drawn: tuple[Any, ...] = ()
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, _TileActor] = {}
@@ -166,9 +166,11 @@ class FlowSurface:
         self._moment = (before, after, between)
         self._base.set_moment(before, after, between)
 
-    def set_scalars(self, name: str, values: Callable[[FlowField], Floats]) -> None:
+    def set_scalars(
+        self, name: str, values: Callable[[FlowField], Floats], *, on_cells: bool = False
+    ) -> None:
         """Write the values that a function returns for a field, (J, I), as a point array."""
-        self._scalars = (name, values)
+        self._scalars = (name, values, on_cells)
         self.write_scalars()
 
     def write_scalars(self) -> None:
@@ -191,10 +193,11 @@ class FlowSurface:
 
     def _write_scalars(self, layer: FlowLayer, mesh: pv.PolyData) -> None:
         if self._scalars is not None:
-            name, values = self._scalars
+            name, values, on_cells = self._scalars
             geometry = layer.textures.geometry
-            nodal = values(geometry.field)[geometry.drawn]
-            mesh.point_data[name] = geometry.at_vertices(nodal)
+            drawn = geometry.drawn_values(values(geometry.field), on_cells=on_cells)
+            mesh.point_data[name] = geometry.at_vertices(drawn, on_cells=on_cells)
+            layer.flat_array = name if on_cells else None
 
     def _before_frame(self) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""

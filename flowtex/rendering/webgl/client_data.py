@@ -101,6 +101,7 @@ class Colours:
     cmap: str = ""
     auto: bool = True
     label: str = ""
+    flat: bool = False  #: Whether the values belong to cells.
     coastlines: bool = False  #: Whether these lines are drawn on a map of the Earth.
     graticule: bool = False
     #: Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
@@ -220,7 +221,7 @@ class ClientData:
             "scalars": {
                 **{
                     n: getattr(colours, n)
-                    for n in ("name", "unit", "number", "cmap", "auto", "bar")
+                    for n in ("name", "unit", "number", "cmap", "auto", "bar", "flat")
                 },
                 "label": colours.label or colours.name or "",
                 "low": float(colours.low),
@@ -368,15 +369,16 @@ class ClientData:
 
     @property
     def _values(self) -> dict[int, Floats]:
-        """Nodal values at the times that are sent, (steps or 1, J, I), by scalar."""
+        """Drawn values at the times that are sent, (steps or 1, J, I), by scalar."""
         colours = self.colours
         values = dict(colours.others)
         if colours.values is not None:
             values[colours.number] = colours.values
-        rows, columns = self.textures.geometry.drawn
-        steps = list(self.chosen) or slice(None)
+        flat = {n for n, choice in enumerate(colours.choices) if choice.get("flat")}
+        flat |= {colours.number} if colours.flat else set()
+        steps, drawn = list(self.chosen) or slice(None), self.textures.geometry.drawn_values
         return {
-            number: nodal[steps if len(nodal) > 1 else slice(None)][:, rows, columns]
+            number: drawn(nodal[steps if len(nodal) > 1 else slice(None)], on_cells=number in flat)
             for number, nodal in values.items()
         }
 

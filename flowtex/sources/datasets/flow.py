@@ -93,10 +93,13 @@ class Flow:
             return u, v
         return self.places.turned(self.ahead, u, v)
 
-    def at_nodes(self, values: Floats, dim: str = "") -> Floats:
-        """Return values of another variable, in the middle of all cells, at the nodes."""
+    def at_nodes(self, values: Floats) -> Floats:
+        """Return values of another variable, in the middle of all cells, at the nodes.
+
+        Those at the nodes or in the faces of a mesh stay there.
+        """
         if self.mesh is not None:
-            return self.mesh.at_nodes(values, dim)
+            return values
         return np.asarray(self.values.at_cells(values)[self.trimmed])
 
     def beside(self, array: xr.DataArray) -> xr.DataArray | None:

@@ -25,7 +25,7 @@ from flowtex.field.earth import GLOBE
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIME, axis_kind, axis_values, horizontal_dims
+from flowtex.sources.datasets.axes import NODES, TIME, axis_kind, axis_values, horizontal_dims
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
@@ -146,7 +146,12 @@ def _whole(
     def value(function: Callable[[int], Floats], step: int) -> Floats:
         return nodes.at(function(step))
 
-    extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
+    extra = {key: later(partial(value, s.read)) for key, s in scalars.items() if not s.on_faces}
+    on_cells: dict[str, LazySteps] = {}
+    if flow.mesh is not None:
+        faces = flow.mesh.triangle_faces[getattr(nodes, "members", slice(None))]
+        own = {key: later(s.read) for key, s in scalars.items() if s.on_faces}
+        on_cells = {key: steps.map(lambda step: step[faces]) for key, steps in own.items()}
     flat = nodes.projection is not None and not nodes.projection.is_globe
     if flat:
         extra["speed"] = later(lambda step: np.hypot(*map(nodes.at, read(step))))
@@ -169,6 +174,7 @@ def _whole(
         velocity=velocity if count > 1 else velocity[0],
         times=flow.drawn.times,
         scalars=extra,
+        cell_scalars=on_cells,
         projection=nodes.projection,
         reading=record.reading,
         **arguments,
@@ -328,10 +334,11 @@ def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
 
 
 class _Scalar(NamedTuple):
-    """A variable that lies at the nodes, not read yet, and the reader of its steps."""
+    """A variable that lies at the nodes or in faces, not read yet, and the reader of its steps."""
 
     array: xr.DataArray
     read: Callable[[int], Floats]
+    on_faces: bool
 
 
 def _scalars(flow: Flow) -> dict[str, _Scalar]:
@@ -356,14 +363,15 @@ def _scalars(flow: Flow) -> dict[str, _Scalar]:
             if part is None:
                 flow.record("align", f"{name} lies at other positions or times, and is left out")
             else:
-                scalars[str(name)] = _Scalar(part, partial(_scalar_step, flow, part))
+                on_faces = flow.mesh is not None and horizontal_dims(part)[0] != NODES
+                scalars[str(name)] = _Scalar(part, partial(_scalar_step, flow, part), on_faces)
     return scalars
 
 
 def _scalar_step(flow: Flow, part: xr.DataArray, step: int) -> Floats:
     values = read_step(part.variable, step, axes=flow.values.axes)
     flow.datasets.close()
-    return flow.at_nodes(values, horizontal_dims(part)[0])
+    return flow.at_nodes(values)
 
 
 def recognised(data: Any) -> dict[str, str]:

@@ -24,6 +24,7 @@ class MeshMap:
     projection: Projection
     points: Floats  #: (P, 3).
     triangles: Indices  #: Numbers of points, (M, 3).
+    members: Indices  #: Numbers of the mesh's triangles, of which these are parts, (M,).
     nodes: Indices  #: Two nodes of the mesh between which each point lies, (P, 2).
     share: Floats  #: Share of the way from the first to the second, (P,).
     lon: Floats
@@ -49,10 +50,12 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     lon, lat, triangles = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
-        return MeshMap(projection, points, triangles, nodes, share, lon, lat, 0)
+        members = np.arange(len(triangles))
+        return MeshMap(projection, points, triangles, members, nodes, share, lon, lat, 0)
     lon = west + (lon - west) % 360.0  # a node on the edge of a map lies on its western side
     points = shown_positions(projection, lon, lat)
-    triangles = triangles[np.isfinite(points[triangles, 0]).all(axis=1)]
+    members = np.flatnonzero(np.isfinite(points[triangles, 0]).all(axis=1))
+    triangles = triangles[members]
     ends = np.sort(_sides(triangles), axis=-1)
     far = np.nonzero(stretches(lon, lat, points, ends)[0])
     pairs, number = np.unique(ends[far], axis=0, return_inverse=True)
@@ -67,15 +70,17 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     tear = np.full(triangles.shape, -1)
     tear[far] = np.where(torn, np.cumsum(torn) - 1, -1)[number.reshape(-1)]
     lost = (tear >= 0).sum(axis=1) % 2 == 1  # a pole lies inside
-    triangles = _cut(triangles[~lost], tear[~lost], pairs[torn], len(lon))
+    triangles, parts = _cut(triangles[~lost], tear[~lost], pairs[torn], len(lon))
+    members = members[~lost][parts]
     lon, lat = np.concatenate([np.stack([lon, lat]), *more], axis=1)
     points = shown_positions(projection, lon, lat)
     corners = points[triangles]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
-    triangles = triangles[np.abs(area) > 0]
+    triangles, members = triangles[np.abs(area) > 0], members[np.abs(area) > 0]
     wide = stretches(lon, lat, points, _sides(triangles))[1].any(axis=1)
     count = int(lost.sum() + wide.sum())
-    return MeshMap(projection, points, triangles[~wide], nodes, share, lon, lat, count)
+    drawn = triangles[~wide], members[~wide]
+    return MeshMap(projection, points, *drawn, nodes, share, lon, lat, count)
 
 
 def _sides(triangles: Indices) -> Indices:
@@ -83,8 +88,10 @@ def _sides(triangles: Indices) -> Indices:
     return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1)
 
 
-def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> Indices:
+def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> tuple[Indices, Indices]:
     """Cut triangles, two of whose sides are torn, each into one before and two beyond the tears.
+
+    The second value has the numbers of the triangles of which the results are parts.
 
     ``tear`` has the numbers of the tears of the three sides, (M, 3), or -1. Of tear t, between the
     nodes of ``pairs``, the place just before it is the node ``first + t``, and that just after it
@@ -102,4 +109,5 @@ def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> Indic
     far_b, far_c = beside(b, to_b), beside(c, to_c)
     parts = (a, beside(a, to_b), beside(a, to_c)), (far_b, b, c), (far_b, c, far_c)
     cut = [np.stack(part, axis=-1) for part in parts]
-    return np.concatenate([triangles[~across], *cut])
+    numbers = [np.flatnonzero(~across), *[np.flatnonzero(across)] * 3]
+    return np.concatenate([triangles[~across], *cut]), np.concatenate(numbers)

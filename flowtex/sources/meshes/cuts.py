@@ -19,7 +19,14 @@ from flowtex.errors import FieldError
 from flowtex.field.triangles.arrays import nodal_means, solid_triangles
 from flowtex.field.triangles.topology import needle_edges, triangle_normals
 from flowtex.sources.meshes.nodes import Sheet, hidden_nodes
-from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, near_name, values_of
+from flowtex.sources.meshes.vectors import (
+    BLANKING,
+    MeshArray,
+    catalogue,
+    data_of,
+    near_name,
+    values_of,
+)
 from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
@@ -172,7 +179,7 @@ def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
 
 def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record) -> Sheet:
     """Return the nodes of the surface of a mesh, (N,), in which :func:`cut_faults` found none."""
-    surface, triangles = _surface_of(mesh, cut, velocity, record)
+    surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
         msg = (
@@ -189,22 +196,27 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
         finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), finite)[0]
 
+    def flat(array: MeshArray) -> Floats:
+        return np.asarray(values_of(surface, array)[cells], dtype=np.float64)
+
     return Sheet(
         points=points,
         shown=np.asarray(surface.point_data[HIDDEN]) <= 0,
-        arrays=[array for array in catalogue(surface) if array.name != HIDDEN],
+        arrays=[a for a in catalogue(mesh) if a.name in data_of(surface, a.where)],
         nodes=nodes,
+        flat=flat,
         triangles=triangles,
     )
 
 
 def _surface_of(
     mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record
-) -> tuple[pv.PolyData, Indices]:
-    """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
+) -> tuple[pv.PolyData, Indices, Indices]:
+    """Return a PolyData with the data of the mesh, the triangles of its surface, and their cells.
 
-    Arrays on the cells of a volume are interpolated to its points before a cut. :data:`HIDDEN` is
-    above zero at points that depend on hidden ones.
+    These are (M, 3) nodes and (M,) cells of the PolyData. A velocity on the cells of a volume is
+    interpolated to its points before a cut. :data:`HIDDEN` is above zero at points that depend on
+    hidden ones.
     """
     import pyvista as pv
 
@@ -222,7 +234,7 @@ def _surface_of(
     if cut is not None:
         name = "isosurface" if isinstance(cut, Contour) else "slice"
         record("surface", f"{name} {cut.text.strip(chr(39))}")
-        mesh = cut.of(_exact(_on_points(mesh, velocity)))
+        mesh = cut.of(_exact(_on_points(mesh, velocity, cut)))
     elif not isinstance(mesh, pv.PolyData):
         mesh = mesh.extract_surface(
             pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"
@@ -230,13 +242,14 @@ def _surface_of(
     if not mesh.is_all_triangles or mesh.n_cells != mesh.GetNumberOfPolys():
         mesh = mesh.triangulate()
     triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
+    cells = np.arange(len(triangles))
     if cut is not None:
         # A plane through the corners of cells has triangles without area. Those with a short side
         # show which points nearly coincide; others are left out.
         points = np.asarray(mesh.points, dtype=np.float64)
         kept = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
-        triangles = triangles[kept]
-    return mesh, triangles
+        triangles, cells = triangles[kept], cells[kept]
+    return mesh, triangles, cells
 
 
 def _examples(mesh: pv.DataSet) -> str:
@@ -279,20 +292,23 @@ def _exact(mesh: Any) -> pv.DataSet:
     return mesh
 
 
-def _on_points(mesh: pv.DataSet, vectors: MeshArray) -> pv.DataSet:
-    """Return a volume with its arrays on its points, perhaps the changed mesh."""
-    chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
+def _on_points(mesh: pv.DataSet, velocity: MeshArray, cut: Cut) -> pv.DataSet:
+    """Return a volume with the velocity and the array of a contour on its points.
+
+    It keeps its numbers on cells, and may be the changed mesh.
+    """
+    moved = set(velocity.parts or (velocity.name,)) if velocity.where == "cells" else set()
+    if isinstance(cut, Contour) and cut.name not in mesh.point_data:
+        moved.add(cut.name)
+    cells = mesh.copy(deep=False)
+    cells.clear_data()
     for array in catalogue(mesh):
-        name, is_scalar = array.name, array.components == 1
-        wanted = name in chosen or (is_scalar and name not in mesh.point_data)
-        if array.where == "cells":
-            values = np.asarray(mesh.cell_data.pop(name))
-            if array.numeric and wanted:
-                mesh.cell_data[name] = values.astype(np.float64)
-    if len(mesh.cell_data):
-        cells = mesh.copy(deep=False)
-        cells.point_data.clear()
-        for name, values in cells.cell_data_to_point_data().point_data.items():
-            mesh.point_data[name] = values
-    mesh.cell_data.clear()
+        if array.where == "points":
+            continue
+        if array.name in moved:
+            cells.cell_data[array.name] = np.asarray(mesh.cell_data[array.name], dtype=np.float64)
+        if not array.numeric:
+            del mesh.cell_data[array.name]
+    for name, values in cells.cell_data_to_point_data().point_data.items() if moved else ():
+        mesh.point_data[name] = values
     return mesh

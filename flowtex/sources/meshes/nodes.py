@@ -26,13 +26,15 @@ _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
 class Sheet:
     """Positions (..., 3) and visibility (...) of nodes, which are (J, I) or (N,).
 
-    ``nodes`` computes the values of an array at the nodes, and ``arrays`` are all that there are.
+    ``nodes`` computes the values of an array at the nodes, ``flat`` returns those of the cells,
+    (J - 1, I - 1) or (M,), and ``arrays`` are all that there are.
     """
 
     points: Floats
     shown: Bools
     arrays: list[MeshArray]
     nodes: Callable[[MeshArray], Floats]
+    flat: Callable[[MeshArray], Floats]
     #: Corners of triangles (M, 3), or the cells of a grid that are shown and have a velocity,
     #: (J - 1, I - 1), and whether the last line along (j, i) repeats the first one.
     triangles: Indices | None = None

@@ -14,7 +14,7 @@ plane          i is     j is
 Nothing is mirrored to obtain a right-handed surface: index (i, j) of the plane is that of
 the mesh.
 
-Values at the nodes are means of the visible cells around each node, on both sides of the plane, so
+Vectors at the nodes are means of the visible cells around each node, on both sides of the plane, so
 that blanked cells have no effect.
 """
 
@@ -117,6 +117,13 @@ def plane_sheet(
             return axes(_spread(products(layers), seen, wrap))
         return _spread(layers, seen, wrap)
 
+    def flat(array: MeshArray) -> Floats:
+        """Return the values beyond the plane, as of PyVista's ``extract_subset``, or before it."""
+        layers = plane.cells(values_of(grid, array)).astype(np.float64)
+        layers[~visible] = np.nan
+        seen = visible[-1].reshape(*visible.shape[1:], *[1] * (layers.ndim - 3))
+        return np.asarray(np.where(seen, layers[-1], layers[0]))
+
     cells = visible
     if velocity.where == "cells":
         cells = visible & np.isfinite(plane.cells(values_of(grid, velocity))).all(axis=-1)
@@ -125,6 +132,7 @@ def plane_sheet(
         shown=shown,
         arrays=catalogue(grid),
         nodes=nodes,
+        flat=flat,
         cells=np.asarray(cells.any(axis=0)),
         wrap=wrap,
     )

@@ -50,10 +50,14 @@ def read_meshes(
     periodic: str | None = None,
     sign_free: bool = False,
     block: int | str | None = None,
+    preference: str | None = None,
     name: str = "",
 ) -> GridArrays | TriangleArrays:
     """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
     record = Record()
+    if preference not in (None, "point", "cell"):
+        msg = f'preference is {preference!r}; expected "point" or "cell"'
+        raise FieldError(msg)
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
         option = "slice" if slice is not None else "contour"
@@ -73,7 +77,8 @@ def read_meshes(
 
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(times_of(mesh))
     volume = VolumeValues(velocity, chosen or cut, count)
-    arrays = _stacked(chain([first], steps), velocity, draw, times, record, volume)
+    liking = preference or "point"
+    arrays = _stacked(chain([first], steps), velocity, draw, times, liking, record, volume)
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "volume_values": volume.values()}
     if first.grid.max_cell_dimensionality < 3:
@@ -123,6 +128,7 @@ def _stacked(
     velocity: MeshArray,
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
+    preference: str,
     record: Record,
     volume: VolumeValues,
 ) -> dict[str, Any]:
@@ -138,12 +144,12 @@ def _stacked(
         sheet = draw(grid)
         start = sheet if start is None else start
         check_nodes(start, sheet, step.label)
-        values = sheet.nodes(velocity), _scalars(sheet)
+        values = sheet.nodes(velocity), *_scalars(sheet, preference)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
         reordered += same is not step
     assert start is not None
-    kept, shown, cells, vectors, scalars = zip(*read, strict=True)
+    kept, shown, cells, vectors, *scalars = zip(*read, strict=True)
     order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), None)
     if reordered:
         text = f"nodes or cells of {reordered} steps are in another order than those of the first"
@@ -153,7 +159,7 @@ def _stacked(
     if start.cells is not None:
         valid &= nodes_to_keep(np.logical_and.reduce(cells), start.wrap)
     if velocity.where == "cells":
-        record("surface", "cell data averaged to the nodes")
+        record("surface", "velocity averaged from the cells to the nodes")
     axes = _axes(velocity, start, record, solid=first.grid.max_cell_dimensionality == 3)
     flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
     for n, number in enumerate(order):
@@ -163,19 +169,24 @@ def _stacked(
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
         record("mask", text, notable=True)
-    common = common_scalars([scalars[n] for n in order], moments, record)
-    arrays = {"points": start.points, "velocity": flow, "valid": valid, "scalars": common}
+    nodal, flat = (common_scalars([s[n] for n in order], moments, record) for s in scalars)
+    arrays = {"points": start.points, "velocity": flow, "valid": valid}
+    arrays |= {"scalars": nodal, "cell_scalars": flat}
     triangles = {} if start.triangles is None else {"triangles": start.triangles}
     return {**arrays, **triangles, "times": moments if times is None else times}
 
 
-def _scalars(sheet: Sheet) -> dict[str, Floats]:
-    scalars: dict[str, Floats] = {}
-    for array in sheet.arrays:
-        # Points come first in the catalogue, and take precedence over cells of the same name.
-        if array.numeric and array.components == 1 and array.name not in scalars:
-            scalars[array.name] = sheet.nodes(array)
-    return scalars
+def _scalars(sheet: Sheet, preference: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the scalars at the nodes, and those of the cells; a name is in one of them."""
+    nodal: dict[str, Floats] = {}
+    flat: dict[str, Floats] = {}
+    for array in sorted(sheet.arrays, key=lambda array: not array.where.startswith(preference)):
+        if array.numeric and array.components == 1 and array.name not in {*nodal, *flat}:
+            if array.where == "points":
+                nodal[array.name] = sheet.nodes(array)
+            else:
+                flat[array.name] = sheet.flat(array)
+    return nodal, flat
 
 
 def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> list[int]:

@@ -167,6 +167,11 @@ class Mesh:
         """The faces cut into triangles, (M, 3)."""
         return self._split[0]
 
+    @property
+    def triangle_faces(self) -> Indices:
+        """The face that each triangle is a part of, (M,)."""
+        return self._split[1]
+
     @cached_property
     def areas(self) -> Floats:
         """Areas of the faces, (F,)."""

@@ -26,6 +26,7 @@ VALUES = (
     "units",
     "long_names",
     "uncertainty",
+    "on_cells",
 )
 #: Attributes of a source.
 CHOICES = (
@@ -81,6 +82,7 @@ def unpack_field(
         return None if packed is None else arrays[packed]
 
     values = {name: value[name] for name in VALUES}
+    values["on_cells"] = tuple(value["on_cells"])
     values["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
     field = FlowField(
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
@@ -109,7 +111,8 @@ def _check(field: FlowField) -> None:
             msg = f"triangles have nodes {corners.min()} to {corners.max()}"
             raise ValueError(msg)
     for name, array in field.scalars.items():
-        shapes[name] = (array, (len(array), rows, columns), "biuf")
+        count = len(corners) if corners is not None and name in field.on_cells else columns
+        shapes[name] = (array, (len(array), rows, count), "biuf")
     for name, (array, shape, kinds) in shapes.items():
         if isinstance(array, LazySteps):
             if len(array) != shape[0]:

@@ -41,6 +41,7 @@ class Clusters:
     whole: FlowField  #: The field that has all nodes.
     field: FlowField  #: The field at this level.
     triangles: Indices  #: Its triangles that are drawn, which face alike, (M, 3).
+    cells: Indices  #: Numbers of these among the triangles of :attr:`field`, (M,).
     number: Indices  #: Node of this level for each node of the whole field, or -1, (N,).
     #: Sides of the bins of the next level, a power of two times the first, (n,).
     sides: Floats
@@ -76,6 +77,7 @@ class Clusters:
             field,
             field,
             triangles,
+            surface.drawn,
             np.arange(field.shape[1]),
             _sides(norm(crosses), triangles, len(normals), surface.extent),
             border,
@@ -85,7 +87,7 @@ class Clusters:
     def coarser(self) -> Clusters:
         """Return the next level, without triangles if all are smaller than the bins."""
         cluster = self._compact(self._bins())
-        corners = _once(cluster[self.triangles])
+        corners, cells = _once(cluster[self.triangles])
         used = np.zeros(int(cluster.max(initial=-1)) + 1, dtype=bool)
         used[corners] = True
         count, fresh = int(used.sum()), np.where(used, np.cumsum(used) - 1, -1)
@@ -97,9 +99,13 @@ class Clusters:
         border[cluster[kept]] = self.border[kept]
         normals = _sums(self.normals[kept], cluster[kept], count)
         field = _averaged(self.whole, number, corners)
-        corners = _untangled(field.points[0], corners, normals, border)
-        field = replace(field, triangles=corners)
-        return Clusters(self.whole, field, corners, number, sides, border, normals)
+        kept = _untangled(field.points[0], corners, normals, border)
+        corners, cells = corners[kept], self.cells[cells[kept]]
+        # A cell has the value of one of those in its place: means may be of none, such as a mark.
+        flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
+        field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
+        drawn = np.arange(len(corners))
+        return Clusters(self.whole, field, corners, drawn, number, sides, border, normals)
 
     def _bins(self) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""
@@ -171,7 +177,10 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
         points=(matrix @ field.points[0])[None],
         velocity=means(field.velocity),
         valid=np.ones((1, count), dtype=bool),
-        scalars={name: means(steps) for name, steps in field.scalars.items()},
+        scalars={
+            name: steps if name in field.on_cells else means(steps)
+            for name, steps in field.scalars.items()
+        },
         triangles=triangles,
     )
 
@@ -191,10 +200,14 @@ def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floa
     return np.asarray(FIRST_EDGES * typical * 2.0**steps)
 
 
-def _once(corners: Indices) -> Indices:
-    """Return triangles with three different corners, each once, without pairs face to face."""
+def _once(corners: Indices) -> tuple[Indices, Indices]:
+    """Return triangles with three different corners, each once, without pairs face to face.
+
+    The second value has their numbers among all.
+    """
     a, b, c = corners.T
-    corners = corners[(a != b) & (b != c) & (a != c)]
+    solid = np.flatnonzero((a != b) & (b != c) & (a != c))
+    corners = corners[solid]
     low, middle, high = np.sort(corners, axis=1).T
     # Whether the corners, from the lowest on, go up.
     ahead = corners[np.arange(len(corners)), (np.argmin(corners, axis=1) + 1) % 3] == middle
@@ -205,16 +218,16 @@ def _once(corners: Indices) -> Indices:
         | np.diff(high[order], prepend=-1)
     )
     if not len(begins):
-        return corners
+        return corners, solid
     turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
     low, middle, high = (corner[order[begins]] for corner in (low, middle, high))
     up = np.stack([low, middle, high], axis=-1)
     up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
-    return np.asarray(up[turns != 0])
+    return up[turns != 0], solid[order[begins]][turns != 0]
 
 
-def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
-    """Move nodes of inverted triangles to the middle of their neighbours; leave out the rest."""
+def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Bools:
+    """Move nodes of inverted triangles to the middle of their neighbours; return the others."""
     turned = _turned(points, triangles, normals)
     for _ in range(UNTANGLING):
         moved = np.zeros(len(points), dtype=bool)
@@ -231,7 +244,7 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
             count += np.bincount(near.ravel(), minlength=len(points))
         points[moved] = total[moved] / count[moved, None]
         turned[changed] = _turned(points, near, normals)
-    return triangles[~turned]
+    return ~turned
 
 
 def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:

@@ -106,6 +106,7 @@ class TrianglePyramid(Pyramid):
             root,
             np.arange(root.shape[1]),
             self._clusters[-1].triangles[members],
+            members,
             root.surface,
             (masks, self.places(self.depth)),
         )
@@ -129,7 +130,12 @@ class TrianglePyramid(Pyramid):
         around = self._around(key.level, nodes, width)
         window, number = _part(level, around)
         geometry = TriangleGeometry.of_tile(
-            window, number[nodes], number[triangles], self.root.surface, (masks, places)
+            window,
+            number[nodes],
+            number[triangles],
+            np.searchsorted(around, members),
+            self.root.surface,
+            (masks, places),
         )
         followed = np.zeros(window.shape, dtype=bool)
         followed[geometry.texels] = True
@@ -248,7 +254,7 @@ def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
 def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
     """Return a field of some triangles, and the numbers of nodes in it, -1 for the others."""
     field, triangles = level.field, level.triangles[members]
-    nodes = np.unique(triangles)
+    nodes, cells = np.unique(triangles), level.cells[members]
     number = np.full(field.shape[1], -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
     part = replace(
@@ -256,7 +262,9 @@ def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
         points=field.points[:, nodes],
         velocity=field.velocity[:, :, nodes],
         valid=np.ones((1, len(nodes)), dtype=bool),
-        scalars={k: s[:, :, nodes] for k, s in field.scalars.items()},
+        scalars={
+            k: s[:, :, cells if k in field.on_cells else nodes] for k, s in field.scalars.items()
+        },
         triangles=number[triangles],
     )
     return part, number

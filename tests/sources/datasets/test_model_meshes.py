@@ -92,8 +92,27 @@ def test_scalars_at_nodes_and_in_faces() -> None:
     field = FlowField.from_xarray(ugrid(mesh), globe=True)
     lat = np.degrees(np.arcsin(field.points[0, :, 2] / EARTH_RADIUS))
     assert np.allclose(field.scalars["height"][0, 0], lat)
-    assert np.abs(field.scalars["twice"][0, 0] - 2 * lat).max() < 8
+    assert field.on_cells == ("twice",)
+    assert np.array_equal(field.scalars["twice"][0, 0], 2 * mesh.middles[1])
     assert field.units == {"height": "m", "twice": "m"} and set(field.scalars) == set(field.units)
+
+
+@pytest.mark.parametrize("projection", ["platecarree", "robinson", "north"])
+def test_parts_of_a_face_on_a_map_have_its_value(projection: str) -> None:
+    mesh = globe(800)
+    field = FlowField.from_xarray(ugrid(mesh), projection=projection)
+    assert field.projection is not None and field.triangles is not None
+    values = field.scalars["twice"][0, 0]
+    assert len(values) == len(field.triangles)
+    middle = field.points[0][field.triangles].mean(axis=1)
+    point = on_sphere(*field.projection.lonlat(middle))
+    # A face of which it is a part is nearer than its longest side.
+    faces = on_sphere(mesh.lon, mesh.lat)[mesh.triangles]
+    far = np.linalg.norm(point[:, None] - faces.mean(axis=1), axis=-1)
+    owner = np.abs(values[:, None] - 2 * mesh.middles[1]).argmin(axis=1)
+    assert np.array_equal(values, 2 * mesh.middles[1][owner])
+    sides = np.linalg.norm(faces - np.roll(faces, 1, axis=1), axis=-1).max(axis=1)
+    assert (far[np.arange(len(values)), owner] < sides[owner]).all()
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
+from flowtex.scene.scene import Scene
 from flowtex.sources.meshes.planes import nodes_to_keep
 
 pv = pytest.importorskip("pyvista")
@@ -192,10 +193,38 @@ def test_other_arrays_of_one_component_become_scalars() -> None:
     grid.cell_data["p"] = np.full(6, -1.0)
     field = FlowField.from_pyvista(grid, vectors="v", plane="k=1")
     assert list(field.scalars) == ["p", "one column", "c"]
+    assert field.on_cells == ("c",)
     assert np.array_equal(field.scalars["p"][0], np.arange(12, 24).reshape(3, 4))
     assert np.array_equal(field.scalars["one column"], field.scalars["p"])
-    wanted = [[0, 0.5, 1.5, 2], [1.5, 2, 3, 3.5], [3, 3.5, 4.5, 5]]
-    assert field.scalars["c"][0].tolist() == wanted
+    assert field.scalars["c"][0, :-1, :-1].tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert (
+        np.isnan(field.scalars["c"][0, -1]).all() and np.isnan(field.scalars["c"][0, :, -1]).all()
+    )
+
+
+def test_preference_chooses_between_points_and_cells() -> None:
+    grid = flowing(4, 3, 1)
+    grid["p"], grid.cell_data["p"] = np.arange(12.0), np.arange(6.0)
+    assert FlowField.from_pyvista(grid, vectors="v").on_cells == ()
+    assert FlowField.from_pyvista(grid, vectors="v", preference="point").on_cells == ()
+    field = FlowField.from_pyvista(grid, vectors="v", preference="cell")
+    assert field.on_cells == ("p",)
+    np.testing.assert_array_equal(field.scalars["p"][0, :-1, :-1].ravel(), np.arange(6.0))
+    with pytest.raises(FieldError, match="preference is 'cells'; expected"):
+        FlowField.from_pyvista(grid, vectors="v", preference="cells")
+
+
+def test_a_plane_of_nodes_has_the_cells_of_extract_subset() -> None:
+    grid = flowing(4, 3, 3)
+    grid.cell_data["c"] = np.arange(12.0)
+    for index in (0, 1, 2):
+        field = FlowField.from_pyvista(grid, vectors="v", plane=f"k={index}")
+        plane = grid.extract_subset((0, 3, 0, 2, index, index))
+        np.testing.assert_array_equal(field.scalars["c"][0, :-1, :-1].ravel(), plane["c"])
+    # A hidden cell gives way to the one before the plane.
+    grid.hide_cells([6], inplace=True)
+    field = FlowField.from_pyvista(grid, vectors="v", plane="k=1")
+    assert field.scalars["c"][0, 0].tolist()[:-1] == [0.0, 7.0, 8.0]
 
 
 # --- cells ----------------------------------------------------------------------------------
@@ -243,10 +272,11 @@ def test_hidden_cells_leak_nothing(how: str) -> None:
     field = FlowField.from_pyvista(grid)
     assert np.argwhere(~field.valid).tolist() == [[3, 3]]
     assert (field.velocity[0, field.valid] == 1).all()
-    assert (field.scalars["c"][0][field.valid] == 1).all()
     hidden = np.zeros(30, bool)
     hidden[block] = True
     assert np.array_equal(field.surface.cells, ~hidden.reshape(5, 6))
+    assert (field.scalars["c"][0, :-1, :-1].ravel()[~hidden] == 1).all()
+    assert Scene(field).scalar_range("c") == (0.95, 1.05), "the hidden 1e6 is not in the range"
 
 
 def test_cells_are_kept_as_they_are_shown() -> None:

@@ -184,7 +184,7 @@ def test_the_record_tells_each_step() -> None:
         "mask: 10% of the nodes are hidden by IBlank",
         "components: u, v, w combined",
         "surface: slice x=0.5",
-        "surface: cell data averaged to the nodes",
+        "surface: velocity averaged from the cells to the nodes",
     ]
 
 

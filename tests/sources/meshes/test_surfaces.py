@@ -152,7 +152,7 @@ def test_vectors_on_cells_come_to_nodes_by_area() -> None:
     assert field.velocity[0, 0, by_place[0, 0], 0] == pytest.approx(2)
     assert field.velocity[0, 0, by_place[3, 0], 0] == pytest.approx(2), "NaN counts for nothing"
     assert not field.valid[0, by_place[3, 2]] and field.valid.sum() == 4
-    assert field.scalars["p"][0, 0, by_place[0, 1]] == pytest.approx((1 * 1.5 + 5 * 3) / 4.5)
+    np.testing.assert_array_equal(field.scalars["p"], [[[1.0, 3, 5]]])
 
 
 @pytest.mark.parametrize("where", ["points", "cells"])
