@@ -7,16 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
+from measures import streaks
 from scipy.spatial import ConvexHull, Delaunay
 from strategies import property_test
 
+import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.trace import SliceStore, paths
-from flowtex.trace.lags import small_cell
+from flowtex.trace.lags import choose_lags, small_cell
 
 
 def square(count: int, seed: int = 0) -> tuple[Floats, Indices]:
@@ -463,3 +466,28 @@ def test_any_triangles(
         store = SliceStore(field, parameter=parameter)
         for step in range(store.steps):
             check(store.at(step))
+
+
+@pytest.mark.parametrize("height", [0.701, 0.70001, 0.7000001])
+def test_slices_close_to_a_layer_of_nodes_have_lags_of_cells(height: float, opengl: object) -> None:
+    # A third of the triangles are slivers around the nodes of the layer at 0.7.
+    grid = pv.ImageData(dimensions=(31, 21, 13), spacing=(0.1,) * 3, origin=(-1.5, -1, 0))
+    x, y, _ = grid.points.T
+    grid["U"] = np.stack([np.sin(2 * x) * np.cos(3 * y), np.cos(3 * x) * np.sin(2 * y), 0 * x], -1)
+    tetrahedra = grid.triangulate()
+    drawn, lags = [], []
+    for z in (0.75, height):
+        options: dict[str, Any] = {"slice": f"z={z}", "vectors": "U"}
+        field = FlowField.from_pyvista(tetrahedra, **options)
+        lags.append(choose_lags(field, "time"))
+        look: dict[str, Any] = {"size": (300, 200), "margin": 0.0, "scalars": False}
+        drawn.append(flowtex.render(field, parameter="time", **look))
+    v, u = np.mgrid[0.995:-0.995:200j, -1.495:1.495:300j]
+    inside = np.zeros(u.shape, bool)
+    u, v = np.sin(2 * u) * np.cos(3 * v), np.cos(3 * u) * np.sin(2 * v)
+    inside[20:-20, 25:-25] = True
+    inside &= np.hypot(u, v) > 0.3
+    whole, close = (streaks(picture, u, v, inside) for picture in drawn)
+    assert lags[1][0] > 0.2 * lags[0][0]
+    assert close["coherence"] > whole["coherence"] - 0.005
+    assert close["angle"] < whole["angle"] + 0.3

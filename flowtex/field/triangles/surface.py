@@ -26,6 +26,8 @@ from flowtex.field.triangles.topology import SHARP, flipped, neighbours, triangl
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
 MOST_SHARE = 1 - 1e-7
+#: Least size of cells at a node over that at the nodes beside it.
+LEAST_BESIDE = 0.2
 
 
 class TriangleSurface(Surface):
@@ -139,7 +141,7 @@ class TriangleSurface(Surface):
 
     @cached_property
     def cell_size(self) -> Floats:
-        """Mean length of the edges at each node, (1, N)."""
+        """Mean length of the edges at each node, (1, N), or a share of those beside it."""
         corners = self.points[0][self.triangles]
         total, count = np.zeros((2, self.shape[1]))
         for k in range(3):
@@ -149,6 +151,10 @@ class TriangleSurface(Surface):
                 total += np.bincount(at, length, len(total))
                 count += np.bincount(at, minlength=len(total))
         size = total / np.maximum(count, 1)
+        # Slivers, as in a cut close to nodes, are not cells, whose sizes change gradually.
+        beside = np.zeros_like(size)
+        np.maximum.at(beside, self.triangles, size[self.triangles].max(axis=1, keepdims=True))
+        size = np.maximum(size, LEAST_BESIDE * beside)
         typical = float(np.median(size[self.valid[0]])) or 1.0
         return np.asarray(np.maximum(size, 1e-4 * typical)[None])
 
