@@ -167,3 +167,14 @@ def test_a_large_field_is_searched_on_fewer_nodes(monkeypatch: pytest.MonkeyPatc
     assert [p.kind for p in found.points(0)] == ["saddle", "sink"]
     assert len(found.lines(0)) == 4
     assert len({id(line.saddle) for line in found.lines(0, 1)}) == 1
+
+
+def test_a_nullcline_of_a_formula_is_exact_at_a_zoom_of_5000() -> None:
+    field = flowtex.formula("x^2 + y^2 - 1", "y - x", x=(-2, 2), y=(-2, 2))
+    look: dict[str, Any] = {"size": (240, 180), "scalars": False, "samples": 3}
+    picture = flowtex.render(field, nullclines=True, zoom=5000, focus=(0.6, 0.8), **look)
+    rows, columns = np.nonzero(picture[..., 0].astype(int) - picture[..., 2] > 100)  # orange
+    assert len(rows) > 200
+    pixel = 4 / 5000 / 180
+    x, y = 0.6 + (columns - 119.5) * pixel, 0.8 - (rows - 89.5) * pixel
+    assert np.abs(np.hypot(x, y) - 1).max() < 1.5 * pixel

@@ -234,6 +234,26 @@ def test_points_on_surfaces_are_exact() -> None:
         assert point.eigenvalues == pytest.approx([growth, growth], abs=1e-8)
 
 
+def test_periodic_coordinates_have_each_point_once() -> None:
+    points = flowtex.critical_points(
+        flowtex.formula("v", "-sin(u) - 0.2*v", surface="cylinder", resolution=33)
+    )
+    assert sorted(point.kind for point in points) == ["saddle", "spiral sink"]
+    (saddle,) = points.of_kind("saddle")
+    assert saddle.position == pytest.approx([-1, 0, 0], abs=1e-9)
+    assert saddle.eigenvalues == pytest.approx(np.roots([1, 0.2, -1])[::-1], abs=1e-9)
+
+
+def test_poles_of_a_sphere_have_the_part_of_the_velocity_along_it() -> None:
+    for up, kind in ((0.3, "spiral sink"), (0, "centre"), (-0.3, "spiral source")):
+        field = flowtex.formula("-y", "x", f"{up}*z", surface="sphere")
+        points = flowtex.critical_points(field)
+        assert [point.kind for point in points] == [kind] * 2
+        for point in points:
+            assert abs(point.position[2]) == pytest.approx(1)
+            assert point.eigenvalues == pytest.approx([-up + 1j, -up - 1j], abs=1e-3)
+
+
 def test_a_field_that_was_changed_is_searched_itself() -> None:
     field = flowtex.formula("y", "-sin(x)", x=(-2, 2), y=(-2, 2), resolution=33)
     moved = field.velocity[0] + [0.5, 0, 0]

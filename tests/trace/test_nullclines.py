@@ -12,7 +12,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
-from flowtex.trace.structure import nullclines
+from flowtex.trace.structure import nullclines, view_window
 
 
 def lengths(pieces: Floats) -> float:
@@ -78,3 +78,18 @@ def test_curved_surfaces_have_none() -> None:
     with pytest.raises(SettingsError, match="nullclines"):
         scene.settings.nullclines = True
     assert scene.settings.nullclines is False
+
+
+def test_lines_of_a_formula_are_as_fine_as_the_view() -> None:
+    field = flowtex.formula("x^2 + y^2 - 1", "y - x", x=(-2, 2), y=(-2, 2), resolution=33)
+    assert view_window(field, np.zeros(3), 3.0) is None
+    focus = np.array([0.6, 0.8, 0.0])
+    window = view_window(field, focus, 0.01)
+    assert window is not None
+    assert (np.abs(focus[:2] - window.mean(axis=1)) + 0.005 < np.ptp(window, axis=1) / 2).all()
+    circle, _ = nullclines(field, window)
+    middles = circle.mean(axis=1)[:, :2]
+    near = (np.abs(middles - focus[:2]) < 0.005).all(axis=1)
+    assert near.sum() > 50
+    assert np.linalg.norm(middles[near], axis=1) == pytest.approx(1, abs=1e-9)
+    assert lengths(circle) == pytest.approx(2 * np.pi, rel=1e-2)

@@ -77,9 +77,11 @@ class Rates:
     def _of(self, trees: Sequence[Tree], places: Floats) -> Floats:
         """Return the values of trees, (N, number of trees)."""
         values = self._values | dict(zip(self._formula.ranges, places.T, strict=True))
+        result = np.empty((len(places), len(trees)))
         with np.errstate(all="ignore"):
-            columns = [np.broadcast_to(evaluate(tree, values), len(places)) for tree in trees]
-        return np.stack(columns, axis=-1).astype(float)
+            for k, tree in enumerate(trees):
+                result[:, k] = evaluate(tree, values)
+        return result
 
 
 def _trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:

@@ -30,6 +30,7 @@ from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.textures.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
+from flowtex.trace.structure import formula_rates
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4
@@ -277,13 +278,7 @@ def client_formula(textures: TextureSet) -> Formula | None:
         return None
     if any(each.tree is None for each in formula.expressions):
         return None
-    u, v = formula.coordinates(field.shape)
-    pairs = [(field.points, formula.points(u, v))]
-    pairs += [
-        (field.velocity[n], formula.velocity(u, v, float(field.times[n])))
-        for n in {0, len(field.times) - 1}
-    ]
-    same = all(np.allclose(a[..., :2], b) and not a[..., 2].any() for a, b in pairs)
+    same = all(formula_rates(field.at_step(n)) for n in {0, len(field.times) - 1})
     return formula if same else None
 
 

@@ -7,6 +7,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoint,
     CriticalPoints,
     critical_points,
+    formula_rates,
 )
 from flowtex.trace.structure.nullclines import nullclines, view_window
 from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits, orbits_around
@@ -26,6 +27,7 @@ __all__ = [
     "Separatrix",
     "closed_orbits",
     "critical_points",
+    "formula_rates",
     "nullclines",
     "orbits_around",
     "separatrices",

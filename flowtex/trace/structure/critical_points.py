@@ -150,7 +150,8 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         """Return a dictionary of numbers and strings for each point."""
         rows = []
         for p in self._points:
-            row: dict[str, Any] = {"kind": p.kind, "time": p.time, "strength": p.strength}
+            row: dict[str, Any] = {"kind": p.kind, "poincare_index": p.poincare_index}
+            row |= {"time": p.time, "strength": p.strength}
             row |= dict(zip("xyz", (float(x) for x in p.position), strict=True))
             if p.lonlat is not None:
                 row |= {"lon": p.lonlat[0], "lat": p.lonlat[1]}
@@ -239,7 +240,8 @@ def formula_rates(field: FlowField) -> Rates | None:
     u, v = formula.coordinates(field.shape)
     points, velocity = formula.points(u, v), formula.velocity(u, v, float(field.times[0]))
     for own, other in ((field.points, points), (field.velocity[0], velocity)):
-        if not np.allclose(own[valid][:, : other.shape[-1]], other[valid]):
+        flat = np.zeros((*field.shape, 3 - other.shape[-1]))
+        if not np.allclose(own[valid], np.concatenate([other, flat], axis=-1)[valid]):
             return None
     rates = Rates(formula, float(field.times[0]))
     return rates if rates.is_known else None
@@ -263,7 +265,7 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
     for pole in field.surface.poles or ():
         away = np.abs(index[:, pole.component] - pole.line) > 1
         points = [point for point, is_kept in zip(points, away, strict=True) if is_kept]
-        points += _at_pole(field, pole)
+        points += _resolved(_distinct(_at_pole(field, pole), field), field)
         index = np.array([point.index[::-1] for point in points]).reshape(-1, 2)
     return _distinct(points, field) if any(field.periodic) else points
 
@@ -311,7 +313,12 @@ def _blend(nodal: Floats, j: Indices, i: Indices, s: Floats, t: Floats) -> Float
 
 def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
     """Find the critical points in the cells around a pole, as triangles in the plane there."""
-    points, velocity = (pole.lines(a) for a in (field.points, field.velocity[0]))
+    # Without the part across the surface, which is small at the pole but not its change.
+    along, across = field.surface.tangents
+    normal = np.cross(along, across)
+    normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), np.finfo(float).tiny)
+    flow = field.velocity[0] - (field.velocity[0] * normal).sum(axis=-1, keepdims=True) * normal
+    points, velocity = (pole.lines(a) for a in (field.points, flow))
     ring = pole.line + pole.inward
     center, near = points[pole.line, 0], points[ring]
     plane = (near - center) @ pole.plane.T

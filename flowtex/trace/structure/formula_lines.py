@@ -61,6 +61,9 @@ def formula_paths(
     at, before = low + begin * cell, 0.0
     positions, reach = np.empty((len(lags), *begin.shape)), np.full(len(begin), np.inf)
     for n, lag in enumerate(lags):
+        if np.isfinite(reach).all():
+            positions[n:] = positions[n - 1]
+            break
         count = int(np.ceil((lag - before) / (STEP * np.hypot(*sides))))
         for k in range(count):
             going = np.flatnonzero(np.isinf(reach))

@@ -8,11 +8,11 @@ share of its largest value near the cell from which the search starts. The brows
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
+from numpy.lib.stride_tricks import sliding_window_view
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.formula.rates import Rates
@@ -108,23 +108,15 @@ def _starts(rates: Rates) -> tuple[Floats, Floats, Floats]:
     nodes = np.stack(np.meshgrid(*lines), axis=-1)
     values = rates.at(nodes.reshape(-1, 2)).reshape(nodes.shape)
     values[~np.isfinite(values)] = np.nan
-    size = (3, 3, 1)
-    top = scipy.ndimage.maximum_filter(np.nan_to_num(values, nan=-np.inf), size)
-    bottom = scipy.ndimage.minimum_filter(np.nan_to_num(values, nan=np.inf), size)
-    top, bottom = _of_cells(top, np.maximum), _of_cells(bottom, np.minimum)
-    least = _of_cells(np.nan_to_num(np.abs(values), nan=np.inf), np.minimum)
+    around = sliding_window_view(np.pad(values, ((1, 1), (1, 1), (0, 0)), "edge"), (4, 4), (0, 1))
+    top, bottom = (extreme.reduce(around, axis=(-2, -1)) for extreme in (np.fmax, np.fmin))
+    least = np.fmin.reduce(np.abs(around[..., 1:3, 1:3]), axis=(-2, -1))
     scale = np.maximum(np.abs(top), np.abs(bottom))
-    with np.errstate(invalid="ignore"):
-        chosen = (np.isfinite(scale) & (least <= top - bottom)).all(axis=-1)
+    chosen = (least <= top - bottom).all(axis=-1)
     row, column = np.nonzero(chosen & (scale > 0).any(axis=-1))
     cell = sides / counts
     middle = rates.ends[:, 0] + cell * (np.stack([column, row], axis=-1) + 0.5)
     return middle, np.where(scale > 0, scale, 1.0)[row, column], cell
-
-
-def _of_cells(nodal: Floats, extreme: Callable[..., Any]) -> Floats:
-    corners = nodal[:-1, :-1], nodal[:-1, 1:], nodal[1:, :-1], nodal[1:, 1:]
-    return np.asarray(reduce(extreme, corners))
 
 
 def _step(rates: Rates, at: Floats, scale: Floats, cell: Floats) -> tuple[Floats, Floats, Floats]:
