@@ -73,12 +73,9 @@ def zeros(rates: Rates) -> Zeros:
     places[np.abs(places) < LEFT * cell] = 0.0
     gradient = rates.lowered(rates.gradient(places), places)
     indices = np.sign(np.linalg.det(gradient)).astype(np.intp)
-    free = np.array(
-        [
-            np.delete(np.hypot(*((places - p) / cell).T), n).min(initial=np.inf)
-            for n, p in enumerate(places)
-        ]
-    )
+    gaps = np.linalg.norm((places[:, None] - places) / cell, axis=-1)
+    np.fill_diagonal(gaps, np.inf)
+    free = gaps.min(axis=1, initial=np.inf)
     for n in np.flatnonzero(degenerate):
         circle = places[n] + min(RADIUS, 0.3 * free[n]) * cell * _circle()[0]
         values = rates.at(circle)
