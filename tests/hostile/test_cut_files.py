@@ -23,7 +23,7 @@ from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.remote import open_remote
 
 #: Cuts, or changes, of a file of each format.
-CASES = 40
+CASES = 24
 
 
 def flow(mesh: Any) -> Any:

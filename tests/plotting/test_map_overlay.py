@@ -27,6 +27,8 @@ pytestmark = pytest.mark.usefixtures("opengl")
 
 SIZE = (240, 200)
 OFF: dict[str, Any] = {"coastlines": False, "graticule": False, "land": None}
+#: For tests in which the texture does not matter: it takes most of the time to draw.
+QUICK: dict[str, Any] = {"samples": 3}
 
 
 @pytest.fixture
@@ -55,7 +57,9 @@ def at(picture: Any, field: flowtex.FlowField, camera: Camera, lon: float, lat: 
 @pytest.mark.parametrize("name", ["globe", "robinson"])
 def test_lines_are_drawn_unless_they_are_off(plotter: Any, name: str) -> None:
     field = winds(name)
-    handle = plotter.flowtex.add(field, scalars=False, color="white", show_scalar_bar=False)
+    handle = plotter.flowtex.add(
+        field, scalars=False, color="white", show_scalar_bar=False, **QUICK
+    )
     camera = read_camera(plotter.camera)
     # Meridian 30 is not a coast there, and the coast of the gulf of Guinea no line of the
     # graticule.
@@ -75,6 +79,7 @@ def test_no_surface_hides_its_lines(name: str) -> None:
     focus = tuple(field.projection.positions(np.array(10.0), np.array(-20.0)))
     for zoom in (1.0, 300.0):
         drawn: dict[str, Any] = {"size": SIZE, "zoom": zoom, "focus": focus, "scalars": False}
+        drawn |= QUICK
         off = flowtex.render(field, **drawn, **{**OFF, "land": LAND_COLOR}).astype(float)
         on = flowtex.render(field, **drawn, coastlines=False).astype(float)
         # Meridian 10 goes through the middle, from the lower border to the upper one, unbroken.
@@ -91,7 +96,7 @@ def test_the_far_side_of_a_whole_globe_is_left_out(
     if turned:
         lines = np.arange(field.shape[0])[::-1], np.arange(field.shape[1])
         field = field.at_lines(*lines)
-    handle = plotter.flowtex.add(field, show_scalar_bar=False, **OFF)
+    handle = plotter.flowtex.add(field, show_scalar_bar=False, **QUICK, **OFF)
     prop = handle.actor.prop
     near = shot(plotter)
     assert prop.culling == ("front" if turned else "back")
@@ -133,7 +138,7 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
     field = ocean("lambert")
     assert land_cells(field).any() and not land_cells(winds("robinson")).any()
     plotter.set_background("blue")
-    handle = plotter.flowtex.add(field, show_scalar_bar=False, graticule=False)
+    handle = plotter.flowtex.add(field, show_scalar_bar=False, graticule=False, **QUICK)
     camera = read_camera(plotter.camera)
 
     def colour() -> Floats:
@@ -162,6 +167,7 @@ def test_islands_that_only_finer_levels_have_are_land(
     assert field.projection is not None
     focus = field.projection.positions(np.array(15.3), np.array(10.3))
     options: dict[str, Any] = {**OFF, "zoom": 20, "focus": tuple(focus), "size": (120, 80)}
+    options |= QUICK
     middle = flowtex.render(field, **{**options, "land": "red"})[40, 60].astype(float)
     assert middle == pytest.approx([255, 0, 0], abs=40)
     # What is seen through the flow is the background, and no land.
@@ -199,7 +205,7 @@ def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
     found: list[tuple[Any, ...]] = []
     for options in ({}, OFF):
         plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
-        plotter.flowtex.add(ocean(name), show_scalar_bar=False, **options)
+        plotter.flowtex.add(ocean(name), show_scalar_bar=False, **QUICK, **options)
         plotter.render()
         bounds = tuple(plotter.renderer.bounds)
         first = read_camera(plotter.camera)
@@ -216,7 +222,7 @@ def test_all_goes_with_the_flow(plotter: Any) -> None:
     assert plotter.renderer.GetActors().GetNumberOfItems() == count
     plain.remove()
     empty = shot(plotter)
-    handle = plotter.flowtex.add(ocean("globe"), show_scalar_bar=False, reset_camera=True)
+    handle = plotter.flowtex.add(ocean("globe"), show_scalar_bar=False, reset_camera=True, **QUICK)
     shown = shot(plotter)
     assert np.abs(shown - empty).max() > 50
     actors = [a for a in plotter.renderer.GetActors() if not a.GetUseBounds()]
@@ -234,6 +240,7 @@ def test_lines_are_as_wide_on_a_fine_screen() -> None:
     """Twice the density has lines of twice as many pixels, which supersampling averages again."""
     field = winds("platecarree")
     drawn: dict[str, Any] = {"size": SIZE, "scalars": False, "color": "white", "strength": 0}
+    drawn |= QUICK
     once, twice = (flowtex.render(field, **drawn, supersampling=n).astype(float) for n in (1, 2))
     assert once.mean() == pytest.approx(twice.mean(), rel=0.02)
 
@@ -264,6 +271,7 @@ def test_the_globe_below_comes_through_nowhere() -> None:
     focus = tuple(projection.positions(np.array(20.0), np.array(45.0)))
     for zoom in (1.0, 30.0):
         options: dict[str, Any] = {**OFF, "zoom": zoom, "size": (120, 90), "focus": focus}
+        options |= QUICK
         with_globe, without = (
             flowtex.render(field, **{**options, "land": land}).astype(int) for land in ("red", None)
         )

@@ -130,9 +130,17 @@ def test_what_has_no_room_is_left_out_the_title_first(opengl: None) -> None:
 
 
 @pytest.mark.parametrize(
-    "size", [(100, 80), (160, 120), (200, 150), (320, 240), (480, 360), (150, 400), (500, 120)]
+    ("size", "background"),
+    [
+        ((100, 80), "white"),
+        ((160, 120), "#808080"),
+        ((200, 150), "black"),
+        ((320, 240), "white"),
+        ((480, 360), "#808080"),
+        ((150, 400), "black"),
+        ((500, 120), "white"),
+    ],
 )
-@pytest.mark.parametrize("background", ["white", "#808080", "black"])
 def test_annotations_cover_no_flow_in_small_pictures(
     opengl: None, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int], background: str
 ) -> None:
