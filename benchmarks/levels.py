@@ -17,8 +17,8 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.textures.tiles import Pyramid
-from flowtex.trace import paths, trace
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.trace.trace import paths, trace
 
 Floats = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 import flowtex
 from flowtex.plotting.vtk_camera import look, read_camera
 from flowtex.rendering.cpu.render import render
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
 
 Floats = NDArray[np.float64]
 Seam = tuple[flowtex.FlowField, dict[str, dict[str, Any]]]

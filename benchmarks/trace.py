@@ -20,8 +20,8 @@ import numpy as np
 import rlic
 
 from flowtex import FlowField, Settings, TraceSlices, examples, trace
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
 
 RUNS = 3
 #: The module, which the function of the same name hides.

@@ -14,7 +14,8 @@ from flowtex._util import __version__ as __version__
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
-from flowtex.trace import TraceSlices, trace
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.trace import trace
 
 if TYPE_CHECKING:
     from flowtex import examples, pyramid
@@ -25,14 +26,9 @@ if TYPE_CHECKING:
     from flowtex.plotting.offscreen.movie import movie
     from flowtex.plotting.offscreen.plotter import render
     from flowtex.rendering.camera import Camera
-    from flowtex.trace.structure import (
-        ClosedOrbit,
-        CriticalPoints,
-        Separatrices,
-        closed_orbits,
-        critical_points,
-        separatrices,
-    )
+    from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
+    from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits
+    from flowtex.trace.structure.separatrices import Separatrices, separatrices
     from flowtex.web.export import export
     from flowtex.widget import FlowWidget
 
@@ -65,20 +61,20 @@ __all__ = [
 #: Names that are imported when they are first used: what they need is slow to load, or optional.
 _LAZY = {
     "Camera": "rendering.camera",
-    "ClosedOrbit": "trace.structure",
-    "CriticalPoints": "trace.structure",
+    "ClosedOrbit": "trace.structure.orbits",
+    "CriticalPoints": "trace.structure.critical_points",
     "FlowWidget": "widget",
-    "Separatrices": "trace.structure",
+    "Separatrices": "trace.structure.separatrices",
     "axes": "plotting.offscreen.figure",
-    "closed_orbits": "trace.structure",
-    "critical_points": "trace.structure",
+    "closed_orbits": "trace.structure.orbits",
+    "critical_points": "trace.structure.critical_points",
     "dynamic_map": "plotting.offscreen.dynamic",
     "export": "web.export",
     "extent": "plotting.offscreen.figure",
     "formula": "field.formula.make",
     "movie": "plotting.offscreen.movie",
     "render": "plotting.offscreen.plotter",
-    "separatrices": "trace.structure",
+    "separatrices": "trace.structure.separatrices",
     "show": "app.display",
 }
 #: Those that need OpenGL: it is tried while they are imported.

@@ -11,8 +11,8 @@ import numpy as np
 
 from flowtex.field import FlowField
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
 from paper import data_sets
 
 T = TypeVar("T")

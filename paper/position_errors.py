@@ -9,7 +9,8 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line, between_nodes
-from flowtex.trace import TraceSlices, paths, trace
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.trace import paths, trace
 
 #: Steps of time that a particle goes back.
 STEPS = 10

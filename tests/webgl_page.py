@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.web.view import TileSource, client_module
 
 if TYPE_CHECKING:

@@ -164,7 +164,7 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.field.dates import expected_times
     from flowtex.field.derived import DERIVED
-    from flowtex.textures.tiles import has_pyramid
+    from flowtex.textures.tiles.shared import has_pyramid
 
     table = _pairs(
         "What would be drawn by default" if has_pyramid(field) else "What would be drawn"
@@ -201,7 +201,7 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
 
 def _lines(field: FlowField) -> str:
     """Describe the lines along which the flow is drawn, with the reason."""
-    from flowtex.trace import changing_share, chosen_lines
+    from flowtex.trace.store import changing_share, chosen_lines
 
     share = f"{changing_share(field):.0%}"
     return (

@@ -48,7 +48,7 @@ from flowtex.rendering.webgl.marks import (
     RIM_OPACITY,
 )
 from flowtex.scene.scene import Scene
-from flowtex.trace.structure import CriticalPoints
+from flowtex.trace.structure.critical_points import CriticalPoints
 
 #: How much farther than the surface land is, as a share of the distance.
 LAND_FARTHER = 2e-4

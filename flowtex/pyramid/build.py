@@ -55,8 +55,7 @@ from flowtex.pyramid.tasks import (
 )
 from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
 from flowtex.settings import TABLE
-from flowtex.textures.tiles import TileKey
-from flowtex.textures.tiles.pyramid import level_lines, level_shape
+from flowtex.textures.tiles.pyramid import TileKey, level_lines, level_shape
 
 if TYPE_CHECKING:
     from zarr import Group

@@ -45,8 +45,7 @@ from flowtex.field.earth import Projection
 from flowtex.pyramid.checks import About, sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
-from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS
-from flowtex.textures.tiles.pyramid import level_shape, root_level
+from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, level_shape, root_level
 
 if TYPE_CHECKING:
     from zarr import Group

@@ -38,8 +38,8 @@ from flowtex.pyramid.layout import (
 )
 from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.textures.tiles import TileKey, ends_of
-from flowtex.textures.tiles.pyramid import level_shape
+from flowtex.textures.tiles.pyramid import TileKey, level_shape
+from flowtex.textures.tiles.shared import ends_of
 
 if TYPE_CHECKING:
     from zarr import AsyncArray, Group

@@ -38,8 +38,9 @@ from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.sources.inspection.zarr_folder import check_zarr
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group
-from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
-from flowtex.trace import chosen_lines, judged_lines
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.shared import drawn_speeds, ends_of
+from flowtex.trace.store import chosen_lines, judged_lines
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000

@@ -25,9 +25,16 @@ from flowtex.pyramid.places import PyramidError, ReadFault, fault_words, is_stor
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.regions import Regions
-from flowtex.textures import TextureSet
-from flowtex.textures.tiles import Pyramid, TileKey, attach_pyramid
-from flowtex.textures.tiles.pyramid import ROOT_NODES, averaged, level_lines, root_level
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import (
+    ROOT_NODES,
+    Pyramid,
+    TileKey,
+    averaged,
+    level_lines,
+    root_level,
+)
+from flowtex.textures.tiles.shared import attach_pyramid
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5

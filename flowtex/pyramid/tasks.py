@@ -35,12 +35,13 @@ from flowtex.pyramid.levels import Levels, write_samples
 from flowtex.pyramid.places import ChangedError, DamageError, PyramidError, store_at, sync
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
-from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts
+from flowtex.rendering.webgl.client_data import ClientData, Colours, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
-from flowtex.textures import TextureSet
-from flowtex.textures.tiles import TileKey, widened
-from flowtex.textures.tiles.pyramid import averaged, beside, level_lines
-from flowtex.trace import SliceStore
+from flowtex.rendering.webgl.velocity import can_trace
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import TileKey, averaged, beside, level_lines
+from flowtex.textures.tiles.shared import widened
+from flowtex.trace.store import SliceStore
 
 #: Entries of the slices that are the same in all tiles, and in the header of the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")

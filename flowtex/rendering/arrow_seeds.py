@@ -25,8 +25,9 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.vectors import norm
 from flowtex.rendering.constants import HASH_FACTORS, HASH_SHIFT, OCTAVE_PRIME, SEED_PRIME
 from flowtex.rendering.tile_choice import TileView
-from flowtex.textures import SurfaceGeometry, TriangleGeometry
-from flowtex.textures.tiles import TILE_CELLS, Pyramid, TileKey
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.tiles.pyramid import TILE_CELLS, Pyramid, TileKey
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Distance of seeds in an octave over that in the one before, and most octaves.
 OCTAVE, MOST_OCTAVES = float(np.sqrt(0.5)), 80

@@ -20,8 +20,9 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
 from flowtex._util.vectors import dot, norm
-from flowtex.textures import TextureSet, TriangleGeometry
-from flowtex.textures.tiles import BLOCK_CELLS, block_places
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import BLOCK_CELLS, block_places
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05

@@ -13,7 +13,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.settings import Settings
-from flowtex.textures.tiles import PATH_CELLS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 
 #: Pixels of the longer side of a cell above which the next level is drawn.
 CELL_PIXELS = 3.0

@@ -17,7 +17,8 @@ from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.constants import FAR_CELLS, KERNELS, UNCERTAIN_LAYER
 from flowtex.settings import Settings
-from flowtex.textures import PaperTextures, TextureSet
+from flowtex.textures.paper import PaperTextures
+from flowtex.textures.texture_set import TextureSet
 
 #: Uniforms by name: bool, int, float, tuples of float, or lists for arrays.
 Values: TypeAlias = Mapping[str, Any]

@@ -25,7 +25,7 @@ from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Side, Summing
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
-from flowtex.textures import TextureSet
+from flowtex.textures.texture_set import TextureSet
 
 __all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
 

@@ -27,23 +27,21 @@ from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.options import ROBUST, SPEED, Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
-from flowtex.textures.tiles import (
-    STRUCTURE,
-    Pyramid,
-    Structure,
-    check_structure,
+from flowtex.textures.texture_set import TextureSet, check_noise
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.shared import (
     coarsened_field,
     drawn_speeds,
     ends_of,
     has_pyramid,
     shared_pyramid,
-    shared_structure,
     usual_ends,
     widened,
 )
-from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
+from flowtex.textures.tiles.structure import STRUCTURE, Structure, check_structure, shared_structure
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
 __all__ = ["NO_IMAGE", "Change", "Scene", "drawn_store", "follow", "lay_image", "share_field"]
 

@@ -29,7 +29,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line, between_nodes, fill_blanked, inverse_along_line
 from flowtex.settings import Settings
-from flowtex.trace import SliceStore
+from flowtex.trace.store import SliceStore
 
 #: Longest step in units of lag: half precision ends soon after.
 LONGEST_STEP = 6e4

@@ -30,10 +30,10 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
-from flowtex.textures.tiles import Pyramid
+from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.web import preview
 from flowtex.web.linked import (
     MAPLIBRE,

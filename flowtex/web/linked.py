@@ -14,9 +14,9 @@ from urllib.parse import urlsplit
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.pyramid.stored import StoredPyramid
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
-from flowtex.textures.tiles import shared_pyramid
+from flowtex.textures.tiles.shared import shared_pyramid
 from flowtex.web.view import WebView
 
 #: Valid host names, which have no characters with a meaning in a page's policy.

@@ -21,7 +21,7 @@ from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import NO_VALUE_COLOR
 from flowtex.settings import Settings
 from flowtex.web.view import WebView

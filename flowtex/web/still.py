@@ -18,7 +18,7 @@ from flowtex.rendering.cpu.render import Picture
 from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import arrow_distance, has_arrows
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import (
     DOT_PX,
     KIND_MARKS,

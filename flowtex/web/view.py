@@ -17,16 +17,17 @@ from flowtex._util.colours import colour_table, rgb
 from flowtex._util.progress import check, pool, stoppable, track
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
-from flowtex.rendering.webgl import ClientData, Colours, Packing, packing_of, tile_parts
 from flowtex.rendering.webgl.bodies import Bodies
+from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.rendering.webgl.velocity import Packing, packing_of
 from flowtex.scene.options import Options, default_cmap
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.sources.notices import notify_section
-from flowtex.textures import TextureSet
-from flowtex.textures.tiles import Pyramid, TileKey
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 
 #: Memory of the tiles that are kept to be sent again, and of a node of them, in bytes.
 BUDGET_BYTES, NODE_BYTES = 400_000_000, 200

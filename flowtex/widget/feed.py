@@ -21,10 +21,10 @@ from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped, has_threads, start
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene.scene import Change
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.web import still
 from flowtex.web.still import MakeCamera
 from flowtex.web.view import TileSource, WebView

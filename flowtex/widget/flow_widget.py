@@ -31,7 +31,7 @@ from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, share_field
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.still import MakeCamera, still_png
 from flowtex.web.view import WebView, browser_options, client_module, web_views

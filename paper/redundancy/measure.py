@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flowtex._util.array_types import Floats
-from flowtex.trace import TraceSlices
+from flowtex.trace.slices import TraceSlices
 from paper.redundancy.prediction import BY_LAG, Predictor, SliceGrid
 from paper.redundancy.residuals import (
     BoundedCoding,

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.interpolation import bracket
-from flowtex.trace import TraceSlices
+from flowtex.trace.slices import TraceSlices
 
 #: Ways to predict: polynomials by degree, and composition.
 BY_LAG = ("mean 0", "mean 1", "mean 2", "path 1", "path 2", "path 3")
@@ -38,7 +38,7 @@ class SliceGrid:
     Attributes
     ----------
     lags, unit, times
-        As in :class:`~flowtex.trace.TraceSlices`.
+        As in :class:`~flowtex.TraceSlices`.
     spacing
         Index (i, j) from one entry to the next, (2,).
     moving

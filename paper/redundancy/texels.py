@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from flowtex._util.array_types import Floats
-from flowtex.trace import TraceSlices
+from flowtex.trace.slices import TraceSlices
 
 
 class TexelDensity:

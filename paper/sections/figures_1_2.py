@@ -11,7 +11,7 @@ from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.scene.probe import Probe, probe
 from flowtex.scene.scene import Scene
-from flowtex.trace import trace
+from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Plot, Section, Table
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes

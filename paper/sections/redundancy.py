@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from flowtex.field import FlowField
-from flowtex.trace import TraceSlices, trace
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.trace import trace
 from paper.bench import Bench
 from paper.findings import Block, Claim, Finding, Section, Table, Text
 from paper.redundancy import error_in_texels, redundancy

@@ -11,7 +11,7 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.noise import PaperImages, PaperNoise
 from flowtex.rendering.cpu.texture import LookupMaker
-from flowtex.textures import PaperTextures
+from flowtex.textures.paper import PaperTextures
 from paper import measures, quality
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table

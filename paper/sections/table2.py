@@ -7,8 +7,9 @@ from typing import Any
 
 from flowtex.field import FlowField
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore, trace
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Section, Table, Text
 

@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds, date_text, seconds_since
 from flowtex.field.steps import LazySteps, map_steps
 from flowtex.scene.scene import Scene
-from flowtex.trace import SliceStore
+from flowtex.trace.store import SliceStore
 
 cftime: Any = pytest.importorskip("cftime")
 

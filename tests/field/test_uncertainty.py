@@ -20,7 +20,7 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import Settings
-from flowtex.textures.tiles import Pyramid
+from flowtex.textures.tiles.pyramid import Pyramid
 from paper import quality
 
 

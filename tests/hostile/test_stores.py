@@ -25,7 +25,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store, verify
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 
 zarr = pytest.importorskip("zarr")
 

@@ -19,7 +19,7 @@ from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
 from flowtex.textures.tiles import structure
-from flowtex.trace.structure import KINDS
+from flowtex.trace.structure.critical_points import KINDS
 
 #: A picture of four units by two, one of which is this many pixels.
 UNIT = 300

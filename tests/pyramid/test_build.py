@@ -27,7 +27,8 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import FieldSource
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.scene.scene import Scene
-from flowtex.textures.tiles import Pyramid, TileKey, shared_pyramid
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
 from flowtex.trace.store import shared_store
 
 zarr = pytest.importorskip("zarr")

@@ -21,7 +21,7 @@ from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
 from flowtex.pyramid.build import MOST_FAILURES
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.workers import MOST_TRIALS, Threads
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 
 zarr = pytest.importorskip("zarr")
 

@@ -18,9 +18,9 @@ from flowtex._util.array_types import AnyArray
 from flowtex.field.derived import steps_of
 from flowtex.pyramid import build
 from flowtex.pyramid.layout import FILE_CHUNK
-from flowtex.rendering.webgl import tile_parts
+from flowtex.rendering.webgl.client_data import tile_parts
 from flowtex.scene.options import Options
-from flowtex.textures.tiles import Pyramid
+from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.web.view import web_views
 
 zarr = pytest.importorskip("zarr")

@@ -14,7 +14,8 @@ from waiting import PATIENCE_S
 
 from flowtex.pyramid import PyramidError, build, open_store, workers
 from flowtex.pyramid.places import store_at
-from flowtex.textures.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles.pyramid import TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
 
 distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")

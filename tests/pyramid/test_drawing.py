@@ -15,7 +15,7 @@ from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.pyramid import build
 from flowtex.scene.scene import Scene, share_field
-from flowtex.textures.tiles import has_pyramid
+from flowtex.textures.tiles.shared import has_pyramid
 
 zarr = pytest.importorskip("zarr")
 

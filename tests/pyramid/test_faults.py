@@ -24,7 +24,9 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
-from flowtex.textures.tiles import Pyramid, TileKey, TileLoader, shared_pyramid
+from flowtex.textures.tiles.loader import TileLoader
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
 
 pytest.importorskip("zarr")
 

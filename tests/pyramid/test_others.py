@@ -17,7 +17,8 @@ from flowtex.cli import main
 from flowtex.errors import FieldError
 from flowtex.pyramid import is_store, open_store
 from flowtex.pyramid.source import has_parts
-from flowtex.textures.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles.pyramid import TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")

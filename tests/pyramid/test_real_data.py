@@ -13,7 +13,7 @@ import flowtex
 from flowtex import FlowField
 from flowtex.pyramid import build, open_store
 from flowtex.sources.notices import DatasetNotice
-from flowtex.textures.tiles import has_pyramid, shared_pyramid
+from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")

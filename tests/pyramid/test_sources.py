@@ -29,7 +29,8 @@ from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import Scene
 from flowtex.sources.datasets.regions import Regions
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
-from flowtex.textures.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles.pyramid import TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")

@@ -12,7 +12,7 @@ from webgl_page import ClientPage, packed, state
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.cpu.render import render
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.scene import Scene
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.

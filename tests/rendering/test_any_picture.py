@@ -19,7 +19,7 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.textures.tiles import STRUCTURE
+from flowtex.textures.tiles.structure import STRUCTURE
 
 SIZE = (15, 10)
 #: Greatest number in half precision.

@@ -21,7 +21,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_LEAST
 from flowtex.textures.geometry import SurfaceGeometry
-from flowtex.trace import paths
+from flowtex.trace.trace import paths
 from paper.quality import spacing
 
 SIZE = (600, 400)

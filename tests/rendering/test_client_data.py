@@ -11,11 +11,11 @@ from triangle_meshes import sphere, surface_of
 import flowtex
 from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import part_info
 from flowtex.scene.options import Options
 from flowtex.settings import TABLE, Settings
-from flowtex.textures.tiles import coarsened_field
+from flowtex.textures.tiles.shared import coarsened_field
 from flowtex.web.view import WebView, even_steps, web_views
 
 

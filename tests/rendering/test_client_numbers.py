@@ -35,18 +35,20 @@ from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_limits
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import Marks
 from flowtex.rendering.webgl.velocity import velocity_part
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet, as_picture
-from flowtex.textures.tiles import TILE_BLOCKS, Pyramid, TileKey, shared_structure
-from flowtex.textures.tiles.structure import DRAWN_EXTENTS
+from flowtex.textures.images import as_picture
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.structure import DRAWN_EXTENTS, shared_structure
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
-from flowtex.trace import SliceStore
-from flowtex.trace.structure import critical_points, separatrices
+from flowtex.trace.store import SliceStore
+from flowtex.trace.structure.critical_points import critical_points
+from flowtex.trace.structure.separatrices import separatrices
 
 FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
 

@@ -22,8 +22,8 @@ from flowtex.rendering.cpu.render import render
 from flowtex.rendering.cpu.shade import shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
 
 #: A camera, and width and height of its picture in pixels.
 Shot = tuple[Camera, tuple[int, int]]

@@ -20,7 +20,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.mesh_levels import TriangleBlocks
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
-from flowtex.textures import TriangleGeometry
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 
 def flow(x: Any, y: Any) -> tuple[Any, Any]:

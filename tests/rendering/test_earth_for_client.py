@@ -13,7 +13,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.earth import Projection
 from flowtex.rendering.map_overlay import map_lines
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.earth import LINE_STEPS, dates_of
 from flowtex.scene.options import Options
 from flowtex.web.view import WebView, web_views

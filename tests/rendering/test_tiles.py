@@ -13,7 +13,7 @@ from waiting import PATIENCE_S
 import flowtex
 from flowtex.field import FlowField
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
-from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
 from flowtex.textures.tiles.shared import _pyramids
 
 SIZE = (320, 240)

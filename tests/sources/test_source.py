@@ -91,7 +91,7 @@ def test_planes_of_the_post_are_quick() -> None:
 
 
 def test_a_trace_can_be_stopped() -> None:
-    from flowtex.trace import trace
+    from flowtex.trace.trace import trace
 
     x, y = np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30))
     points = np.stack([x, y, 0 * x], axis=-1)

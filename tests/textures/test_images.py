@@ -18,9 +18,9 @@ from flowtex.cli import main
 from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
-from flowtex.textures import ImageError, PaperTextures, as_picture
-from flowtex.textures.images import LARGEST, load_image
-from flowtex.trace import SliceStore
+from flowtex.textures.images import LARGEST, ImageError, as_picture, load_image
+from flowtex.textures.paper import PaperTextures
+from flowtex.trace.store import SliceStore
 
 SIZE = (240, 140)
 

@@ -10,8 +10,8 @@ import pytest
 
 import flowtex
 from flowtex.settings import Settings
-from flowtex.textures import LayerPrefetch, TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import LayerPrefetch, TextureSet
+from flowtex.trace.store import SliceStore
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,12 @@ from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.field.grids.surface import GridSurface
 from flowtex.settings import Settings
-from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet
-from flowtex.textures.geometry import NodeDisplacements
-from flowtex.trace import SliceStore, TraceSlices, trace
+from flowtex.textures.geometry import NodeDisplacements, SurfaceGeometry
+from flowtex.textures.paper import PaperTextures
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import trace
 
 
 def textures(field: FlowField, slices: TraceSlices | None = None, **settings: object) -> TextureSet:

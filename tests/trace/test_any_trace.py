@@ -12,7 +12,10 @@ from strategies import field_arguments, field_of, property_test
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.trace import SliceStore, TraceSlices, integrate, paths, trace
+from flowtex.trace import integrate
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import paths, trace
 
 WAYS = st.sampled_from(["arclength", "time"])
 

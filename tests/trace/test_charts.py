@@ -14,8 +14,9 @@ import flowtex
 from flowtex import FlowField, TraceSlices
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore, paths, trace
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import paths, trace
 
 X, Z, TILTED = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, 0.8)
 

@@ -7,7 +7,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.trace import paths, trace
+from flowtex.trace.trace import paths, trace
 
 
 def plane(rows: int, columns: int) -> Floats:

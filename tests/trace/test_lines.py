@@ -13,8 +13,8 @@ from flowtex._util.array_types import AnyArray
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.field.steps import LazySteps
 from flowtex.scene.scene import Scene
-from flowtex.textures.tiles import Pyramid, TileKey
-from flowtex.trace import SliceStore, changing_share, chosen_lines
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
+from flowtex.trace.store import SliceStore, changing_share, chosen_lines
 
 
 def mirrored(field: FlowField) -> FlowField:

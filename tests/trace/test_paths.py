@@ -12,8 +12,8 @@ from scipy.linalg import expm
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.examples import double_gyre_field, double_gyre_velocity
-from flowtex.trace import paths, trace
 from flowtex.trace.integrate import IntegrationStep
+from flowtex.trace.trace import paths, trace
 
 #: Linear flows v = A x: bilinear interpolation has no error in them.
 FLOWS = {

@@ -8,8 +8,8 @@ import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.earth import EARTH_RADIUS, Projection
-from flowtex.trace.structure import CriticalPoints, Separatrices
-from flowtex.trace.structure.separatrices import _turned
+from flowtex.trace.structure.critical_points import CriticalPoints
+from flowtex.trace.structure.separatrices import Separatrices, _turned
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {

@@ -14,8 +14,9 @@ from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore, paths
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import paths
 
 SIZE = (200, 200)
 

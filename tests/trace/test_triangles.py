@@ -18,8 +18,9 @@ import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.trace import SliceStore, paths
 from flowtex.trace.lags import choose_lags, small_cell
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import paths
 
 
 def square(count: int, seed: int = 0) -> tuple[Floats, Indices]:

@@ -17,10 +17,10 @@ from webgl_page import ClientPage, packed, state
 from flowtex import FlowField
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.trace.store import SliceStore
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

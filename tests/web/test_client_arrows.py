@@ -17,7 +17,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings

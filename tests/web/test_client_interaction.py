@@ -16,7 +16,7 @@ from PIL import Image
 from webgl_page import ClientPage, packed, state
 
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 

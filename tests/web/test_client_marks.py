@@ -17,7 +17,7 @@ from webgl_page import ClientPage, packed, state
 import flowtex
 from flowtex import FlowField
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.rendering.webgl.marks import Marks
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings

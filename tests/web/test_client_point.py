@@ -15,7 +15,7 @@ from webgl_page import ClientPage, packed, state
 from flowtex import FlowField
 from flowtex.field.earth import Projection
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene

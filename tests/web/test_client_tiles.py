@@ -19,9 +19,9 @@ import flowtex
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.web.export import export, page_text
 from flowtex.web.view import WebView, web_views
 

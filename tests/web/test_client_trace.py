@@ -21,14 +21,13 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.scene.options import Options
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
-from flowtex.textures.texture_set import UNCERTAIN_LAYER
-from flowtex.textures.tiles import TileKey
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
+from flowtex.textures.tiles.pyramid import TileKey
+from flowtex.trace.store import SliceStore
 from flowtex.web.export import contents_of, export, page_pieces
 from flowtex.web.view import web_views
 

@@ -23,7 +23,7 @@ from flowtex.field.locate import locate
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene

@@ -107,7 +107,7 @@ def test_a_file_is_there_whole_or_as_it_was(
         raise OSError(msg)
 
     with monkeypatch.context() as patch:
-        patch.setattr("flowtex.rendering.webgl.ClientData.step", fail)
+        patch.setattr("flowtex.rendering.webgl.client_data.ClientData.step", fail)
         patch.setattr("flowtex.web.preview.preview_png", lambda *a, **k: b"")
         with pytest.raises(OSError, match="disk full"):
             export(gyre(), path)

@@ -15,8 +15,8 @@ from waiting import PATIENCE_S, wait_until
 from flowtex._util.progress import check
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import Options
-from flowtex.textures import TextureSet
-from flowtex.textures.tiles import Pyramid
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.web.view import web_views
 from flowtex.widget.feed import Worker
 from flowtex.widget.flow_widget import Views

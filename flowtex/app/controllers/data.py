@@ -33,7 +33,7 @@ from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
 from flowtex.sources.mesh_source import Source
-from flowtex.textures.tiles import coarsened_field
+from flowtex.textures.tiles.shared import coarsened_field
 
 #: Nodes of another file above which it is first shown coarser, and how many it then has.
 FILE_PREVIEW = 40_000, 8_000

@@ -34,8 +34,8 @@ from flowtex.sources.meshes.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
 from flowtex.sources.remote import open_remote, prepare_readers
-from flowtex.textures.tiles import Pyramid
-from flowtex.trace import SliceStore
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.trace.store import SliceStore
 
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(

@@ -27,13 +27,13 @@ from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Pane, Viewport
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera, CameraError
-from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
 from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
-from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.web.view import TileSource, WebView, client_module
 
 _log = logging.getLogger(__name__)

@@ -26,8 +26,10 @@ from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, share_field
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
-from flowtex.textures.tiles import Pyramid, has_pyramid
-from flowtex.trace import SliceStore, TraceSlices
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.shared import has_pyramid
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.store import SliceStore
 
 #: Longest side of a drawing, in pixels.
 LONGEST_SIDE = 16_384

@@ -21,7 +21,8 @@ from flowtex.rendering.constants import (
 from flowtex.rendering.cpu.path import Places, TrianglePlaces, coordinates_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.uniforms import Values
-from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 
 @dataclass(frozen=True, eq=False)

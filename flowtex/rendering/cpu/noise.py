@@ -14,7 +14,7 @@ from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint, on_su
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.rendering.uniforms import Values
-from flowtex.textures import PaperTextures
+from flowtex.textures.paper import PaperTextures
 
 Hashes = NDArray[np.uint32]
 

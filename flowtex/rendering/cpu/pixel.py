@@ -15,7 +15,7 @@ from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
-from flowtex.textures import TextureSet
+from flowtex.textures.texture_set import TextureSet
 
 
 def cover_place(

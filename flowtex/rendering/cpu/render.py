@@ -21,7 +21,7 @@ from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
+from flowtex.textures.texture_set import TextureSet
 
 #: Fragments that are drawn together, so few that their arrays stay in the cache.
 PART = 1 << 14

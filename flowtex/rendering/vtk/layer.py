@@ -50,7 +50,8 @@ from flowtex.rendering.vtk.mesh import (
     vertex_attributes,
 )
 from flowtex.settings import Settings
-from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.texture_set import LayerPrefetch, TextureSet
 
 #: OpenGL's numbers of internal formats by channels, in half precision and in single.
 FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815}

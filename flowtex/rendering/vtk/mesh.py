@@ -16,7 +16,9 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats, Floats32, Indices
-from flowtex.textures import SurfaceGeometry, TextureSet, TriangleGeometry
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Extents from the origin from which on VTK draws points relative to another one; nearer by it
 #: takes them to single precision as they are.

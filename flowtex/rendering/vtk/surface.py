@@ -50,8 +50,10 @@ from flowtex.rendering.vtk.layer import (
 )
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
-from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.textures.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.loader import Tile, TileLoader
+from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
 
 #: Time after which a window is drawn again while tiles are on their way.
 LOOK_INTERVAL_MS = 250

@@ -42,8 +42,10 @@ from flowtex.rendering.webgl.velocity import (
     parameter_rows,
 )
 from flowtex.settings import NEEDS, TABLE, Settings
-from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
-from flowtex.textures.tiles import PATH_CELLS, Pyramid, TileKey
+from flowtex.textures.paper import PaperTextures
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {

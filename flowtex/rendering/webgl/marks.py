@@ -19,7 +19,7 @@ from flowtex._util.colours import rgb
 from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
-from flowtex.textures.tiles import Structure
+from flowtex.textures.tiles.structure import Structure
 
 #: Kinds of parts, by the settings that ask for them.
 MARK_PARTS = {

@@ -5,7 +5,7 @@ space, the nodes' positions with a ghost line around them, and what is blanked, 
 paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
 pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
 in the plane there, and composes longer ones of a flow that stands still;
-``shaders/webgl2/layers.glsl`` makes texels of them as :class:`~flowtex.textures.TextureSet` does.
+``shaders/webgl2/layers.glsl`` makes texels of them as ``TextureSet`` does.
 A client that cannot trace gets the slices, packed once for all views of the same textures.
 """
 
@@ -25,12 +25,12 @@ from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
-from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.textures.texture_set import UNCERTAIN_LAYER
-from flowtex.textures.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
+from flowtex.textures.tiles.pyramid import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
-from flowtex.trace.structure import formula_rates
+from flowtex.trace.structure.critical_points import formula_rates
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4

@@ -21,8 +21,9 @@ import numpy as np
 from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, check, pool, stoppable
-from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Memory of the tiles that are kept, in bytes.
 BUDGET_BYTES = 1_000_000_000

@@ -30,10 +30,11 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
-from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
-from flowtex.trace import SliceStore
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.lags import FIRST_CELLS, small_cell, typical_speed
+from flowtex.trace.store import SliceStore
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
@@ -87,7 +88,7 @@ class _Level(NamedTuple):
 class Pyramid:
     """The levels of a field and their tiles.
 
-    ``parameter`` and ``lines`` are as for :class:`~flowtex.trace.SliceStore`. ``nodes`` are the
+    ``parameter`` and ``lines`` are as for ``SliceStore``. ``nodes`` are the
     numbers of nodes (J, I) at level 0, and ``depth`` is the level of the root; 0 where the whole
     field is the root. ``ranges`` are the ends of scalars and of the speed at level 0, by name and
     whether robust, where they do not follow from the field itself.

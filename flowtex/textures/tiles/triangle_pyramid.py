@@ -20,10 +20,11 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.triangles.topology import corner_ends
-from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import Clusters, levels_of
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
-from flowtex.trace import SliceStore
+from flowtex.textures.triangle_geometry import TriangleGeometry
+from flowtex.trace.store import SliceStore
 
 #: Most nodes of a field that is traced whole; and of one with such long paths that the windows of
 #: its quarters would together contain each triangle more than so many times.

@@ -20,8 +20,8 @@ from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.sources.identity import file_identity
 from flowtex.sources.mesh_source import FlowSource
-from flowtex.textures.tiles import has_pyramid
-from flowtex.trace import SliceStore
+from flowtex.textures.tiles.shared import has_pyramid
+from flowtex.trace.store import SliceStore
 
 
 @pytest.fixture

@@ -20,7 +20,8 @@ import flowtex
 from flowtex.app import FlowApp, FlowArea
 from flowtex.errors import FieldError
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.textures.tiles import Pyramid
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import Pyramid
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -135,7 +136,7 @@ def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyP
     told = Told(app, monkeypatch)
     (first,) = app.area.element.begin("browser")["scenes"]
     assert "tile/0/0/1/scalars/0" in asking(app, first)("0,0,1.0")
-    monkeypatch.setattr(flowtex.textures.TextureSet, "layers", None)
+    monkeypatch.setattr(TextureSet, "layers", None)
     app.area.scalars = "p"
     (second,) = told.taken()["scenes"]
     assert second["parts"] != first["parts"]

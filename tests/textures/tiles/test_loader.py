@@ -11,8 +11,8 @@ import pytest
 from waiting import wait_until
 
 from flowtex._util.progress import check
-from flowtex.textures.tiles import TileKey, TileLoader
-from flowtex.textures.tiles.loader import GRACE_S, RETRY_S
+from flowtex.textures.tiles.loader import GRACE_S, RETRY_S, TileLoader
+from flowtex.textures.tiles.pyramid import TileKey
 
 KEYS = [TileKey(0, 0, n) for n in range(8)]
 

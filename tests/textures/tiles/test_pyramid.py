@@ -10,10 +10,11 @@ from small_tiles import TILE_CELLS
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.textures.tiles import Pyramid, TileKey, block_places
-from flowtex.textures.tiles.pyramid import MOST_RING, _ring, is_cut
-from flowtex.trace import SliceStore, trace
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.pyramid import MOST_RING, Pyramid, TileKey, _ring, block_places, is_cut
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import trace
 
 
 @pytest.fixture(autouse=True)

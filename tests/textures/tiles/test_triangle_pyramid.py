@@ -13,9 +13,14 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.steps import LazySteps
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part
-from flowtex.textures import TextureSet, TriangleGeometry
-from flowtex.textures.tiles import TileKey, TrianglePyramid, levels_of, shared_pyramid
-from flowtex.trace import SliceStore, trace
+from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.clusters import levels_of
+from flowtex.textures.tiles.pyramid import TileKey
+from flowtex.textures.tiles.shared import shared_pyramid
+from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
+from flowtex.textures.triangle_geometry import TriangleGeometry
+from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import trace
 
 
 @pytest.fixture(autouse=True)
