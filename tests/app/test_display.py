@@ -56,4 +56,4 @@ def test_the_size_of_a_window_is_checked(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_what_a_picture_has_no_use_for_is_told(options: Any, told: str, opengl: Any) -> None:
     del opengl
     with pytest.warns(Notice, match=told):
-        flowtex.render(gyre(), size=(40, 30), samples=3, **options)
+        flowtex.render(gyre(), size=(320, 240), samples=3, **options)

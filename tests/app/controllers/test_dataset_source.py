@@ -56,7 +56,7 @@ def test_a_dataset_is_a_source_too() -> None:
     with pytest.raises(FieldError, match="level is 20"):
         source.plane_of(20)
     assert Library.of(levels()).names == ("flow",)
-    with pytest.raises(FieldError, match=r"a.vts, b.vts does not exist"):
+    with pytest.raises(FieldError, match=r"a.vts, b.vts: no such file"):
         open_source(["a.vts", "b.vts"])
 
 
