@@ -34,19 +34,9 @@ def spread_name(dim: str) -> str:
 def with_uncertainty(field: Field, value: Any) -> Field:
     """Return a field whose streaks show the uncertainty of its direction.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    value
-        The name of a scalar of the field, which is averaged to the nodes if it is on cells; or of
-        the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I), on
-        triangles (N,) or (T, N): the standard deviation of the velocity over its magnitude.
-
-    Raises
-    ------
-    FieldError
-        When the scalar does not exist, the array does not fit the nodes, or a number is negative.
+    ``value`` is the name of a scalar of the field, which is averaged to the nodes if it is on
+    cells; or of the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I),
+    on triangles (N,) or (T, N): the standard deviation of the velocity over its magnitude.
     """
     flow: Any = field
     scalars = flow.scalars

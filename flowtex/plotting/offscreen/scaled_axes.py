@@ -27,24 +27,13 @@ STRETCH_STEP = 0.5
 
 
 class AxesScales:
-    """Scales of axes, which transform x and y to positions on the axes.
-
-    Polar axes transform the angle and the radius to positions around their centre.
-
-    Attributes
-    ----------
-    names
-        Names of the scales.
-    polar
-        Parameters of polar axes: the zero and the sign of the angle, the radius of the
-        centre, and the sign of the radius. Empty on others.
-    stretch
-        Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
-    """
+    """Scales of axes: of x and y, or of the angle and the radius of polar ones."""
 
     def __init__(self, ax: Any, *, framed: bool = True) -> None:
         self.names = ax.get_xscale(), ax.get_yscale()
+        #: Zero and sign of the angle, radius of the centre, and sign of the radius.
         self.polar: tuple[float, ...] = ()
+        #: Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
         self.stretch = 1.0
         # Scaling, and the transform to the figure after it: together they are ``ax.transData``.
         self._scale = self._scaled = ax.transScale
@@ -82,13 +71,7 @@ class AxesScales:
         return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
 
     def extent(self, field: FlowField, frame: Floats) -> Floats:
-        """Return the ends of the coordinates that the scales can show, (2, 2): lower, then upper.
-
-        Raises
-        ------
-        FieldError
-            When the scales can show no node.
-        """
+        """Return the ends of the coordinates that the scales can show, (2, 2): lower, upper."""
         values = (field.points @ frame.T).reshape(-1, 2)
         with np.errstate(all="ignore"):
             is_shown = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
@@ -120,11 +103,6 @@ class AxesScales:
         """Return a flat field as the axes show it; nodes outside of the scales are blanked.
 
         ``frame`` are the directions of x and y, (2, 3). The speed stays that of the field.
-
-        Raises
-        ------
-        FieldError
-            When no node has a place on the axes.
         """
         points = field.points @ frame.T
         low, high = self.extent(field, frame)

@@ -104,13 +104,7 @@ class Drawn:
         }
 
     def of(self, array: xr.DataArray) -> xr.DataArray:
-        """Return the same of another variable, by its labels: ([time,] ...), not read yet.
-
-        Raises
-        ------
-        FieldError
-            When the variable has other labels.
-        """
+        """Return the same of another variable, ([time,] ...), or raise if its labels differ."""
         known = {axis.kind: axis for axis in self.axes}
         surface = horizontal_dims(array)
         series: tuple[str, ...] = ()

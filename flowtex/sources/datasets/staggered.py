@@ -116,13 +116,7 @@ def find_grid(
     *,
     along_earth: bool,
 ) -> Grid:
-    """Return the grid of two components, aligned by the positions of their values.
-
-    Raises
-    ------
-    FieldError
-        When the values of the components lie at other places that are not half a cell apart.
-    """
+    """Return the grid of two components, or raise if they are not half a cell apart."""
     dims = horizontal_dims(u), horizontal_dims(v)
     nemo = _nemo_places(u, v, dims, datasets, drawn, along_earth=along_earth)
     if nemo is not None:
