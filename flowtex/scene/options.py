@@ -526,9 +526,8 @@ class Options:
                 axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
                 if is_dataset(mesh) and "sel" in known and name in _axes_of(mesh):
                     near = axis
-                if not near:
-                    of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
-                    near = f"help(flowtex.render) has all of them{of_file}"
+                of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
+                near = near or f"help(flowtex.render) has all of them{of_file}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         if is_array:  # which is read with the mesh, and is no argument of its own
