@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -160,3 +161,21 @@ def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> st
     if examples:
         return f"expected one of {len(names)} names, such as {examples}"
     return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def sized(function: Function) -> Function:
+    """Return a function whose ``size`` may be given as ``window_size``, as in PyVista."""
+
+    @functools.wraps(function)
+    def call(*args: Any, window_size: Any = None, **options: Any) -> Any:
+        if window_size is not None and "size" in options:
+            msg = (
+                f"size is {options['size']!r} and window_size is {window_size!r}; omit one of them"
+            )
+            raise FieldError(msg)
+        return function(*args, **options, **({"size": window_size} if window_size else {}))
+
+    return call  # type: ignore[return-value]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from flowtex._util.arguments import checked_size
+from flowtex._util.arguments import checked_size, sized
 from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
@@ -20,6 +20,7 @@ VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
+@sized
 def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
     """Show a flow as a widget in a notebook, otherwise in a window or on a page in the browser.
 

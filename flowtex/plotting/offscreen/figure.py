@@ -15,7 +15,7 @@ from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.image import AxesImage
 from PIL import Image
 
-from flowtex._util.arguments import brief, checked_size
+from flowtex._util.arguments import brief, checked_size, sized
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
@@ -50,6 +50,7 @@ LONGEST_SIDE_PX = 8192
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
+@sized
 def extent(
     mesh: Any,
     *,

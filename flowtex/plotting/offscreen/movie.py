@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_number
+from flowtex._util.arguments import checked_number, sized
 from flowtex._util.array_types import Bytes
 from flowtex._util.notices import notify
 from flowtex._util.progress import track
@@ -184,6 +184,7 @@ class Movie:
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
+@sized
 def movie(
     mesh: Any,
     path: str | Path,
