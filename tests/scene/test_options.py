@@ -178,7 +178,7 @@ def test_every_front_end_takes_a_path(tmp_path: Path) -> None:
     plotter.close()
     assert flowtex.render(str(path), size=(80, 60), samples=5).std() > 0
     assert flowtex.export(path, tmp_path / "page.html").steps == 1
-    assert flowtex.movie(path, tmp_path / "a.gif", size=(80, 60), seconds=0.1, fps=20).frames == 2
+    assert flowtex.movie(path, tmp_path / "a.gif", size=(80, 60), seconds=0.2, fps=20).frames == 4
     assert flowtex.FlowWidget(str(path)).field.name == "gyre"
 
 
