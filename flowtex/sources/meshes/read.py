@@ -76,9 +76,9 @@ def read_meshes(
         return surface_sheet(grid, cut, velocity, record)
 
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(times_of(mesh))
-    volume = VolumeValues(velocity, chosen or cut, count)
-    liking = preference or "point"
-    arrays = _stacked(chain([first], steps), velocity, draw, times, liking, record, volume)
+    preference = preference or "point"
+    volume = VolumeValues(velocity, chosen or cut, count, preference)
+    arrays = _stacked(chain([first], steps), velocity, draw, times, preference, record, volume)
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "volume_values": volume.values()}
     if first.grid.max_cell_dimensionality < 3:

@@ -29,11 +29,14 @@ class VolumeValues:
     """Values of the arrays of a volume over a number of steps: the extremes, and a sample of many.
 
     Vectors have values of their magnitude and their components. ``speed`` is the one in planes such
-    as the ``drawn`` one, and is left out for a contour.
+    as the ``drawn`` one, and is left out for a contour. Of two arrays of a name, that on a "point"
+    or on a "cell" is preferred.
     """
 
-    def __init__(self, velocity: MeshArray, drawn: Cut | Plane | None, steps: int) -> None:
-        self._velocity, self._plane = velocity, drawn
+    def __init__(
+        self, velocity: MeshArray, drawn: Cut | Plane | None, steps: int, preference: str
+    ) -> None:
+        self._velocity, self._plane, self._preference = velocity, drawn, preference
         # All planes in a direction have the same values.
         if isinstance(drawn, Slice):
             self._plane = replace(drawn, point=None, text="")
@@ -47,8 +50,8 @@ class VolumeValues:
         if grid.max_cell_dimensionality < 3:
             return
         arrays = {self._velocity.name: self._velocity}
-        # Arrays of points come first, and have precedence.
-        arrays |= {a.name: a for a in reversed(catalogue(grid)) if a.numeric and a.components <= 3}
+        ordered = sorted(catalogue(grid), key=lambda a: a.where.startswith(self._preference))
+        arrays |= {a.name: a for a in ordered if a.numeric and a.components <= 3}
         wanted: dict[str, tuple[MeshArray, Any]] = {}
         if self._velocity.components == 3 and not isinstance(self._plane, Contour | None):
             wanted["speed"] = self._velocity, self._plane

@@ -214,6 +214,14 @@ def test_preference_chooses_between_points_and_cells() -> None:
         FlowField.from_pyvista(grid, vectors="v", preference="cells")
 
 
+def test_the_range_is_that_of_the_preferred_array_of_the_volume() -> None:
+    grid = flowing(4, 3, 4)
+    grid["p"], grid.cell_data["p"] = np.arange(48.0), 100 + np.arange(18.0)
+    for preference, ends in (("point", (0, 47)), ("cell", (100, 117))):
+        field = FlowField.from_pyvista(grid, vectors="v", plane="k=1", preference=preference)
+        assert Scene(field).scalar_range("p") == ends
+
+
 def test_a_plane_of_nodes_has_the_cells_of_extract_subset() -> None:
     grid = flowing(4, 3, 3)
     grid.cell_data["c"] = np.arange(12.0)
