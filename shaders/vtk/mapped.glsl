@@ -3,6 +3,7 @@ uniform sampler2DArray u_colours; // below the range, in it, above it, and witho
 uniform vec2 u_padding;           // texels of the slices before the first node
 uniform bool u_flat;              // values belong to cells: shares lie at first nodes, or at triangles
 
+const float FLOWTEX_ROUNDED_UP = 1.000001;
 int flowtexTriangleNumber; // number of the triangle
 
 // Values of nodes are interpolated first and mapped then, each entry of the map over an equal share.
@@ -24,6 +25,7 @@ vec3 flowtexMapped(vec2 coordinate)
 #endif
   int count = textureSize(u_colours, 0).x - 3;
   float place = share.x / max(share.y, 0.5);
+  place = min(place * FLOWTEX_ROUNDED_UP, max(place, 1.0)); // a value at the border of two colours has the second
   int entry = place == 1.0 ? count : int(clamp(floor(place * float(count)), -1.0, float(count))) + 1;
   if (share.y < 0.5)
     entry = count + 2;

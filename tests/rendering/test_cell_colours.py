@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+import matplotlib.colors
 import numpy as np
 import pytest
 import pyvista as pv
@@ -91,6 +92,13 @@ def mixed(steps: list[Any]) -> Any:
     return mesh
 
 
+def categories(count: int) -> Any:
+    """Return a mesh with whole numbers, all at the borders of colours."""
+    mesh = sheared(25, 17)
+    mesh.cell_data["c"] = np.arange(mesh.n_cells) % count
+    return mesh
+
+
 @dataclass(frozen=True)
 class Case:
     """A mesh, what is drawn of it, and the mesh that PyVista draws."""
@@ -100,12 +108,15 @@ class Case:
     drawn: Callable[[Any], Any] = lambda mesh: mesh
     camera: Camera | None = None
     time: float = 0.0
+    look: dict[str, Any] = field(default_factory=dict)
 
 
 #: Of grids with tiles.
 CLOSE = Camera((1.6, 1.0, 5.0), (1.6, 1.0, 0.0), (0, 1, 0), parallel=True, parallel_scale=0.06)
 ASIDE = Camera((2.5, -3.0, 4.0), (1.7, 1.0, 0.0), (0, 0, 1))
 SLICE: dict[str, Any] = {"slice": tuple(CUT.values())}
+
+MAP = matplotlib.colors.ListedColormap(np.random.default_rng(0).random((23, 3)))
 
 CASES = {
     "grid": Case(sheared),
@@ -129,6 +140,7 @@ CASES = {
     ),
     "series": Case(lambda: series(sheared()), {}, mixed, time=0.25),
     "series of triangles": Case(lambda: series(random_triangles()), {}, mixed, time=0.25),
+    "categories": Case(lambda: categories(23), look={"cmap": MAP, "clim": (0, 23)}),
     "tiles": Case(lambda: sheared(241, 161), camera=CLOSE),
     "tiles of triangles": Case(
         lambda: sheared(81, 61).extract_surface(algorithm="dataset_surface").triangulate(),
@@ -172,6 +184,7 @@ def expected(name: str) -> tuple[Bytes, Bools]:
     case, camera = CASES[name], seen(name)
     mesh = case.drawn(case.mesh())
     look: dict[str, Any] = {"scalars": "c", "clim": CLIM, "cmap": "viridis", "preference": "cell"}
+    look |= case.look
     picture = by_pyvista(mesh, camera, **look)
     number = np.arange(mesh.n_cells)
     codes = np.stack([number % 251, number // 251 % 251, 100 + number // 251**2], axis=-1)
@@ -201,7 +214,7 @@ LOOK: dict[str, Any] = {
 def test_vtk_draws_cells_flat(plotter: Any, name: str) -> None:
     plotter.window_size = list(SIZE)
     plotter.set_background(GROUND)
-    handle = plotter.flowtex.add(read(name), show_scalar_bar=False, **LOOK)
+    handle = plotter.flowtex.add(read(name), show_scalar_bar=False, **LOOK | CASES[name].look)
     if not handle.field.steady:
         handle.time = CASES[name].time
     apply_camera(seen(name), plotter.camera)
@@ -212,7 +225,7 @@ def test_vtk_draws_cells_flat(plotter: Any, name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name in CASES if "tiles" not in name])
 def test_numpy_draws_cells_flat(name: str) -> None:
-    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK))
+    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK | CASES[name].look))
     data, scene, between = view.data(), view.scene, CASES[name].time
     state = ViewState(still=True, between=between)
     steps = (0, min(data.steps - 1, 1))
@@ -223,7 +236,7 @@ def test_numpy_draws_cells_flat(name: str) -> None:
 @pytest.mark.browser
 @pytest.mark.parametrize("name", CASES)
 def test_the_browser_draws_cells_flat(client: ClientPage, name: str) -> None:
-    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK))
+    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK | CASES[name].look))
     data = view.data()
     client.tile = tile_maker(data)
     settings, time = view.scene.settings, CASES[name].time
@@ -253,7 +266,7 @@ CARD = """() => Object.fromEntries([...viewers[0].root.shadowRoot.querySelectorA
 @pytest.mark.browser
 @pytest.mark.parametrize("name", ["grid", "triangles"])
 def test_the_card_has_the_value_of_the_cell(client: ClientPage, name: str) -> None:
-    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK))
+    (view,) = web_views(read(name), Options.split(background=GROUND, **LOOK | CASES[name].look))
     data = view.data()
     client.mount(packed(data, data.header(view.scene.settings)), SIZE)
     client.page.wait_for_function("() => viewers[0].canPick")

@@ -54,7 +54,7 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
 
 #: OpenGL's numbers of internal formats by channels, in half precision and in single.
-FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815}
+FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815, 4: 0x8814}
 #: OpenGL's number of the type of half precision.
 HALF_FLOAT = 0x140B
 
@@ -65,7 +65,7 @@ class GPUTexture:
     It belongs to one render window, uses a texture unit while a frame is drawn, and is released
     with the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of
     VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels),
-    with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are
+    with 1, 2 or 4 channels, are stored in half precision; 2 to 4 may be in ``single``. There are
     ``levels`` mip levels besides the finest, by default all; ``repeat`` says whether the texture
     is periodic along (v, u).
     """
@@ -312,11 +312,11 @@ class FlowLayer:
             loaders["u_slicesNext"] = partial(self._slices, 1)
         colours, geometry = self._colours, self._textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
-        none = np.zeros((1, 1, 1, 1), dtype=np.float32)
+        none, single = np.zeros((1, 1, 1, 4)), partial(GPUTexture, levels=0, single=True)
         loaders |= {
-            "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
-            "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
-            "u_nodes": lambda: GPUTexture(_nodes(self._textures.grid), levels=0, single=True),
+            "u_shares": lambda: single(colours.shares(geometry) if colours else none),
+            "u_colours": lambda: single(colours.colours() if colours else none),
+            "u_nodes": lambda: single(_nodes(self._textures.grid)),
         }
         if paper is not None:
             loaders["u_noiseImage"] = partial(

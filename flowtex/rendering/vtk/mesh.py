@@ -35,7 +35,7 @@ ATTRIBUTES = {
     "flowtexNoise": NOISE,
     "flowtexCorners": CORNERS,
 }
-#: Greatest share of the range of a colour map that half precision is to hold.
+#: Greatest share of the range of a colour map.
 MOST_RANGES = 1e3
 
 
