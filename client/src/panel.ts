@@ -20,8 +20,8 @@ import STYLE from "./styles.css";
 const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
-/** Height of a view from which on the bar and the legend stand outside the picture. */
-const LEAST_FRAMED_PX = 280;
+/** Height of a view below which nothing covers the flow and there are no axes, and below which there is no bar. */
+const [SMALL_PX, TINY_PX] = [280, 180];
 /** How many times faster than usual time may go by. */
 const PACES = [0.25, 0.5, 1, 2, 4];
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
@@ -310,9 +310,9 @@ export class Panel {
   }
 
   private get isFramed(): boolean {
-    const { header, options, root } = this.viewer;
+    const { header, options } = this.viewer;
     const isShown = options.follows?.panel.isShown ?? this.isShown;
-    return isShown && !options.bare && header !== null && root.clientHeight >= LEAST_FRAMED_PX;
+    return isShown && !options.bare && header !== null;
   }
 
   /** Choose what stands at the borders of the picture. */
@@ -326,7 +326,8 @@ export class Panel {
     const { header } = this.viewer;
     const usual = header && hasTicks(header) ? "ticks" : "none";
     const kind = this.axesKind ?? header?.axes ?? usual;
-    const shown = this.isFramed ? kind : "none";
+    const { clientHeight } = this.viewer.root;
+    const shown = this.isFramed && clientHeight >= SMALL_PX ? kind : "none";
     this.axesMenu.value = kind;
     this.viewer.root.dataset.axes = shown;
     this.axes.draw(shown);
@@ -338,13 +339,16 @@ export class Panel {
     const isReady = header !== null;
     const follows = Boolean(options.follows);
     // The bar of a view that follows another takes its room alone, so that both pictures are alike.
-    this.bar.hidden = !(this.isShown || (follows && this.isFramed)) || !isReady;
+    const isTiny = root.clientHeight < TINY_PX;
+    this.bar.hidden = isTiny || !(this.isShown || (follows && this.isFramed)) || !isReady;
     this.bar.style.visibility = follows ? "hidden" : "";
-    this.handle.hidden = this.isShown || !isReady || follows;
+    this.handle.hidden = isTiny || this.isShown || !isReady || follows;
     this.head.hidden = !(this.isShown || follows) || !isReady;
     this.controls.element.hidden = !this.isShown || !this.isOpen || !isReady;
     root.classList.toggle("flowtex-open", !this.controls.element.hidden);
     root.classList.toggle("flowtex-framed", this.isFramed);
+    root.classList.toggle("flowtex-small", root.clientHeight < SMALL_PX);
+    root.classList.toggle("flowtex-tiny", isTiny);
     this.showAxes();
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }

@@ -960,7 +960,7 @@ createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape
   gap: 8px; padding: 10px; pointer-events: none;
 }
 :host(.flowtex-framed) .stage { grid-row: 2; margin: 0 10px; }
-:host(.flowtex-framed) .top { height: 46px; padding: 5px 10px 0; align-items: center; }
+:host(.flowtex-framed) .top { height: 46px; padding: 2px 10px 0; align-items: center; }
 :host(.flowtex-framed) { --above-bar: 10px; }
 :host(.flowtex-framed) .bar { margin: 4px auto; }
 :host(.flowtex-framed) :is(.head, .kinds, .legend, .bar) {
@@ -1210,10 +1210,15 @@ p: 5px; }
   :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 56px; margin-right: 8px; }
 }
 @container (max-width: 420px) { :host(:not(.flowtex-framed)) .kinds, .top:not(:has(.row)) .kinds { display: none; } }
-@container (max-width: 220px) { .legend { display: none; } }
+@container (max-width: 220px) { :host(:not(.flowtex-tiny)) .top:has(.row) .legend, .top:not(:has(.row)) .head { display:\
+ none; } }
+:host(.flowtex-tiny) :is(.head, .kinds), :host(.flowtex-small:not(.flowtex-framed)) :is(.kinds, .legend) { display: none\
+; }
+:host(.flowtex-tiny) .legend { min-width: 0; max-width: 100%; }
+:host(.flowtex-tiny.flowtex-framed) .top { height: auto; }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=280,PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,[SMALL_PX,TINY_PX]=[280,180],PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
 platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria\
 -label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
@@ -1276,30 +1281,31 @@ return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,
 ""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.legend.point(
 header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=
 shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{
-header,options,root}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.
-clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&
-hasTicks(header)?"ticks":"none",kind=this.axesKind??header?.axes??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=
-kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==
-null,follows=!!options.follows;this.bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=
-follows?"hidden":"",this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,
-this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.
-hidden),root.classList.toggle("flowtex-framed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(
-this.isOpen))}wait(missing,isMade,isCoarse=!1,isFinding=!1){let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},
-details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:"",doing="";missing.length?doing="Loa\
-ding data":isMade?pending?doing="Loading tiles":isFinding&&(doing="Finding critical points"):doing="Tracing paths",this.
-isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.
-textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.
-hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||
-(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The\
- scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),
-this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(
-text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0,!1,this.isFinding),
-this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
-[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.
-options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||
-root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||
-"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(
-href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null}chooseAxes(kind){
+this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
+axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&clientHeight>=SMALL_PX?kind:"none";this.
+axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,
+isReady=header!==null,follows=!!options.follows,isTiny=root.clientHeight<TINY_PX;this.bar.hidden=isTiny||!(this.isShown||
+follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=isTiny||this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-fram\
+ed",this.isFramed),root.classList.toggle("flowtex-small",root.clientHeight<SMALL_PX),root.classList.toggle("flowtex-tiny",
+isTiny),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1,isFinding=!1){
+let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
+"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending?doing="Loading tiles":isFinding&&(doing=
+"Finding critical points"):doing="Tracing paths",this.isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-
+pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==
+count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||
+source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
+lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
+viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
+hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){
+this.wait([],!0,!1,this.isFinding),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.
+note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.
+root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(
+together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.
+together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),
+viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){

@@ -578,9 +578,9 @@ WAITS = """() => {
 
 def test_a_widget_shows_its_model_and_tells_it_what_a_person_does(client: ClientPage) -> None:
     page = client.page
-    page.evaluate(MODEL, [scene(gyre, straight(2)), [200, 140]])
+    page.evaluate(MODEL, [scene(gyre, straight(2)), [200, 240]])
     page.wait_for_function("() => host.dataset.sharp === 'true'")
-    assert number(client, "[host.clientWidth, host.clientHeight]") == [200, 140]
+    assert number(client, "[host.clientWidth, host.clientHeight]") == [200, 240]
     assert number(client, "log[0]") == ["send", {"kind": "ready"}, 0]
     page.wait_for_function("() => log.some((m) => m[0] === 'send' && m[1].kind === 'frame')")
     assert number(client, "log.filter((m) => m[0] === 'set').length") == 0
@@ -598,8 +598,9 @@ def test_a_widget_shows_its_model_and_tells_it_what_a_person_does(client: Client
     page.mouse.down()
     page.mouse.move(box_["x"] + 80, box_["y"] + 50, steps=12)
     page.mouse.up()
-    # Twenty of the 140 pixels that are twice the parallel scale.
-    moved = "Math.abs(model.get('camera').focal_point[0] - 0.63 + 20 * 0.9 / 140)"
+    # Twenty of the pixels that are twice the parallel scale.
+    share = 20 / box_["height"]
+    moved = f"Math.abs(model.get('camera').focal_point[0] - 0.63 + {share} * 0.9)"
     page.wait_for_function(f"() => {moved} < 1e-6")
     # The next one waits after each that is sent: there is not one for each move.
     told, waits = number(client, "[log.filter((m) => m[1] === 'camera').length, waits]")
