@@ -21,7 +21,7 @@ const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
 /** Height of a view below which nothing covers the flow and there are no axes, and below which there is no bar. */
-const [SMALL_PX, TINY_PX] = [280, 180];
+const [SMALL_PX, TINY_PX] = [280, 160];
 /** How many times faster than usual time may go by. */
 const PACES = [0.25, 0.5, 1, 2, 4];
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";

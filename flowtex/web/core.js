@@ -1218,7 +1218,7 @@ p: 5px; }
 :host(.flowtex-tiny.flowtex-framed) .top { height: auto; }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,[SMALL_PX,TINY_PX]=[280,180],PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,[SMALL_PX,TINY_PX]=[280,160],PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
 platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria\
 -label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
