@@ -36,6 +36,9 @@ const UNUSED = {
   scale_offset: "export class ScaleOffsetCodec {}",
   shuffle: "export class ShuffleCodec {}",
   transpose: "export class TransposeCodec {}",
+  "vlen-utf8": "export class VLenUTF8 {}",
+  zlib: "export class ZlibCodec {}",
+  // Arrays of truth values and of texts.
   typedarray: "export class BoolArray {} export class ByteStringArray {} export class UnicodeStringArray {}",
 };
 const LESS = {

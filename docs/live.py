@@ -38,7 +38,8 @@ from sphinx.util.docutils import SphinxDirective
 import flowtex
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.scene.signatures import accepts_options
 from flowtex.web.export import page_text
 from flowtex.web.view import WebView, asset, client_script, web_views
 

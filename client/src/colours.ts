@@ -1,6 +1,6 @@
 // Colours of the surface: what is chosen of them, and the colours that the picture then has.
 
-import type { Data, Header, NamedPart, Part, Settings, Shading } from "./protocol.ts";
+import { shareOf, type Data, type Header, type NamedPart, type Part, type Settings, type Shading } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 
 /** What a person chooses; a range of null is that of the values. */
@@ -16,6 +16,8 @@ export interface ColourChoice {
 
 /** Name of a part that a client has made: no other one has its digest. */
 const OWN = "own cmap";
+/** Colours of a map up to which a ramp shows each of them with its borders. */
+const MOST_STEPS = 32;
 const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 2.4 };
 
 /** What of a header says how the surface is coloured. */
@@ -24,14 +26,46 @@ export function coloursOf(header: Header): Partial<Header> {
   return { scalars, colour, background, lighting, opacity, earth };
 }
 
-/** The table of a map to choose from, (256, 4), of the part that has all of them. */
-export function mapOf(header: Header, maps: Data, name: string): Uint8Array {
-  const [first, count] = [header.scalars.maps.indexOf(name) * 3 * 256, 256];
-  const table = new Uint8Array(4 * count).fill(255);
-  for (let n = 0; n < count; n += 1) {
-    for (let k = 0; k < 3; k += 1) table[4 * n + k] = maps[first + 3 * n + k];
-  }
-  return table;
+/** Numbers of colours of all maps to choose from. */
+const ENTRIES = 256;
+
+/** The table of a map to choose from, (N, 4), of the part that has all of them, or the table of a norm in its colours. */
+export function mapOf({ scalars }: Header, maps: Data, name: string, norm?: Float32Array): Uint8Array | Float32Array {
+  const { entries, flip, maps: names } = scalars;
+  const table = norm ? norm.slice() : new Uint8Array(4 * entries).fill(255);
+  const last = table.length / 4 - 1 || 1;
+  return table.map((own: number, at: number) => {
+    const [n, k] = [at >> 2, at & 3];
+    const place = Math.round(((flip ? last - n : n) / last) * (ENTRIES - 1));
+    return k === 3 ? own : maps[3 * (names.indexOf(name) * ENTRIES + place) + k];
+  });
+}
+
+/** Colours below the range, in it, above it, and without a value: as ColourScale.texels of Python. */
+export function texelsOf(map: Data, { beyond }: Header["scalars"]): Float32Array {
+  const count = map.length / 4;
+  const norm = map instanceof Float32Array;
+  return Float32Array.from({ length: map.length + 12 }, (_, at) => {
+    const [n, k] = [at >> 2, at & 3];
+    const own = map[4 * clamp(n - 1, 0, count - 1) + k];
+    if (k === 3) return norm ? (n ? own : 1) : 0;
+    const end = n > count ? beyond[n - count] : n ? null : beyond[0];
+    return end?.[k] ?? own / 255;
+  });
+}
+
+/** What gives the place of a value on a map, from 0 to 1. */
+export function placeOf(scalars: Header["scalars"], map: Data): (value: number) => number {
+  const share = shareOf(scalars);
+  if (!(map instanceof Float32Array)) return share;
+  const count = map.length / 4;
+  const edge = (n: number) => (n < count ? map[4 * n + 3] : 1);
+  return (value) => {
+    const at = share(value);
+    let n = 0;
+    while (n < count - 1 && edge(n + 1) <= at) n += 1;
+    return (n + clamp((at - edge(n)) / (edge(n + 1) - edge(n) || 1), 0, 1)) / count;
+  };
 }
 
 /** The choice of other scalars: a map by default is then that of these. */
@@ -68,11 +102,16 @@ export function recoloured(
   const earth = header.earth && { ...header.earth, coastlines, graticule };
   const { opacity = header.opacity } = choice;
   const colours = { scalars, earth, opacity } as Partial<Header>;
-  const maps = parts.get("maps");
-  if (!choice.cmap || !maps) return { colours, part: null };
-  const data = mapOf(header, maps.data, choice.cmap);
-  const part = { name: "cmap", data, shape: [256, 4], digest: `${OWN} ${choice.cmap}` };
-  return { colours, part };
+  const [maps, map] = [parts.get("maps"), parts.get("cmap")?.data];
+  // A norm has limits of its own, so another range or other scalars end it.
+  const norm = map instanceof Float32Array;
+  const ends = norm && (choice.clim !== undefined || choice.scalars !== undefined);
+  if (!maps || !(choice.cmap || ends)) return { colours, part: null };
+  if (ends) Object.assign(scalars, { ticks: [], beyond: [null, null, scalars.beyond[2]] });
+  const own = norm && !ends;
+  const data = choice.cmap ? mapOf(header, maps.data, choice.cmap, own ? map : undefined) : Uint8Array.from(map ?? []);
+  const digest = [OWN, choice.cmap, own].join();
+  return { colours, part: { name: "cmap", data, shape: [data.length / 4, 4], digest } };
 }
 
 const toLinear = (c: number) =>
@@ -110,15 +149,31 @@ export function meanColour(colour: number[], settings: Settings, shading: Shadin
   return mean;
 }
 
-/** A ramp of the mean colours that the picture has with a map, (256, 4), as a background. */
+/** Runs of equal colours of a map: the first, and the one after the last. */
+function runsOf(map: Data): [number, number][] {
+  const runs: [number, number][] = [];
+  for (let n = 0; n < map.length / 4; n += 1) {
+    const isSame = n > 0 && [0, 1, 2].every((k) => map[4 * n + k] === map[4 * n - 4 + k]);
+    if (isSame) runs[runs.length - 1][1] = n + 1;
+    else runs.push([n, n + 1]);
+  }
+  return runs;
+}
+
+/** A ramp of the mean colours that the picture has with a map, (N, 4), as a background. */
 export function rampOf(map: Data, header: Header, settings: Settings, stops: number): string {
-  const colours = Array.from({ length: stops }, (_, n) => {
-    const first = 4 * Math.round((n / (stops - 1)) * 255);
-    const colour = [...map.slice(first, first + 3)];
+  const count = map.length / 4;
+  const shown = (n: number) => {
+    const colour = [...map.slice(4 * n, 4 * n + 3)];
     // An image on the surface has colours of its own.
     const own = header.paper?.picture ?? false;
-    const shown = own ? colour : meanColour(colour, settings, header.constants.shading);
-    return `rgb(${shown.map(Math.round).join(" ")})`;
-  });
+    return `rgb(${(own ? colour : meanColour(colour, settings, header.constants.shading)).map(Math.round).join(" ")})`;
+  };
+  // Few colours have borders.
+  const runs = runsOf(map);
+  const colours =
+    runs.length <= MOST_STEPS
+      ? runs.map(([from, to]) => `${shown(from)} ${(100 * from) / count}% ${(100 * to) / count}%`)
+      : Array.from({ length: stops }, (_, n) => shown(Math.round((n / (stops - 1)) * (count - 1))));
   return `linear-gradient(90deg, ${colours.join(", ")})`;
 }

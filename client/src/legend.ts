@@ -1,8 +1,8 @@
 // The legend of the colours, with a mark at the value under the pointer.
 
-import { rampOf } from "./colours.ts";
+import { placeOf, rampOf } from "./colours.ts";
 import { dom } from "./dom.ts";
-import { beyondEnds, legendLimits, shareOf, type Data, type Header, type Settings, type StructureHeader } from "./protocol.ts";
+import { beyondEnds, legendLimits, type Data, type Header, type Settings, type StructureHeader } from "./protocol.ts";
 import { ticksOf } from "./ticks.ts";
 import { clamp } from "./vectors.ts";
 
@@ -19,6 +19,7 @@ export class Legend {
   /** Kinds of critical points, each with its mark. */
   readonly kinds = dom("div", { class: "kinds glass", hidden: "" });
   private shownKinds = "";
+  private place = (value: number) => value;
 
   readonly element = dom("div", { class: "legend glass", hidden: "" });
   private readonly mark = dom("i", { hidden: "" });
@@ -34,10 +35,11 @@ export class Legend {
     ramp.classList.toggle("below", isBelow);
     ramp.classList.toggle("above", isAbove);
     this.mark.hidden = true;
-    const placeOf = shareOf(header.scalars);
+    const place = placeOf(header.scalars, map);
+    this.place = place;
     const ticks = legendTicks(header).map(({ value, text }) => {
       const tick = dom("span", {}, [text]);
-      const share = clamp(placeOf(value), 0, 1);
+      const share = clamp(place(value), 0, 1);
       tick.style.left = `${100 * share}%`;
       const isAtEnd = Math.abs(share - 0.5) > 0.5 - END_SHARE;
       tick.style.transform = `translateX(${isAtEnd ? -100 * share : -50}%)`;
@@ -67,12 +69,13 @@ export class Legend {
   point(header: Header | null, value = NaN): void {
     this.mark.hidden = !header || !Number.isFinite(value);
     if (!header || this.mark.hidden) return;
-    this.mark.style.left = `${100 * clamp(shareOf(header.scalars)(value), 0, 1)}%`;
+    this.mark.style.left = `${100 * clamp(this.place(value), 0, 1)}%`;
   }
 }
 
 /** As many round values as there is room for. */
 function legendTicks({ scalars }: Header) {
+  if (scalars.ticks.length) return scalars.ticks;
   const [low, high] = legendLimits(scalars);
   const ticks = [5, 4, 3].map((most) => ticksOf(low, high, scalars.log, most));
   const size = (some: typeof ticks[0]) => some.reduce((sum, { text }) => sum + text.length, 0);

@@ -1,10 +1,11 @@
 // The nodes of a surface as the arrays of a draw call, and values between nodes.
 
 import { shareOf, type Data, type Geometry, type Header, type Padding, type Paper } from "./protocol.ts";
-import type { Vector } from "./vectors.ts";
+import { clamp, type Vector } from "./vectors.ts";
 
-/** What a node without a value has, far below every colour map. */
+/** What a node without a value has, far below every colour map, and the farthest share that others have. */
 const NO_VALUE = -1e9;
+const MOST_RANGES = 500;
 
 /** Positions relative to a point, in whose surroundings single precision does. */
 export function positions(data: Data, anchor: Vector): Float32Array {
@@ -46,7 +47,7 @@ export function shares(steps: Data[], scalars: Header["scalars"]): Float32Array 
   steps.forEach((values, k) => {
     for (let n = 0; n < nodes; n += 1) {
       const share = place(values[n]);
-      result[2 * n + k] = Number.isFinite(share) ? share : NO_VALUE;
+      result[2 * n + k] = Number.isFinite(share) ? clamp(share, -MOST_RANGES, MOST_RANGES) : NO_VALUE;
     }
   });
   return result;

@@ -220,7 +220,7 @@ export class PointCard {
     } else {
       const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
       lines.set("position", where);
-      lines.set(label.replace("speed", "velocity"), withUnit(text, unit));
+      lines.set(label.replace("speed", "velocity").replaceAll("|", ""), withUnit(text, unit));
     }
     lines.set(label, withUnit(numberText(size, VELOCITY_DIGITS), unit));
     for (const [name, value] of Object.entries(point.values)) {

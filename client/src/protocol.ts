@@ -346,6 +346,13 @@ export interface Header {
     /** Whether the map is logarithmic, and whether its range is automatic. */
     log: boolean;
     auto: boolean;
+    /** Values beside the legend of a norm, whose map has shares of the range in its fourth channel. */
+    ticks: { value: number; text: string }[];
+    /** Colours below the range and above it, where they are not those of its ends, and without a value. */
+    beyond: (number[] | null)[];
+    /** Number of colours of maps that are chosen, and whether these are reversed. */
+    entries: number;
+    flip: boolean;
     /** Name of the map, names of those in the part "maps", and of those with a middle. */
     cmap: string;
     maps: string[];

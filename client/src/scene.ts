@@ -2,6 +2,7 @@
 
 import { Arrows } from "./arrows.ts";
 import { Bodies, BODY_PARTS } from "./bodies.ts";
+import { texelsOf } from "./colours.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
 import { Marks } from "./marks.ts";
@@ -505,11 +506,11 @@ export class Scene {
 
   private colourMap(): WebGLTexture {
     const gl = this.graphics.context;
-    return this.texture("cmap", this.key(["cmap"]), (texture) => {
+    const { scalars } = this.header;
+    return this.texture("cmap", this.key(["cmap"], scalars.beyond), (texture) => {
       gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-      const data = (this.parts.get("cmap")?.data ?? new Uint8Array(1024)) as Uint8Array;
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, data);
+      const data = texelsOf(this.parts.get("cmap")?.data ?? new Uint8Array(4), scalars);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, data.length / 4, 1, 0, gl.RGBA, gl.FLOAT, data);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     });

@@ -28,7 +28,7 @@ const header = {
       { name: "speed", unit: "m/s", low: 0, high: 2, steps: 1 },
       { name: "p", unit: "Pa", low: -1, high: 3, steps: 4 },
     ],
-    ...{ maps: ["viridis", "coolwarm"], diverging: ["coolwarm"], log: false, bar: true, steps: 1 },
+    ...{ maps: ["viridis", "coolwarm"], entries: 256, flip: false, beyond: [null, null, null], diverging: ["coolwarm"], log: false, bar: true, steps: 1 },
   },
 } as unknown as Header;
 

@@ -1,15 +1,22 @@
-"""Colours and colour maps of any form, as numbers, without loading VTK where that can be."""
+"""Colours, colour maps and norms of any form, as numbers, without loading VTK where that can be.
+
+A norm is baked into a table of :data:`NORM_ENTRIES` colours with the values at which each begins,
+so that all renderers look a value up in the same table, and as exactly where a norm is steep.
+"""
 
 from __future__ import annotations
 
+import copy
+import re
 from collections.abc import Sequence
-from functools import cache
+from dataclasses import dataclass, field
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import AnyArray, Bytes, Floats
+from flowtex._util.array_types import AnyArray, Bytes, Floats, Floats32
 from flowtex.errors import FieldError
 
 #: Colour maps by default: of most values, and of those around zero.
@@ -36,6 +43,24 @@ DIVERGING = frozenset(
         *("broc", "cork", "vik", "lisbon", "tofino", "roma", "bam"),
     )
 )
+
+#: Colours of the table of a norm.
+NORM_ENTRIES = 1024
+#: Steps of bisection that find where a colour of a norm begins.
+BISECTIONS = 120
+#: Share of the colour map by which a norm may decrease: rounding.
+ROUNDING = 1e-9
+#: Size of the matplotlib bar whose ticks a norm has, in inches, and least share of the bar between
+#: two ticks.
+BAR_SIZE, TICK_GAP = (3.0, 1.0), 0.12
+
+#: Digits of the values of a legend: the fewest that distinguish them; and the number from which on
+#: the text of one has a power of ten.
+DIGITS, LARGE = range(3, 9), 1e6
+#: The table of no colours.
+NO_COLOURS = np.zeros((0, 4), np.uint8)
+
+Colour = tuple[float, float, float]
 
 
 def rgb(colour: Any) -> tuple[float, float, float]:
@@ -68,35 +93,57 @@ def is_light(colour: Sequence[float]) -> bool:
     return float(np.power(colour, 2.2) @ (0.2126, 0.7152, 0.0722)) >= LIGHT_FROM
 
 
-def colour_table(cmap: Any | None) -> Bytes:
-    """Return a colour map as (256, 4).
+def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Bytes:
+    """Return a colour map as (N, 4) with a number of colours, 256 by default, or in reverse.
 
     It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
     (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError, which suggests similar
     names.
     """
+    table = _table(cmap, count or ENTRIES)
+    return table[::-1].copy() if flip else table
+
+
+def _table(cmap: Any | None, count: int) -> Bytes:
     if isinstance(cmap, np.ndarray):
-        return _resampled(cmap)
+        return _resampled(cmap, count)
     values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
-        return _resampled(np.asarray(values))
+        return _resampled(np.asarray(values), count)
     name = cmap or DEFAULT_CMAP
     if isinstance(name, str) and name in CMAPS:  # each tile needs it
-        return _cached_table(name).copy()
-    return _named_table(name)
+        return _cached_table(name, count).copy()
+    return _named_table(name, count)
 
 
-def _named_table(name: Any) -> Bytes:
+def colour_map(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Any:
+    """Return the matplotlib colour map of what :func:`colour_table` accepts."""
+    from matplotlib.colors import Colormap, ListedColormap
+
+    colours = _known(DEFAULT_CMAP if cmap is None else cmap)
+    if not isinstance(colours, Colormap):
+        colours = ListedColormap(colour_table(cmap)[:, :3] / 255)
+    colours = colours if count is None else colours.resampled(count)
+    return colours.reversed() if flip else colours
+
+
+def _known(name: Any) -> Any:
     from matplotlib import colormaps
 
-    colours = colormaps[name] if isinstance(name, str) and name in colormaps else name
+    return colormaps[name] if isinstance(name, str) and name in colormaps else name
+
+
+def _named_table(name: Any, count: int) -> Bytes:
+    from matplotlib import colormaps
+
+    colours = _known(name)
     if callable(colours):
         # Rounded down, as PyVista does, so that all renderers have the same colours.
-        return np.asarray(np.asarray(colours(np.linspace(0, 1, ENTRIES))) * 255, dtype=np.uint8)
+        return np.asarray(np.asarray(colours(np.linspace(0, 1, count))) * 255, dtype=np.uint8)
     try:
         import pyvista as pv
 
-        return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
+        return _resampled(np.asarray(pv.LookupTable(name, n_values=count).values), count)
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"
         package, _, rest = str(name).partition(".")
@@ -130,11 +177,214 @@ def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, fl
     return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
 
-def _resampled(colours: AnyArray) -> Bytes:
+def _resampled(colours: AnyArray, count: int) -> Bytes:
     if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not len(colours):
         msg = f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)"
         raise FieldError(msg)
     values = colours.astype(float) * (255.0 if colours.dtype.kind == "f" else 1.0)
-    table = np.full((ENTRIES, 4), 255.0)
-    table[:, : values.shape[1]] = values[np.arange(ENTRIES) * len(values) // ENTRIES]
+    table = np.full((count, 4), 255.0)
+    number = np.arange(count) * len(values) // count
+    if count < len(values):  # with the first and the last
+        number = np.rint(np.linspace(0, len(values) - 1, count)).astype(int)
+    table[:, : values.shape[1]] = values[number]
     return np.asarray(np.rint(table.clip(0, 255)), dtype=np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class ColourScale:
+    """The colours of values from ``low`` to ``high``, beyond, and where there is no value."""
+
+    #: Colours, (N, 4), each for an equal share of a bar.
+    table: Bytes = field(default_factory=lambda: NO_COLOURS)
+    low: float = 0.0
+    high: float = 1.0
+    log_scale: bool = False
+    #: Values at which the colours of a norm begin, and the last one ends, (N + 1,), not decreasing.
+    edges: Floats | None = None
+    #: Colours from 0 to 1: those of the ends of the table by default.
+    below: Colour | None = None
+    above: Colour | None = None
+    nan: Colour = (0.663, 0.663, 0.663)
+    norm: Any = None
+
+    def places(self, values: Any) -> Floats:
+        """Return the places of values on a bar, from 0 to 1; NaN stays."""
+        if self.edges is None:
+            return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
+        return np.asarray(np.interp(values, self.edges, np.linspace(0, 1, len(self.edges))))
+
+    def colours(self, values: Any) -> Floats:
+        """Return the colours of values, (..., 3), from 0 to 1."""
+        numbers, count = np.asarray(values, dtype=float), len(self.table)
+        with np.errstate(invalid="ignore"):
+            if self.edges is None:
+                entry = np.nan_to_num(self.places(numbers) * count).clip(0, count - 1).astype(int)
+            else:
+                entry = np.searchsorted(self.edges, numbers, side="right").clip(1, count) - 1
+            entry = np.where(numbers < self.low, 0, np.where(numbers > self.high, count, entry) + 1)
+        entry[np.isnan(numbers)] = count + 2
+        return np.asarray(self.texels[entry, :3], dtype=float)
+
+    @property
+    def part(self) -> AnyArray:
+        """The table for a browser: (N, 4) uint8, and of a norm float32, with shares as below."""
+        if self.edges is None:
+            return np.ascontiguousarray(self.table)
+        return np.column_stack([self.table[:, :3], self.texels[1:-2, 3]]).astype(np.float32)
+
+    @cached_property
+    def texels(self) -> Floats32:
+        """Colours below the range, in it, above it, and without a value, (N + 3, 4), for shaders.
+
+        The fourth channel is the share of the range at which a colour of a norm begins, and 1 of
+        the first row; else 0.
+        """
+        table = self.table[:, :3] / 255
+        ends = (
+            (table[0] if self.below is None else self.below),
+            (table[-1] if self.above is None else self.above),
+        )
+        texels = np.zeros((len(table) + 3, 4))
+        texels[:, :3] = np.vstack([ends[0], table, ends[1], self.nan])
+        if self.edges is not None:
+            texels[1:-2, 3] = (self.edges[:-1] - self.low) / (self.high - self.low)
+            texels[0, 3] = 1
+        return texels.astype(np.float32)
+
+    @cached_property
+    def ticks(self) -> tuple[float, ...]:
+        """Values beside a bar where there is a norm: the ticks of matplotlib, if there is room."""
+        if self.norm is None:
+            return ()
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.figure import Figure
+
+        bar, axis = Figure(BAR_SIZE), "horizontal"
+        shown = bar.colorbar(ScalarMappable(self.norm), bar.add_subplot(), orientation=axis)
+        values = np.asarray(shown.get_ticks(), dtype=float)
+        values = values[(values >= self.low) & (values <= self.high)]
+        kept: list[float] = []
+        for value, place in zip(values.tolist(), self.places(values), strict=True):
+            if not kept or place - self.places(kept[-1]) >= TICK_GAP:
+                kept.append(value)
+        return tuple(kept) if len(kept) > 1 else (self.low, self.high)
+
+
+def distinct_texts(values: Any) -> list[str]:
+    """Write numbers with the fewest digits that distinguish them, as 1000 and 1e6."""
+    texts: list[str] = []
+    for digits in DIGITS:
+        texts = [_number_text(value, digits) for value in values]
+        if len(set(texts)) == len(texts):
+            break
+    return texts
+
+
+def _number_text(value: float, digits: int) -> str:
+    text = f"{value:.{digits}g}"
+    if "e+" in text and abs(value) < LARGE:
+        return f"{float(text):.0f}"
+    return re.sub(r"e(-?)\+?0?", r"e\1", text)
+
+
+def matplotlib_norm(norm: Any) -> Any:
+    """Return a norm of matplotlib, also of the name of a scale; raise a FieldError for others."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import NoNorm, Normalize
+
+    try:
+        found = ScalarMappable(norm=norm).norm
+    except (TypeError, ValueError):
+        found = None
+    if not isinstance(found, Normalize) or isinstance(found, NoNorm):
+        msg = (
+            f"norm is {norm!r}; expected a matplotlib Normalize, such as PowerNorm(0.5), or a name "
+            "such as 'log', 'symlog' or 'asinh'"
+        )
+        raise FieldError(msg)
+    return found
+
+
+def with_limits(norm: Any, low: float, high: float) -> Any:
+    """Return a copy of a norm whose missing limits are those of a range."""
+    norm = copy.copy(matplotlib_norm(norm))
+    norm.autoscale_None(np.array([low, high]))
+    if not norm.vmin < norm.vmax:
+        kind = type(norm).__name__
+        msg = (
+            f"norm is {kind} from {norm.vmin:g} to {norm.vmax:g}, and the values range from "
+            f"{low:g} to {high:g}; give it limits, as in {kind}(vmin=1, vmax=10)"
+        )
+        raise FieldError(msg)
+    return norm
+
+
+def norm_limits(norm: Any, low: float, high: float) -> tuple[float, float]:
+    """Return the limits of a norm for a range, or the range without a norm."""
+    limited = None if norm is None else with_limits(norm, low, high)
+    return (low, high) if limited is None else (float(limited.vmin), float(limited.vmax))
+
+
+def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
+    """Return the colours of a norm that has limits; raise a FieldError where it has no table.
+
+    ``beyond`` are ``below``, ``above`` and ``nan`` of :class:`ColourScale`; by default they are
+    those of matplotlib.
+    """
+    low, high = float(norm.vmin), float(norm.vmax)
+
+    def places(values: Floats) -> Floats:
+        with np.errstate(all="ignore"):
+            found = norm(values)
+        whole = np.asarray(found).dtype.kind in "iu"  # numbers of colours
+        return np.ma.filled(np.ma.asarray(found, dtype=float), np.nan) / (cmap.N if whole else 1)
+
+    def colours(values: Floats) -> Floats:
+        with np.errstate(all="ignore"):
+            return np.asarray(cmap(norm(values)))
+
+    known = places(np.linspace(low, high, NORM_ENTRIES + 1))
+    is_increasing = np.isfinite(known).all() and (np.diff(known) >= -ROUNDING).all()
+    if not (low < high and is_increasing and known[-1] > known[0]):
+        msg = (
+            f"norm is {type(norm).__name__} from {low:g} to {high:g}, which does not increase with "
+            "the value there; expected one that does: give it other limits, as in "
+            f"{type(norm).__name__}(..., vmin=1, vmax=10)"
+        )
+        raise FieldError(msg)
+    boundaries = getattr(norm, "boundaries", None)
+    if boundaries is not None:
+        parts = max(NORM_ENTRIES // (len(boundaries) - 1), 1)
+        numbers = np.arange((len(boundaries) - 1) * parts + 1) / parts
+        edges = np.interp(numbers, np.arange(len(boundaries)), boundaries)
+    else:
+        shares = np.linspace(0, 1, NORM_ENTRIES + 1)
+        lower, edges = np.full(len(shares), low), np.full(len(shares), high)
+        for _ in range(BISECTIONS):
+            middle = lower + (edges - lower) / 2
+            reached = places(middle) >= shares
+            lower, edges = np.where(reached, lower, middle), np.where(reached, middle, edges)
+        edges[0], edges[-1] = low, high
+    table = (255 * colours((edges[:-1] + edges[1:]) / 2)).astype(np.uint8)
+    span = high - low
+    with np.errstate(all="ignore"):
+        outside = np.ma.filled(norm(np.array([low - span, high + span])), -1)
+    ends = [tuple(colour[:3].tolist()) for colour in np.asarray(cmap(outside))]
+    given = {name: value for name, value in beyond.items() if value is not None}
+    return ColourScale(
+        table, low, high, edges=edges, norm=norm, **{"below": ends[0], "above": ends[1], **given}
+    )
+
+
+def scale_of(look: Any, limits: tuple[float, float]) -> ColourScale:
+    """Return the colours of an appearance, which has some limits."""
+    ends = look.below_color, look.above_color
+    below, above = (None if colour is None else rgb(colour) for colour in ends)
+    beyond: dict[str, Any] = {"below": below, "above": above, "nan": rgb(look.nan_color)}
+    form = look.cmap, look.n_colors
+    if look.norm is None or look.scalar_name is None:
+        table = colour_table(*form, flip=look.flip_scalars)
+        return ColourScale(table, *limits, look.log_scale, **beyond)
+    return norm_scale(
+        with_limits(look.norm, *limits), colour_map(*form, flip=look.flip_scalars), **beyond
+    )

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.arguments import checked_size, sized
 from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.scene.signatures import accepts_options
 
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget

@@ -102,6 +102,9 @@ class FieldArrays:
     long_names: Mapping[str, str] = field(default_factory=dict)
     projection: Projection | None = None
     reading: Reading = NOTHING
+    vectors: str = ""
+    #: Names of the scalars that are components of other vectors.
+    parts: tuple[str, ...] = ()
     #: Share of the flow normal to the surface from which on a notice says so.
     notable_normal: float = 0.5
     volume_values: Mapping[str, Any] = field(default_factory=dict)

@@ -20,11 +20,11 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
-from flowtex.field.dates import as_seconds
 from flowtex.field.derived.methods import FieldQuantities
+from flowtex.field.derived.vectors import magnitude_label
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
-from flowtex.field.gaps import Filled, filled_gaps
+from flowtex.field.gaps import prepared
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
@@ -40,8 +40,8 @@ from flowtex.field.steps import (
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.units import factor, speed_unit, velocity_units
-from flowtex.field.validation import ALL_AT_REST, with_gaps
+from flowtex.field.units import factor, speed_unit
+from flowtex.field.validation import ALL_AT_REST
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
@@ -107,6 +107,10 @@ class FlowField(FieldConstructors, FieldQuantities):
         Colours have their range.
     on_cells
         Names of the scalars that belong to cells.
+    vectors
+        Name of the vectors in the data, for legends; empty for a velocity without a name.
+    parts
+        Components of other vectors of a mesh, such as ``gradP_x``, as :attr:`scalars`.
 
     Examples
     --------
@@ -141,6 +145,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     velocity_unit: str = ""
     volume_values: Mapping[str, Floats] = field(default_factory=dict)
     on_cells: tuple[str, ...] = ()
+    vectors: str = ""
+    parts: Mapping[str, Steps] = field(default_factory=dict)
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -158,7 +164,11 @@ class FlowField(FieldConstructors, FieldQuantities):
         arguments = dict(vars(arrays))
         notable = arguments.pop("notable_normal")
         kept = {k: arguments.pop(k) for k in KEPT if k in arguments}
-        field: FlowField = make(**arguments).same_flow(**kept)
+        parts = arguments.pop("parts")
+        field: FlowField = make(**arguments)
+        scalars = dict(field.scalars)
+        kept["parts"] = {name: scalars.pop(name) for name in parts}
+        field = field.same_flow(scalars=scalars, **kept)
         if isinstance(field.velocity, LazySteps) or arrays.projection is not None:
             return field
         reading = field.reading.with_normal_share(field.normal_share, notable)
@@ -181,6 +191,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         length_unit: str = "",
         time_unit: str = "",
         velocity_unit: str = "",
+        vectors: str = "",
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
@@ -217,6 +228,8 @@ class FlowField(FieldConstructors, FieldQuantities):
         velocity_unit
             Unit of the velocity, such as ``"m/s"`` where positions are in mm; by default the unit
             of length per unit of time.
+        vectors
+            Name of the vectors for legends, such as ``"B"``; by default they are a velocity.
         sign_free
             Whether v and -v mean the same. Such a field is steady; it is drawn to both sides, and
             kernels and motions that distinguish forward from backward are not available. Vectors
@@ -257,8 +270,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         (31, 41)
         """
         texts = length_unit, time_unit, velocity_unit
-        t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=2)
-        words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
+        t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=2)
+        words |= {"name": name, "vectors": vectors, "projection": projection}
+        words["long_names"] = dict(long_names or {})
         on_globe = projection is not None and projection.is_globe
         parts = points, filled.velocity, t, valid, periodic, filled.scalars, cell_scalars or {}
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
@@ -294,6 +308,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         length_unit: str = "",
         time_unit: str = "",
         velocity_unit: str = "",
+        vectors: str = "",
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
@@ -312,7 +327,7 @@ class FlowField(FieldConstructors, FieldQuantities):
             Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a time-varying field. NaN and
             masked entries blank a node. The component normal to the surface is not drawn
             (:attr:`normal_share`). The velocity may be lazy.
-        times, name, length_unit, time_unit, velocity_unit, units, long_names, projection
+        times, name, length_unit, time_unit, velocity_unit, vectors, units, long_names, projection
             As for :meth:`from_arrays`.
         valid
             Nodes that have data, (N,). All by default.
@@ -347,8 +362,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         '4 nodes, 2 triangles'
         """
         texts = length_unit, time_unit, velocity_unit
-        t, scale, filled, words = _prepared(times, texts, velocity, scalars, units, axes=1)
-        words |= {"name": name, "long_names": dict(long_names or {}), "projection": projection}
+        t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=1)
+        words |= {"name": name, "vectors": vectors, "projection": projection}
+        words["long_names"] = dict(long_names or {})
         parts = points, triangles, filled.velocity, t, valid, filled.scalars, cell_scalars or {}
         arrays = triangle_nodes(*parts)
         count = len(arrays.velocity)
@@ -468,12 +484,9 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     @property
     def speed_label(self) -> str:
-        """Text for :attr:`speed` in legends; an array of a file may already be named ``speed``.
-
-        On a map the scalar of that name is the same speed, on the Earth.
-        """
+        """Text for :attr:`speed`, which off maps differs from a scalar of that name."""
         apart = self.leaves_surface or ("speed" in self.scalars and self.projection is None)
-        return "speed in the surface" if apart else "speed"
+        return magnitude_label(self.vectors, self.velocity_unit) + " in the surface" * apart
 
     def label_of(self, name: str) -> str:
         """Return the text for a scalar, or for the speed, in a legend."""
@@ -508,10 +521,12 @@ class FlowField(FieldConstructors, FieldQuantities):
         if len(steps) == len(self.times) and not isinstance(self.velocity, LazySteps):
             return self
         index: Any = list(steps) if len(steps) < last - first else slice(first, last)
-        data = {k: s[index] if len(s) > 1 else s for k, s in self.scalars.items()}
-        part = replace(
-            self, velocity=np.asarray(self.velocity[index]), times=self.times[index], scalars=data
+        data, parts = (
+            {k: s[index] if len(s) > 1 else s for k, s in arrays.items()}
+            for arrays in (self.scalars, self.parts)
         )
+        velocity, times = np.asarray(self.velocity[index]), self.times[index]
+        part = replace(self, velocity=velocity, times=times, scalars=data, parts=parts)
         part.__dict__["surface"] = self.surface  # equal to what the property would make
         return part
 
@@ -562,6 +577,7 @@ class FlowField(FieldConstructors, FieldQuantities):
             valid=self.valid[at],
             has_position=None if self.has_position is None else self.has_position[at],
             scalars={k: s[:, at[0], at[1]] for k, s in self.scalars.items()},
+            parts={k: s[:, at[0], at[1]] for k, s in self.parts.items()},
             formula=None,  # as its nodes are evenly spaced
         )
 
@@ -573,24 +589,3 @@ class FlowField(FieldConstructors, FieldQuantities):
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )
-
-
-def _prepared(
-    times: Any, texts: tuple[str, str, str], velocity: Any, scalars: Any, units: Any, *, axes: int
-) -> tuple[Floats | None, float, Filled, dict[str, Any]]:
-    """Return times, a factor of the velocity, data without gaps in time, and units of a field.
-
-    The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
-    """
-    times, time_unit, start = as_seconds(times, texts[1])
-    t = None if times is None else with_gaps("times", times)
-    scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
-    unit = velocity_unit or speed_unit(texts[0], time_unit)
-    filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
-    words: dict[str, Any] = {
-        "length_unit": texts[0],
-        "time_unit": time_unit,
-        "velocity_unit": velocity_unit,
-    }
-    words |= {"start": start, "units": dict(filled.units), "uncertainty": filled.uncertainty}
-    return t, scale, filled, words

@@ -13,7 +13,9 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
+from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps, map_steps, typical_steps
+from flowtex.field.units import speed_unit, velocity_units
 from flowtex.field.validation import with_gaps
 
 #: The scalar that is 1 where there are no data, 0 elsewhere.
@@ -88,3 +90,24 @@ def known_nodes(field: Any, first: int, last: int) -> Bools:
 
 def _known(step: Floats) -> Bools:
     return np.asarray(np.isfinite(step).all(axis=-1))
+
+
+def prepared(
+    times: Any, texts: tuple[str, str, str], velocity: Any, scalars: Any, units: Any, *, axes: int
+) -> tuple[Floats | None, float, Filled, dict[str, Any]]:
+    """Return times, a factor of the velocity, data without gaps in time, and units of a field.
+
+    The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
+    """
+    times, time_unit, start = as_seconds(times, texts[1])
+    t = None if times is None else with_gaps("times", times)
+    scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
+    unit = velocity_unit or speed_unit(texts[0], time_unit)
+    filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
+    words: dict[str, Any] = {
+        "length_unit": texts[0],
+        "time_unit": time_unit,
+        "velocity_unit": velocity_unit,
+    }
+    words |= {"start": start, "units": dict(filled.units), "uncertainty": filled.uncertainty}
+    return t, scale, filled, words

@@ -17,7 +17,7 @@ from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import ZERO_SHARE, is_light, rounded_ends
-from flowtex.rendering.vtk.mesh import Ends, FlowMapper
+from flowtex.rendering.vtk.mesh import Ends, FlowMapper, NormTable
 from flowtex.scene.annotations import OPACITY, round_values
 
 #: A bar at the left border of the window, as tall as those of PyVista.
@@ -139,20 +139,27 @@ class FlowBar:
         shown = (bar.GetLookupTable(), limits, len(sharing), self._mapper.ends, settings)
         if flows[0] is not self._mapper or shown == self._shown:
             return
-        log_scale = self._mapper.lookup_table.log_scale
-        is_mixed = len(flows) < len(sharing)
-        table = pv.LookupTable(values=self._mapper.lookup_table.values if is_mixed else colours())
+        own = self._mapper.lookup_table
+        log_scale, is_mixed = own.log_scale, len(flows) < len(sharing)
+        table = pv.LookupTable(values=own.values if is_mixed else colours())
         table.scalar_range, table.log_scale = rounded_ends(*limits, log_scale=log_scale), log_scale
+        if isinstance(own, NormTable):  # along its bar are places, with the values as texts
+            table.scalar_range, table.annotations = (0.0, 1.0), own.marks
         bar.SetLookupTable(table)
         self._shown = (table, *shown[1:])
         lows, highs = zip(*(_ends(mapper).values for mapper in sharing), strict=True)
         rounding = ZERO_SHARE * (max(highs) - min(lows))
         below, above = limits[0] > min(lows) + rounding, limits[1] < max(highs) - rounding
-        table.below_range_color = table.values[0] if below else None
-        table.above_range_color = table.values[-1] if above else None
+        ends = own.below_range_color, own.above_range_color
+        table.below_range_color = (ends[0] or table.values[0]) if below else None
+        table.above_range_color = (ends[1] or table.values[-1]) if above else None
         bar.SetDrawBelowRangeSwatch(below)
         bar.SetDrawAboveRangeSwatch(above)
-        bar.DrawAnnotationsOff()  # marks without a text
+        # Others are marks without a text; VTK writes them on the side without labels.
+        has_marks = isinstance(own, NormTable)
+        bar.SetDrawAnnotations(has_marks)
+        bar.SetDrawTickLabels(not has_marks)
+        bar.SetTextPosition(int(not has_marks))
 
     def remove(self) -> None:
         """Leave the bar, and remove it if no other shares it."""
@@ -179,6 +186,8 @@ def _same_colours(one: Any, other: Any) -> bool:
     if one is other:
         return True
     tables = [mapper.lookup_table for mapper in (one, other)]
+    if any(isinstance(table, NormTable) for table in tables):
+        return False
     if not all(isinstance(table, pv.LookupTable) for table in tables):
         return False
     first, second = (
@@ -216,10 +225,11 @@ def _arrange(renderer: Any) -> None:
 
 def _write_labels(
     bar: vtkScalarBarActor, background: Sequence[float], options: Mapping[str, Any]
-) -> list[float]:
+) -> list[str]:
     """Give a bar round labels, readable on a background; return them."""
     ink, plate = ((0.0,) * 3, (1.0,) * 3) if is_light(background) else ((1.0,) * 3, (0.0,) * 3)
-    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+    texts = bar.GetTitleTextProperty(), bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()
+    for text in texts:
         if not any(name in options for name in BEHIND):
             text.SetColor(*ink)
             text.SetBackgroundColor(*plate)
@@ -229,7 +239,10 @@ def _write_labels(
     if "n_labels" not in options:
         bar.SetCustomLabels(values)
         bar.UseCustomLabelsOn()
-    return list(vtk_to_numpy(values))
+    form, marks = bar.GetLabelFormat(), list(table.annotations.values())
+    if marks:
+        return marks
+    return [form % v if "%" in form else form.format(v) for v in vtk_to_numpy(values)]
 
 
 @lru_cache(16)
@@ -240,7 +253,7 @@ def _round_labels(low: float, high: float, *, log_scale: bool) -> vtkDataArray:
 
 def _fit(
     bar: vtkScalarBarActor,
-    labels: Sequence[float],
+    labels: Sequence[str],
     points: float,
     view: tuple[int, int],
     dpi: int,
@@ -248,6 +261,7 @@ def _fit(
     """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
     title, label = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
     label.SetFontSize(round(points))
+    bar.GetAnnotationTextProperty().SetFontSize(round(points))
     title.SetFontSize(round(TITLE_SHARE * points))
     em = points * dpi / POINTS
     pad = round(TEXT_PAD * em)
@@ -256,9 +270,7 @@ def _fit(
     if title_width > room:
         title.SetFontSize(max(int(title.GetFontSize() * room / title_width), 1))
         title_width, title_height = _size(title, bar.GetTitle(), dpi)
-    form = bar.GetLabelFormat()
-    texts = [form % v if "%" in form else form.format(v) for v in labels]
-    label_width = max(_size(label, text, dpi)[0] for text in texts)
+    label_width = max(_size(label, text, dpi)[0] for text in labels)
     thick = THICKNESS * em
     bar_width = max(title_width, thick + label_width + 2 * pad) + 2 * pad
     bar.SetTextPad(pad)

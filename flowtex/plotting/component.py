@@ -22,8 +22,9 @@ from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import look, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
-from flowtex.scene.options import Appearance, FieldOptions, Options, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options
 from flowtex.scene.scene import Scene
+from flowtex.scene.signatures import accepts_options
 from flowtex.textures.images import as_image
 
 __all__ = ["FlowHandle", "FlowtexComponent"]

@@ -10,23 +10,24 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.colours import colour_table
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
-from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import Ends
 from flowtex.scene.attributes import AppearanceAttributes
-from flowtex.scene.options import NO_VALUE_COLOR, Appearance, FieldOptions
+from flowtex.scene.options import Appearance, FieldOptions
 from flowtex.scene.scene import Change, Scene, share_field
 from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
 _count = itertools.count(1)
+#: Fields of the appearance that change colours alone.
+COLOURS = ("n_colors", "flip_scalars", "nan_color", "below_color", "above_color")
 #: Observers of a frame run by falling priority: this one before those that draw it.
 FIRST = 1.0
 
@@ -358,25 +359,23 @@ class FlowHandle(AppearanceAttributes):
             self._map.show()
         if differs("color"):
             prop.color = new.color
-        if differs("scalars", "cmap", "log_scale"):
+        if differs("scalars", "cmap", "log_scale", "norm", *COLOURS):
             self.bar.remove()
             self._show_colours()
             self.actor.mapper.scalar_range = self.actor.mapper.ends.limits
         elif differs("clim") or self.actor.mapper.ends.limits != self.scene.scalar_limits:
             self._show_colours()
             self.bar.set_range(new.clim if isinstance(new.clim, tuple) else None)
-        if differs("scalars", "cmap", "clim", "log_scale", "visible", "show_scalar_bar"):
+        on_bar = ("scalars", "cmap", "clim", "log_scale", "norm", "visible", "show_scalar_bar")
+        if differs(*on_bar, *COLOURS):
             self._show_bar()
 
     def _show_colours(self) -> None:
-        mapper, name, appearance = self.actor.mapper, self.scene.scalar_name, self.scene.appearance
+        mapper, name = self.actor.mapper, self.scene.scalar_name
         mapper.scalar_visibility = name is not None
         if name is None:
             return
-        table = pv.LookupTable(values=colour_table(appearance.cmap))
-        table.nan_color = NO_VALUE_COLOR
-        table.log_scale = appearance.log_scale
-        mapper.lookup_table = table
+        self._table = mapper.lookup_table = lookup_table(self.scene.colour_scale)
         mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name))
         mapper.SelectColorArray(name)
         self._surface.set_scalars(

@@ -117,7 +117,7 @@ _ABOUT: dict[str, Check] = {
     "components": _either(2, 3),
     "height": _number,
     "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
-    **dict.fromkeys(("uncertainty", "velocity_unit"), _or_none(_text)),
+    **dict.fromkeys(("uncertainty", "velocity_unit", "vectors"), _or_none(_text)),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
     "on_cells": _or_none(_list(_text, 0, MOST_SCALARS)),

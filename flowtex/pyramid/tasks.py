@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.colours import NO_COLOURS, ColourScale
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.steps import Nodes, typical_steps
@@ -308,9 +309,9 @@ def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
     ranges = _ranges(pyramid)
     choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
     first, *others = (steps_of(field, name) for name in ranges)
-    low, high = ranges["speed"]
+    scale = ColourScale(NO_COLOURS, *ranges["speed"])
     numbered = tuple(enumerate(others, start=1))
-    return Colours("speed", values=first, low=low, high=high, choices=choices, others=numbered)
+    return Colours("speed", values=first, scale=scale, choices=choices, others=numbered)
 
 
 def _ranges(pyramid: StoredPyramid) -> dict[str, tuple[float, float]]:

@@ -8,7 +8,6 @@ it cannot shrink further, plates stand above and below the flow and cover none o
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -20,7 +19,7 @@ from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex._util.colours import is_light, rgb
+from flowtex._util.colours import ColourScale, distinct_texts, is_light, rgb
 from flowtex.field import FlowField
 from flowtex.field.dates import DAY_S, date_text
 from flowtex.rendering.camera import Camera
@@ -50,12 +49,8 @@ SCALE_BAR_WIDTH = 0.2
 PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
 #: How opaque a plate is.
 OPACITY = 0.8
-#: Digits of the values of a legend: the fewest that distinguish them.
-DIGITS = range(3, 9)
 #: Length of ticks in pixels.
 TICK_PX = 4
-#: Number from which on the text of one has a power of ten.
-LARGE = 1e6
 #: Share of the range by which a number may lie beyond an end: less than a pixel.
 BEYOND = 0.004
 #: Length above which a unit of time is left out, if the time would take more than this share of
@@ -179,7 +174,7 @@ def write_ticks(
     left, top, right, bottom = box
     draw.rectangle((left, top, right - 1, bottom - 1), outline="grey")
     for axis, (low, high) in enumerate(np.transpose(ends)):
-        for share, text in _value_marks(low, high, log_scale=False):
+        for share, text in _value_marks(ColourScale(), low, high):
             x = left if axis else round(left + share * (right - left))
             y = round(bottom - share * (bottom - top)) if axis else bottom
             end = (x - TICK_PX, y) if axis else (x, y + TICK_PX)
@@ -264,7 +259,7 @@ class _Writer:
         if name is None or settings.show_level or not appearance.visible:
             return
         table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
-        marks = _value_marks(*scene.legend_limits, log_scale=appearance.log_scale)
+        marks = _value_marks(scene.colour_scale, *scene.legend_limits)
         image = self._legend(title, table, marks, scene.beyond)
         if image.width <= LEGEND_WIDTH * self._size[0]:
             yield image
@@ -384,14 +379,6 @@ def _apart(plate: Plate, other: Plate, gap: int) -> bool:
     return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
 
 
-def _number_text(value: float, digits: int) -> str:
-    """Write a number as the browser's legends do: 1000, and 1e6."""
-    text = f"{value:.{digits}g}"
-    if "e+" in text and abs(value) < LARGE:
-        return f"{float(text):.0f}"
-    return re.sub(r"e(-?)\+?0?", r"e\1", text)
-
-
 def round_values(low: float, high: float, *, log_scale: bool, steps: Sequence[float]) -> Floats:
     """Return three or more round values in a range, or its ends."""
     from matplotlib.ticker import LogLocator, MaxNLocator
@@ -408,18 +395,15 @@ def round_values(low: float, high: float, *, log_scale: bool, steps: Sequence[fl
     return values[:: 1 + len(values) // 6] if len(values) > 1 else np.unique([low, high])
 
 
-def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
+def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[float, str]]:
     """Return three or more round values in a range, or its ends, and their shares of it."""
-    values = round_values(low, high, log_scale=log_scale, steps=(1, 2, 2.5, 5, 10))
-    texts: list[str] = []
-    for digits in DIGITS:
-        texts = [_number_text(value, digits) for value in values]
-        if len(set(texts)) == len(texts):
-            break
-    scaled = np.log10 if log_scale else np.asarray
+    if ticks := scale.ticks:
+        return list(zip(map(float, scale.places(ticks)), distinct_texts(ticks), strict=True))
+    values = round_values(low, high, log_scale=scale.log_scale, steps=(1, 2, 2.5, 5, 10))
+    scaled = np.log10 if scale.log_scale else np.asarray
     ends = scaled([low, high])
     shares = (scaled(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
-    return list(zip(map(float, shares), texts, strict=True))
+    return list(zip(map(float, shares), distinct_texts(values), strict=True))
 
 
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:

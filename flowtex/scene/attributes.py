@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import near_names
 from flowtex.field import FlowField
-from flowtex.scene.options import Appearance, option_text
+from flowtex.scene.options import Appearance
+from flowtex.scene.signatures import option_text
 from flowtex.settings import TABLE, Settings
 
 #: Fields of the appearance that are attributes; a method changes the image.

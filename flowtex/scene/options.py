@@ -3,25 +3,31 @@
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
 :func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
 three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view.
-Others are settings. :func:`accepts_options` puts the names, defaults and texts of the fields into
-the signature and the docstring of a function.
+Others are settings. :mod:`flowtex.scene.signatures` puts the names, defaults and texts of the
+fields into signatures and docstrings.
 """
 
 from __future__ import annotations
 
-import inspect
 import math
-import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import Field, dataclass, field, fields, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import brief, closest, elsewhere, is_number
-from flowtex._util.colours import DEFAULT_CMAP, SIGNED_CMAP, colour_table, rgb
+from flowtex._util.arguments import brief, checked_count, closest, elsewhere, is_number
+from flowtex._util.colours import (
+    DEFAULT_CMAP,
+    NORM_ENTRIES,
+    SIGNED_CMAP,
+    colour_table,
+    matplotlib_norm,
+    rgb,
+)
 from flowtex._util.notices import notify
 from flowtex._util.written import (
     NUMBER,
@@ -37,6 +43,7 @@ from flowtex._util.written import (
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived import SIGNED
+from flowtex.field.derived.vectors import COMPONENTS, component_name
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.rendering.camera import Camera, read_camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
@@ -59,14 +66,13 @@ AXES = ("ticks", "scale", "none")
 #: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-#: Description of all other arguments in docstrings.
-SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
+#: Values of ``n_colors``, and the form of a whole number or a name.
+COUNT = f"a whole number from 1 to {NORM_ENTRIES:,}"
+WHOLE = Form(read=lambda text: int(text) if text.isdecimal() else text)
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
 #: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
 DATA, ARRAY = "Data", "_array"
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
@@ -122,7 +128,7 @@ class FieldOptions:
     block: int | str | None = _option(
         None,
         "Number or path of the block to draw, if there are several.",
-        Form(read=lambda text: int(text) if text.isdecimal() else text),
+        WHOLE,
     )
     times: Sequence[float] | None = _option(
         None, "Times of a list of meshes; 0, 1, 2, ... by default.", form=None
@@ -273,9 +279,15 @@ class Appearance:
 
     scalars: str | bool | None = _option(
         None,
-        'Values for the colours: the name of an array, ``"speed"`` (the default), an array for the '
-        "points or cells of a mesh or the nodes of a field, or ``False`` for a plain surface.",
+        "Values for the colours: the name of an array, also of vectors for their magnitude, "
+        '``"speed"`` (the default: that of the flow along the surface), an array for the points or '
+        "cells of a mesh or the nodes of a field, or ``False`` for a plain surface.",
         Form(read=or_none(value=False)),
+    )
+    component: int | str | None = _option(
+        None,
+        "Component of the vectors that ``scalars`` names, 0 to 2 or ``x`` to ``z``.",
+        WHOLE,
     )
     cmap: Any | None = _option(
         None,
@@ -299,6 +311,24 @@ class Appearance:
     )
     log_scale: bool = _option(
         default=False, text="Whether colours follow the logarithm, for values above 0.", form=SWITCH
+    )
+    norm: Any | None = _option(
+        None,
+        "Norm from values to colours, in place of ``clim`` and ``log_scale``: a matplotlib "
+        '``Normalize``, such as ``PowerNorm(0.5)``, or the name of a scale, such as ``"symlog"``. '
+        "Limits that it lacks are those of the values.",
+        Form("Norm from values to colours: the name of a matplotlib scale, such as symlog."),
+    )
+    n_colors: int | None = _option(None, "Number of colours of the map; by default 256.", WHOLE)
+    flip_scalars: bool = _option(
+        default=False, text="Whether the colour map is reversed.", form=SWITCH
+    )
+    nan_color: Any = _option(NO_VALUE_COLOR, "Colour where there is flow but no value.")
+    below_color: Any | None = _option(
+        None, "Colour of values below the range; by default the first colour of the map."
+    )
+    above_color: Any | None = _option(
+        None, "Colour of values above the range; by default the last colour of the map."
     )
     color: Any = _option(
         PLAIN_COLOR, "Colour of a plain surface, in any form that PyVista accepts."
@@ -347,6 +377,8 @@ class Appearance:
             faults.append(
                 f"scalars is {brief(self.scalars)}; expected the name of an array, or False"
             )
+        if self.component is not None and str(self.component) not in COMPONENTS:
+            faults.append(f"component is {brief(self.component)}; expected 0 to 2, or x to z")
         if self.cmap is None:
             object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
@@ -364,15 +396,26 @@ class Appearance:
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
-        for name in ("log_scale", "visible", "lighting", "show_scalar_bar", *EARTH_LINES):
+        if self.norm is not None and (self.clim is not None or self.log_scale):
+            faults.append(
+                f"norm is {brief(self.norm)}, and {'clim' if self.clim else 'log_scale'} is given "
+                "too; omit it, and give the norm its limits, as in PowerNorm(0.5, 0, 10)"
+            )
+        switches = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
+        for name in (*switches, *EARTH_LINES):
             if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
                 faults.append(f"{name} is {brief(value)}; expected True or False")
         if self.land is False or (isinstance(self.land, str) and self.land == "none"):
             object.__setattr__(self, "land", None)
-        checks = (
+        count = partial(checked_count, "n_colors", high=NORM_ENTRIES, expected=COUNT)
+        checks: tuple[tuple[Callable[[Any], Any], Any, Any], ...] = (
+            (matplotlib_norm, self.norm, None),
+            (count, self.n_colors, None),
             (colour_table, self.cmap, default_cmap(self.scalars)),
             (rgb, self.color, PLAIN_COLOR),
             (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
+            (rgb, self.nan_color, NO_VALUE_COLOR),
+            *((rgb, c, None) for c in (self.below_color, self.above_color)),
         )
         for check, value, default in checks:
             if value is not default:  # a default needs no check, and loads nothing
@@ -383,7 +426,16 @@ class Appearance:
         raise_faults(faults)
 
     def changed(self, **changes: Any) -> Appearance:
-        """Return another appearance; a colour map by default follows the scalars."""
+        """Return another appearance; a colour map by default follows the scalars.
+
+        A norm replaces ``clim`` and ``log_scale``, and either of these, or a new range for other
+        scalars, the norm.
+        """
+        if changes.get("norm") is not None:
+            changes = {"clim": None, "log_scale": False, **changes}
+        ended = changes.get("clim") is not None or changes.get("log_scale")
+        if ended or {"clim", "scalars"} <= set(changes):
+            changes = {"norm": None, **changes}
         if isinstance(self.cmap, str) and self.cmap == default_cmap(self.scalars):
             changes = {"cmap": None, **changes}
         return replace(self, **changes)
@@ -391,7 +443,9 @@ class Appearance:
     @property
     def scalar_name(self) -> str | None:
         """Name of the array that colours the surface; ``None`` for a plain one."""
-        return self.scalars if isinstance(self.scalars, str) else None
+        if self.component is None or not isinstance(self.scalars, str):
+            return self.scalars if isinstance(self.scalars, str) else None
+        return component_name(self.scalars, str(self.component))
 
     @property
     def has_bar(self) -> bool:
@@ -542,57 +596,3 @@ def _axes_of(data: Any) -> set[str]:
 
 
 _KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
-
-
-def accepts_options(*kinds: type) -> Callable[[Function], Function]:
-    """Show the fields of option classes as arguments of a function that takes ``**options``.
-
-    The line ``{options}`` of its docstring becomes their description.
-    """
-
-    def complete(function: Function) -> Function:
-        options = [f for kind in kinds for f in fields(kind)]
-        signature = inspect.signature(function)
-        parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-        keyword = [
-            inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
-            for f in options
-            if f.name not in signature.parameters
-        ]
-        settings = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
-        complete_signature = signature.replace(parameters=[*parameters, *keyword, settings])
-        function.__signature__ = complete_signature  # type: ignore[attr-defined]
-        if function.__doc__:
-            function.__doc__ = _described(function.__doc__, options)
-        return function
-
-    return complete
-
-
-def option_text(kind: type, name: str) -> str:
-    """Return the description of a field of an option class, as one paragraph."""
-    return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
-
-
-def option_form(kind: type, name: str) -> Form:
-    """Return how the values of a field of an option class are written."""
-    form: Form = kind.__dataclass_fields__[name].metadata["form"]  # type: ignore[attr-defined]
-    return form
-
-
-def _described(text: str, options: Iterable[Field[Any]]) -> str:
-    """Put the description of options into a docstring."""
-    lines = []
-    for line in text.splitlines():
-        if line.strip() != "{options}":
-            lines.append(line)
-            continue
-        indent = line[: line.index("{")]
-        described = {option.name: option.metadata["text"] for option in options}
-        if "**settings" not in text:
-            described["**settings"] = SETTINGS_TEXT
-        for name, words in described.items():
-            lines.append(f"{indent}{name}")
-            filled = textwrap.fill(words, 96 - len(indent), break_on_hyphens=False)
-            lines.append(textwrap.indent(filled, indent + "    "))
-    return "\n".join(lines)

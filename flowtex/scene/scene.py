@@ -16,15 +16,22 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
-from flowtex._util.colours import ZERO_SHARE, colour_table, is_diverging, rounded_ends
+from flowtex._util.colours import (
+    ZERO_SHARE,
+    ColourScale,
+    is_diverging,
+    norm_limits,
+    rounded_ends,
+    scale_of,
+)
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
-from flowtex.field.derived import DERIVED, SIGNED, drawn_mask, steps_of
+from flowtex.field.derived import SIGNED, drawn_mask, steps_of
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.scene.fields import share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures.images import as_picture, load_image
@@ -34,7 +41,6 @@ from flowtex.textures.tiles.shared import (
     coarsened_field,
     drawn_speeds,
     ends_of,
-    has_pyramid,
     shared_pyramid,
     usual_ends,
     widened,
@@ -75,7 +81,7 @@ class Scene:
     ) -> None:
         self.settings = settings or Settings()
         self._appearance = appearance or Appearance()
-        self.field = _with_scalars(field, self._appearance)
+        self.field = with_scalars(field, self._appearance.scalar_name)
         self.image = image
         if image is None and self.appearance.image is not None:
             self.image = as_picture(load_image(self.appearance.image))
@@ -147,7 +153,7 @@ class Scene:
 
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
-        before, self.field = self.field, _with_scalars(self.field, value)
+        before, self.field = self.field, with_scalars(self.field, value.scalar_name)
         same_image = value.image is None or value.image is self._appearance.image
         try:
             self._check_colours(value)
@@ -193,9 +199,14 @@ class Scene:
         return self._limits(self.appearance)
 
     @property
+    def colour_scale(self) -> ColourScale:
+        """The colours of the scalars, by which all renderers draw."""
+        return scale_of(self.appearance, self._limits(self.appearance))
+
+    @property
     def legend_colours(self) -> Bytes:
-        """The colour map as a legend shows it, (256, 4): as the picture does on average."""
-        return mean_colours(colour_table(self.appearance.cmap), self.settings)
+        """The colour map as a legend shows it, (N, 4): as the picture does on average."""
+        return mean_colours(self.colour_scale.table, self.settings)
 
     @property
     def legend_limits(self) -> tuple[float, float]:
@@ -322,8 +333,8 @@ class Scene:
         else:
             low, high = self.usual_range(name)
         if (low < 0 < high or name in SIGNED) and is_diverging(appearance.cmap):
-            return -max(-low, high), max(-low, high)
-        return low, high
+            low, high = -max(-low, high), max(-low, high)
+        return norm_limits(appearance.norm, low, high)
 
     def fit_range(self) -> None:
         """Colour by the range of the data from now on, unless the appearance has limits."""
@@ -334,6 +345,8 @@ class Scene:
         if (name := appearance.scalar_name) is None:
             return
         steps_of(self.field, name)
+        if appearance.norm is not None:
+            scale_of(appearance, self._limits(appearance))
         low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
         if low <= 0:
             msg = (
@@ -401,8 +414,9 @@ class Scene:
         whole = self.field if self.field.triangles is None else self.whole
         field = share_field(coarsened_field(whole, nodes))
         scene = Scene(field)
-        limits = None if self.scalar_name is None else self.scalar_limits
-        scene._appearance = replace(self.appearance, clim=limits)
+        scale, look = self.colour_scale, self.appearance
+        limits = {"clim": (scale.low, scale.high)} if scale.norm is None else {"norm": scale.norm}
+        scene._appearance = look if look.scalar_name is None else replace(look, **limits)
         scene.settings, scene.image = self.settings.copy(), self.image
         scene._noise, scene._time = self._noise, self._time
         parameter, lines = self.settings.parameter, self.lines
@@ -511,7 +525,7 @@ def follow(
         try:
             scene.appearance = look
         except ValueError:  # its values have no logarithm, unlike those of the first scene
-            scene.appearance = replace(look, log_scale=False, clim=None)
+            scene.appearance = replace(look, log_scale=False, norm=None, clim=None)
 
     ends = first().settings.observe(follow_setting), first().observe(follow_look)
     return lambda: [end() for end in ends].clear()
@@ -525,42 +539,8 @@ def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None
             scene.set_image(image)
 
 
-def _with_scalars(field: FlowField, appearance: Appearance) -> FlowField:
-    """Return the field with the scalar of its colours, if that is derived from the velocity."""
-    name = appearance.scalar_name
-    if name not in DERIVED or name in field.scalars or has_pyramid(field) or field.sign_free:
-        return field
-    return _fields.get(name, lambda: field.with_derived(name), owner=field)
-
-
-_fields: WeakCache[FlowField] = WeakCache()
 _coarse_stores: WeakCache[SliceStore] = WeakCache()
 _textures: WeakCache[TextureSet] = WeakCache()
-
-
-def share_field(field: FlowField) -> FlowField:
-    """Return an equal field that is in use already, or this one.
-
-    A notebook shows one mesh many times, and makes a new field each time.
-    """
-    if has_pyramid(field):
-        return field
-    texts = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
-    text = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (*texts, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
-    units = (field.velocity_unit, *field.units.items())
-    positions = () if field.has_position is None else (field.has_position,)
-    joined = () if field.triangles is None else (field.triangles,)
-    inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
-    inputs += tuple(field.scalars.values())
-    # Lazy steps are identified by their object, which a field keeps alive.
-    lazy_ids = tuple(id(a) for a in inputs if isinstance(a, LazySteps))
-    arrays = (a for a in inputs if not isinstance(a, LazySteps))
-    kind = (field.has_position is None, field.triangles is None)
-    volume = tuple((k, len(v), float(v.sum())) for k, v in field.volume_values.items())
-    names = (*field.scalars, field.on_cells, field.uncertainty, volume)
-    key = digest(*arrays, words=(words, units, kind, lazy_ids, *names))
-    return _fields.get(key, lambda: field)
 
 
 def _is_tiled(field: FlowField, settings: Settings) -> bool:

@@ -23,7 +23,45 @@ THE SOFTWARE. */
 "use strict";var flowtex=(()=>{var __defProp=Object.defineProperty;var __getOwnPropDesc=Object.getOwnPropertyDescriptor;var __getOwnPropNames=Object.getOwnPropertyNames;var __hasOwnProp=Object.prototype.hasOwnProperty;var __export=(target,all)=>{for(var name in all)__defProp(target,name,{get:all[name],enumerable:!0})},__copyProps=(to,from,except,desc)=>{
 if(from&&typeof from=="object"||typeof from=="function")for(let key of __getOwnPropNames(from))!__hasOwnProp.call(to,key)&&
 key!==except&&__defProp(to,key,{get:()=>from[key],enumerable:!(desc=__getOwnPropDesc(from,key))||desc.enumerable});return to};var __toCommonJS=mod=>__copyProps(__defProp({},"__esModule",{value:!0}),mod);var core_exports={};__export(core_exports,{FlowtexView:()=>FlowtexView,Viewer:()=>Viewer,decoded:()=>decoded,initialize:()=>initialize,
-mountPage:()=>mountPage,openPage:()=>openPage,packedModule:()=>packedModule,partsOfFile:()=>partsOfFile,render:()=>render});var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+mountPage:()=>mountPage,openPage:()=>openPage,packedModule:()=>packedModule,partsOfFile:()=>partsOfFile,render:()=>render});function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
+bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>
+16&32768,size=BITS[0]&2147483647;return size>=1199566848?sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(
+Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){let[w,h]=[Math.max(width>>1,1),Math.
+max(height>>1,1)],result2=new Uint16Array(w*h*channels),between3=(n,few,many)=>{let x=(n+.5)*(many/few)-.5,base=Math.floor(
+x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,v2]=between3(j,h,height);for(let i=0;i<
+w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(texels[(y*width+x)*channels+
+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=toHalf(below*(1-v2)+
+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
+cal_points",separatrices:"separatrices",nullclines:"nullclines"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,
+uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
+low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
+max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
+high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function beyondEnds({low,high,choices,number}){
+let{least,most}=choices[number]??{least:low,most:high},rounding=ZERO_SHARE*(most-least);return[low>least+rounding,high<most-
+rounding]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
+number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
+row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
+ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
+let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
+info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
+let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
+4,first))),first]}async function partOfText(info,text){return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}
+function unzipped(text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=
+letters.charCodeAt(n);return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={
+1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
+count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(
+`the packing of the part "${info.name}" is invalid`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(
+-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;
+for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*
+channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<
+differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
+numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
+let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
+new Float32Array(new Float64Array(numbers).map((n,k)=>(n|0)*units[k%channels]))}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -40,32 +78,43 @@ result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(r
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
-a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function mapOf(header,maps,name){
-let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count2).fill(255);for(let n=0;n<count2;n+=
-1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function choiceOf({scalars},name){let[before,after]=[
-scalars.name,name].map(each=>scalars.choices.find(one=>one.name===each)),cmap=after?.cmap!==before?.cmap&&scalars.cmap===
-before?.cmap?after?.cmap:void 0;return{scalars:name,clim:null,...cmap&&{cmap}}}function recoloured(header,choice,parts){
-let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,label,unit:unit3,steps,flat}=scalars.choices[number];Object.assign(scalars,{name,
-label,unit:unit3,steps,flat,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.
-low,scalars.high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){
-let{low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.
-diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",MOST_STEPS=32,SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){
+let{scalars,colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}var ENTRIES=256;
+function mapOf({scalars},maps,name,norm){let{entries,flip,maps:names}=scalars,table=norm?norm.slice():new Uint8Array(4*entries).
+fill(255),last=table.length/4-1||1;return table.map((own,at)=>{let[n,k]=[at>>2,at&3],place=Math.round((flip?last-n:n)/last*
+(ENTRIES-1));return k===3?own:maps[3*(names.indexOf(name)*ENTRIES+place)+k]})}function texelsOf(map,{beyond}){let count2=map.
+length/4,norm=map instanceof Float32Array;return Float32Array.from({length:map.length+12},(_,at)=>{let[n,k]=[at>>2,at&3],
+own=map[4*clamp(n-1,0,count2-1)+k];return k===3?norm?n?own:1:0:(n>count2?beyond[n-count2]:n?null:beyond[0])?.[k]??own/255})}
+function placeOf(scalars,map){let share=shareOf(scalars);if(!(map instanceof Float32Array))return share;let count2=map.length/
+4,edge=n=>n<count2?map[4*n+3]:1;return value=>{let at=share(value),n=0;for(;n<count2-1&&edge(n+1)<=at;)n+=1;return(n+clamp(
+(at-edge(n))/(edge(n+1)-edge(n)||1),0,1))/count2}}function choiceOf({scalars},name){let[before,after]=[scalars.name,name].
+map(each=>scalars.choices.find(one=>one.name===each)),cmap=after?.cmap!==before?.cmap&&scalars.cmap===before?.cmap?after?.
+cmap:void 0;return{scalars:name,clim:null,...cmap&&{cmap}}}function recoloured(header,choice,parts){let scalars={...header.
+scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.scalars);
+if(number>=0){let{name,label,unit:unit3,steps,flat}=scalars.choices[number];Object.assign(scalars,{name,label,unit:unit3,
+steps,flat,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
+high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
+low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.
+includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
 earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
-opacity=header.opacity}=choice,colours={scalars,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,
-part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};
-return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
-let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
-0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
-light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
-cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
-strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
-contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
-roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
-fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
-{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
-paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
+opacity=header.opacity}=choice,colours={scalars,earth,opacity},[maps,map]=[parts.get("maps"),parts.get("cmap")?.data],norm=map instanceof
+Float32Array,ends2=norm&&(choice.clim!==void 0||choice.scalars!==void 0);if(!maps||!(choice.cmap||ends2))return{colours,
+part:null};ends2&&Object.assign(scalars,{ticks:[],beyond:[null,null,scalars.beyond[2]]});let own=norm&&!ends2,data=choice.
+cmap?mapOf(header,maps.data,choice.cmap,own?map:void 0):Uint8Array.from(map??[]),digest=[OWN,choice.cmap,own].join();return{
+colours,part:{name:"cmap",data,shape:[data.length/4,4],digest}}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/
+SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*
+c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
+let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
+Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
+cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
+value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
+base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
+fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function runsOf(map){let runs=[];for(let n=0;n<
+map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*n+k]===map[4*n-4+k])?runs[runs.length-1][1]=n+1:runs.push([n,n+1]);return runs}
+function rampOf(map,header,settings,stops){let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`\
+rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")}\
+)`},runs=runsOf(map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*
+from/count2}% ${100*to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")}\
 )`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
@@ -213,55 +262,18 @@ low[n%3],points[n]),high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map(
 hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,middle,radius})}return groups}function visibleRuns(groups,planes){
 let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
 hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
-push([first,count2])}return runs}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
-bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>
-16&32768,size=BITS[0]&2147483647;return size>=1199566848?sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(
-Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){let[w,h]=[Math.max(width>>1,1),Math.
-max(height>>1,1)],result2=new Uint16Array(w*h*channels),between3=(n,few,many)=>{let x=(n+.5)*(many/few)-.5,base=Math.floor(
-x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,v2]=between3(j,h,height);for(let i=0;i<
-w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(texels[(y*width+x)*channels+
-c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=toHalf(below*(1-v2)+
-above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
-cal_points",separatrices:"separatrices",nullclines:"nullclines"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,
-uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
-low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
-max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
-high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function beyondEnds({low,high,choices,number}){
-let{least,most}=choices[number]??{least:low,most:high},rounding=ZERO_SHARE*(most-least);return[low>least+rounding,high<most-
-rounding]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
-name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
-number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
-row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
-let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
-{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
-ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
-let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
-info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
-let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
-4,first))),first]}async function partOfText(info,text){return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}
-function unzipped(text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=
-letters.charCodeAt(n);return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={
-1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
-count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(
-`the packing of the part "${info.name}" is invalid`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(
--2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;
-for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*
-channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<
-differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
-numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
-let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
-new Float32Array(new Float64Array(numbers).map((n,k)=>(n|0)*units[k%channels]))}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
-data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
-2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
-shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
-middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
-function shares(steps,scalars){let nodes=steps[0]?.length??0,result2=new Float32Array(2*nodes),place=shareOf(scalars);return steps.
-forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?share:NO_VALUE}}),
-result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),
-rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);
-return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.
-reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
+push([first,count2])}return runs}var NO_VALUE=-1e9,MOST_RANGES=500;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))
+return data;let result2=new Float32Array(data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}
+function grid(us,vs){let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=
+u,result2[n++]=v2;return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.
+from({length:count2},(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({
+alongI,alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars){let nodes=steps[0]?.length??0,result2=new Float32Array(
+2*nodes),place=shareOf(scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*
+n+k]=Number.isFinite(share)?clamp(share,-MOST_RANGES,MOST_RANGES):NO_VALUE}}),result2}function cornersAt([rows,columns],[
+i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+
+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],
+[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+share*value(
+node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
 start,along2]=camera.ray(x,y),nearest2=dot2(start,along2),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
 Math.sqrt(square);return depth>0?add(start,along2,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
@@ -648,21 +660,22 @@ r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULL
 left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
 "keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():
-element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";element=dom(
+element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";place=value=>value;element=dom(
 "div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit3,bar}=header.
 scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom(
 "div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2);let[isBelow,isAbove]=beyondEnds(
-header.scalars);ramp.classList.toggle("below",isBelow),ramp.classList.toggle("above",isAbove),this.mark.hidden=!0;let placeOf=shareOf(
-header.scalars),ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),
-0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX\
-(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit3?`${label} (${unit3})`:
-label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
+header.scalars);ramp.classList.toggle("below",isBelow),ramp.classList.toggle("above",isAbove),this.mark.hidden=!0;let place=placeOf(
+header.scalars,map);this.place=place;let ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(
+place(value),0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=
+`translateX(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit3?`${label} (${unit3}\
+)`:label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
 shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns,isLine})=>{
 let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*
 c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),
-!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({
-scalars}){let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.
-reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.place(value),0,1)}%`)}};function legendTicks({scalars}){
+if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,
+scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??
+ticks[2]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -886,19 +899,20 @@ speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.label,s
 lines=new Map,where=placeText(point.position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;
 lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(
 numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));
-lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit3))}lines.set(label,withUnit(numberText(
-size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
-each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.
-set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(...[...lines].
-flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){
-let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{
-let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[
-[]];for(let place of points.map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(
-line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.
-map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,
-radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},
-shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.
-createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll("|",""),withUnit(text,unit3))}lines.set(
+label,withUnit(numberText(size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.
+scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
+point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(
+...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.
+explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
+placeOf2=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
+let lines2=[[]];for(let place of points.map(placeOf2))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
+filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf2(drawn.point),{samples}=drawn,most=Math.max(
+...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(position);return place?
+[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
+sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
+let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,
+`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1364,8 +1378,8 @@ lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
 follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,LEAST_CELLS]=[160,8],[NEWTON_STEPS,FAR]=[100,3],[LAST_STEP,REMAINS,BEYOND2]=[1e-6,1e-11,1e-6],[SAME2,SAME_DEGENERATE]=[
 1e-6,.05],[CHANGE,DEGENERATE]=[.01,1e-5],[SINGULAR,ROUNDING2,REAL_SHARE]=[1e-13,1e-9,1e-6],[AROUND,ON_LINE]=[.1,.02],[RADIUS,
 CIRCLE,MOST_DIRECTIONS]=[.05,720,24],[TURN_RADIUS,TURN_STEPS,RETURNED]=[2,400,1e-7],NULLCLINE_CELLS=256,[NULLCLINE_HALVINGS,
-LEFT]=[12,.25],[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,RATIO,APART]=[
-8,1.2,.03],[MOVED,HALVINGS]=[1e-5,28],FINER=1/16,GROWTH=.001,difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
+LEFT]=[12,.25],[STEPS2,MOST_STEPS2,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,RATIO,
+APART]=[8,1.2,.03],[MOVED,HALVINGS]=[1e-5,28],FINER=1/16,GROWTH=.001,difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
 a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]),larger=a=>Math.max(Math.abs(a[0]),Math.
 abs(a[1])),clipped=(at,ends2)=>at.map((x,k)=>Math.min(Math.max(x,ends2[k][0]),ends2[k][1]));function fixedPoints(rate,gradient,ends2){
 let sides=ends2.map(([low,high])=>high-low),counts=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),LEAST_CELLS)),
@@ -1461,7 +1475,7 @@ CLOSED);return closed?ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,
 function windsAround(path,[x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(
 at=>difference(at,[x,y]));turned2+=Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function unit2(rate){return(x,y)=>{
 let[u,v2]=rate(x,y),size=Math.hypot(u,v2);return[u/size,v2/size]}}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
-let near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],next=stepped(unit2(rate),
+let near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS2;n+=1){let at=path[path.length-1],next=stepped(unit2(rate),
 at,step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>
 high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(
 at,difference(next,at),share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);
@@ -2011,19 +2025,19 @@ size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);le
 gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
 0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<size.
 layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}colourMap(){
-let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,
-0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,paper,scalars}=this.header,repeat=paper?.
-repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,
-!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.name===null?null:this.nodalShares(
-before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,
-texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){
-let gl=this.graphics.context;this.bindNodes(before,after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(
-before,after)),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(
-null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+let gl=this.graphics.context,{scalars}=this.header;return this.texture("cmap",this.key(["cmap"],scalars.beyond),texture=>{
+gl.bindTexture(gl.TEXTURE_2D,texture);let data=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);gl.texImage2D(
+gl.TEXTURE_2D,0,gl.RGBA32F,data.length/4,1,0,gl.RGBA,gl.FLOAT,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<
+this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,
+next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,
+paper,scalars}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&
+this.image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.
+name===null?null:this.nodalShares(before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<
+4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.
+resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;this.bindNodes(before,
+after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),gl.drawElements(gl.TRIANGLES,this.
+resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){

@@ -32,7 +32,8 @@ from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
+from flowtex.scene.signatures import accepts_options
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.web import preview
 from flowtex.web.linked import (

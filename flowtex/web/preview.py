@@ -22,7 +22,6 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl.client_data import ClientData
-from flowtex.scene.options import NO_VALUE_COLOR
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
 
@@ -169,12 +168,9 @@ def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
     """Return the colour of the surface at each pixel, (H, W, 3)."""
     colours = scene.colours
-    if colours.values is None or colours.table is None:
+    if colours.values is None or not len(colours.scale.table):
         return np.asarray(colours.plain)
     before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = before * (1 - between) + after * between
-    share = colours.shares(values.ravel()[picture.cell if colours.flat else picture.nearest])
-    entry = (np.nan_to_num(share) * 256).clip(0, 255).astype(int)
-    return np.where(
-        np.isnan(share)[..., None], rgb(NO_VALUE_COLOR), colours.table[entry, :3] / 255.0
-    )
+    nearest = picture.cell if colours.flat else picture.nearest
+    return colours.scale.colours(values.ravel()[nearest])

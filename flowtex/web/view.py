@@ -13,7 +13,7 @@ from typing import Any
 
 from flowtex._util.arguments import checked_count
 from flowtex._util.cache import ByteCache
-from flowtex._util.colours import colour_table, rgb
+from flowtex._util.colours import ENTRIES, rgb
 from flowtex._util.progress import check, pool, stoppable, track
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
@@ -138,20 +138,18 @@ def colours_of(
 ) -> Colours:
     """Return the colours of a scene on its field, or on a coarser form of it."""
     look, name = scene.appearance, scene.scalar_name
-    low, high = scene.scalar_limits
     return Colours(
         name=name,
         unit="" if name is None else scene.field.unit_of(name),
         number=0 if name is None else scene.scalar_names.index(name),
         choices=choices_of(scene),
         cmap=look.cmap if isinstance(look.cmap, str) else "",
-        auto=look.clim is None,
+        auto=look.clim is None and look.norm is None,
         values=None if name is None else steps_of(field, name),
         flat=name in scene.field.on_cells,
-        low=low,
-        high=high,
-        log_scale=look.log_scale,
-        table=colour_table(look.cmap),
+        scale=scene.colour_scale,
+        entries=look.n_colors or ENTRIES,
+        flip=look.flip_scalars,
         plain=rgb(look.color),
         background=background,
         lighting=scene.is_lit,

@@ -10,7 +10,6 @@ import uuid
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from contextvars import copy_context
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeGuard
 
@@ -27,8 +26,9 @@ from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.attributes import AppearanceAttributes
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, share_field
+from flowtex.scene.signatures import accepts_options
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey
@@ -503,7 +503,7 @@ class Views:
         """Apply colours that were chosen in the browser; invalid ones are ignored."""
         chosen = {name: value for name, value in changes.items() if name in CHOSEN}
         with suppress(ValueError, KeyError, TypeError):
-            self.first.appearance = replace(self.first.appearance, **chosen)
+            self.first.appearance = self.first.appearance.changed(**chosen)
 
     def set_image(self, image: Any) -> None:
         """Lay another image on the surface, in all views that show one."""

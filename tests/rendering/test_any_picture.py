@@ -12,6 +12,7 @@ from strategies import field_arguments, field_of, property_test, setting_values
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.colours import NO_COLOURS, ColourScale
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.mesh_levels import MeshLevels
@@ -57,7 +58,9 @@ def check_client(scene: Scene) -> None:
         low, high = scene.scalar_range(name)
         assert low < high
         values = scene.scalar(name)[None]
-        client = ClientData(scene.textures, Colours(name, values=values, low=low, high=high))
+        client = ClientData(
+            scene.textures, Colours(name, values=values, scale=ColourScale(NO_COLOURS, low, high))
+        )
         json.dumps(client.header(scene.settings), allow_nan=False)
         parts = client.surface() | client.step(client.steps - 1)
         bounded = {key: part for key, part in parts.items() if key.split("/")[0] not in UNBOUNDED}

@@ -17,15 +17,9 @@ from strategies import junk, property_test
 
 import flowtex
 from flowtex.errors import FieldError
-from flowtex.scene.options import (
-    Appearance,
-    FieldOptions,
-    Options,
-    ViewOptions,
-    accepts_options,
-    option_text,
-)
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, follow, lay_image
+from flowtex.scene.signatures import accepts_options, option_text
 from flowtex.settings import SettingsError
 
 

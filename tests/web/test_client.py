@@ -15,6 +15,7 @@ from pages import opened_page
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
+from flowtex._util.colours import ColourScale
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl.client_data import ClientData, Colours
@@ -100,7 +101,7 @@ def table() -> Pixels:
 def test_scalars_are_interpolated_before_they_are_mapped(client: ClientPage) -> None:
     x = gyre().points[..., 0].copy()
     x[3, 40] = np.nan
-    painted = Colours("x", "m", x[None], 0.5, 1.5, table(), background=(1.0, 0.0, 0.0))
+    painted = Colours("x", "m", x[None], ColourScale(table(), 0.5, 1.5), background=(1.0, 0.0, 0.0))
     theirs = client.picture(client.mount(scene(colours=painted, strength=0.0), SIZE, **PLAIN))
     settings = Settings(strength=0.0)
     picture = render(made(gyre, settings), settings, WHOLE, SIZE)
@@ -224,7 +225,7 @@ def test_the_wheel_zooms_to_the_pointer(client: ClientPage) -> None:
 
 def test_a_click_tells_the_point(client: ClientPage) -> None:
     values = gyre().points[..., 0] + 2 * gyre().points[..., 1]
-    painted = Colours("sum", "", values[None], 0.0, 4.0, table())
+    painted = Colours("sum", "", values[None], ColourScale(table(), 0.0, 4.0))
     client.mount(scene(colours=painted), SIZE, hear=["onPoint"], **PLAIN)
     client.sharp()
     client.page.wait_for_function("() => viewers[0].canPick")
@@ -244,7 +245,7 @@ def test_a_click_tells_the_point(client: ClientPage) -> None:
 
 
 def test_the_bar_and_the_settings(client: ClientPage) -> None:
-    values = Colours("speed", "m/s", gyre().speed, 0.0, 1.0, table())
+    values = Colours("speed", "m/s", gyre().speed, ColourScale(table()))
     client.mount(scene(colours=values), (460, 300), hear=["onSetting"], smooth=False)
     client.sharp()
     page = client.page

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import CMAPS
@@ -114,7 +113,7 @@ class Appearance(Controller):
     def _change(self, **changes: Any) -> None:
         """Change the appearance, or report why that is not possible."""
         try:
-            self.area.scene.appearance = replace(self.area.scene.appearance, **changes)
+            self.area.scene.appearance = self.area.scene.appearance.changed(**changes)
         except FieldError as error:
             self.context.complain(error)
 

@@ -43,7 +43,7 @@ from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.scene.options import Appearance as Look
-from flowtex.scene.options import option_form
+from flowtex.scene.signatures import option_form
 from flowtex.settings import TABLE, SettingsError
 from flowtex.sources.mesh_source import OUTER
 from flowtex.sources.opening.dataset_files import is_dataset_file

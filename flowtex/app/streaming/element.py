@@ -343,7 +343,7 @@ class Element:
             return
         scene = self._viewport.scene
         with self._changed_by(""):
-            scene.appearance = replace(scene.appearance, **changes)
+            scene.appearance = scene.appearance.changed(**changes)
 
     def close(self) -> None:
         """Stop serving the parts."""

@@ -405,13 +405,13 @@ def time_in(scene: Scene, field: FlowField) -> float:
 def _fitting(
     first: Scene, make: Callable[[dict[str, Any]], Scene], changes: dict[str, Any]
 ) -> Scene:
-    """Make a scene beside another one, without a logarithmic scale if its values have none."""
+    """Make a scene beside another one, without a scale that its values do not have."""
     try:
         return make(changes)
     except ValueError:
-        if not first.appearance.log_scale:
+        if not (first.appearance.log_scale or first.appearance.norm):
             raise
-        return make({**changes, "log_scale": False, "clim": None})
+        return make({**changes, "log_scale": False, "norm": None, "clim": None})
 
 
 class OffscreenWindow:

@@ -11,6 +11,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
+from flowtex.field.derived.vectors import vector_names, with_vector_scalar
 from flowtex.field.gaps import NO_DATA, known_nodes
 from flowtex.field.steps import LazySteps, Steps, map_steps
 
@@ -59,10 +60,13 @@ def steps_of(field: Any, name: str) -> Steps:
         return field.scalars[name]
     if name == "speed":
         return field.speed
-    names = ", ".join(map(repr, dict.fromkeys(("speed", *field.scalars, *DERIVED))))
+    if name in (other := with_vector_scalar(field, name)).scalars:
+        return other.scalars[name]
+    known = ("speed", *field.scalars, *vector_names(field), *DERIVED)
+    names = ", ".join(map(repr, dict.fromkeys(known)))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
     if COMPONENT.search(name):
-        msg += "; one component is an array of its own, as in mesh['U_x'] = mesh['U'][:, 0]"
+        msg += "; a component is named as in 'U_x', or chosen by component=0"
     if name in FOLLOWED:
         msg = f"{name!r} needs a horizon; first call field.with_derived({name!r}, horizon=...)"
     raise FieldError(msg)

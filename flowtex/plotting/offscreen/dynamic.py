@@ -7,7 +7,8 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.plotting.offscreen.figure import USUAL_DPI, axes
 from flowtex.scene.annotations import time_text
-from flowtex.scene.options import Appearance, FieldOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions
+from flowtex.scene.signatures import accepts_options
 
 #: Width and height of a plot whose size is not known yet, in pixels.
 FIRST_SIZE = (600, 400)

@@ -17,6 +17,7 @@ from PIL import Image
 
 from flowtex._util.arguments import brief, checked_size, sized
 from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
 from flowtex.field.arrays import SectionAxes
@@ -30,9 +31,11 @@ from flowtex.plotting.offscreen.earth_axes import (
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.plotting.offscreen.scaled_axes import AxesScales, with_polar_scalars
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.annotations import time_text
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene
+from flowtex.scene.signatures import accepts_options
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.opening.dataset_files import dataset_paths
 
@@ -197,6 +200,8 @@ class FlowImage(AxesImage):
     >>> plt.close(figure)
     """
 
+    _changes = 0  #: Number of changes of the norm and the colour map.
+
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
         self._unit = AxesUnit()
         if is_geo(ax):
@@ -235,22 +240,44 @@ class FlowImage(AxesImage):
             self._follow_scales(AxesScales(ax, framed=False))
             scene = self._scene
         super().__init__(ax, extent=(left, right, bottom, top))
-        # Pixels have no values, but a colour bar needs some.
-        self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
+        # Pixels have no values, but a colour bar and a norm without limits need some.
+        self.set_data([scene.legend_limits])
         self.mouseover = False
         if scene.scalar_name is not None:
             super().set_cmap(self._bar_colours())
-            log_scale = scene.appearance.log_scale
-            self.set_norm((LogNorm if log_scale else Normalize)(*scene.legend_limits))
-        self._first_clim = self.get_clim()
+            norm = (LogNorm if scene.appearance.log_scale else Normalize)(*scene.legend_limits)
+            self.set_norm(norm if scene.appearance.norm is None else scene.appearance.norm)
+        self._first_norm, self._first_clim = self.norm, self.get_clim()
         self._title = ""
 
-    def _bar_colours(self) -> ListedColormap:
+    def _bar_colours(self) -> Colormap:
         """Return the colours of a colour bar, which are those of the picture."""
+        look, scale = self._scene.appearance, self._scene.colour_scale
+        # As many as the map has, as a norm may return their numbers.
+        chosen = colour_map(look.cmap, look.n_colors, flip=look.flip_scalars)
+        rows = np.vstack([chosen(np.arange(chosen.N))[:, :3], scale.texels[[0, -2, -1], :3]])
+        means = mean_colours(np.rint(255 * rows).astype(np.uint8), self._scene.settings) / 255
+        *inside, below, above, nan = means
         # In matplotlib colorbar_extend is a word, in its type a bool.
-        colours: Any = ListedColormap(self._scene.legend_colours[:, :3] / 255)
+        colours: Any = ListedColormap(inside).with_extremes(under=below, over=above, bad=nan)
         colours.colorbar_extend = EXTENDED.get(self._scene.beyond, "neither")
         return colours
+
+    def set_norm(self, norm: Any) -> None:
+        """Draw the scalars by another norm; limits that it lacks are those of the scalars."""
+        before = self.norm
+        super().set_norm(norm)
+        try:
+            self.autoscale_None()
+            norm_scale(self.norm, self.cmap)
+        except (FieldError, ValueError):
+            super().set_norm(before)
+            raise
+
+    def changed(self) -> None:
+        """Draw anew after a change of the norm or the colour map."""
+        self._changes += 1
+        super().changed()
 
     def set_cmap(self, cmap: str | Colormap) -> None:
         """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
@@ -375,7 +402,7 @@ class FlowImage(AxesImage):
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
         look = self._options.appearance
-        shown += (self.axes.get_facecolor(), *self.get_clim(), look.cmap, self.get_alpha())
+        shown += (self.axes.get_facecolor(), self._changes, look.cmap, self.get_alpha())
         if shown != self._shown:
             self._picture = self._draw(corners, (width, height), density)
             self._shown = shown
@@ -388,7 +415,9 @@ class FlowImage(AxesImage):
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)
         look = self._options.appearance
-        if self.get_clim() != self._first_clim:  # set by matplotlib
+        if self.norm is not self._first_norm or look.norm is not None:  # set by matplotlib
+            look = replace(look, norm=self.norm, clim=None, log_scale=False)
+        elif self.get_clim() != self._first_clim:
             look = replace(look, clim=self.get_clim())
         if (alpha := self.get_alpha()) is not None:
             look = replace(look, opacity=look.opacity * float(alpha))

@@ -31,7 +31,8 @@ from flowtex.plotting.offscreen.encoders import (
 )
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.uniforms import WAVE_PIXELS
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.scene.signatures import accepts_options
 from flowtex.settings import TABLE, Settings
 
 #: Seconds for one run through the times of a field: so many for each step, within limits.

@@ -22,8 +22,9 @@ from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.annotations import Layout, annotate, difference_text
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.signatures import accepts_options
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 from flowtex.textures.tiles.pyramid import Pyramid

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.colours import ColourScale, distinct_texts
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -124,6 +127,30 @@ def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData) -> FlowMapper:
     return mapper
 
 
+class NormTable(pv.LookupTable):
+    """A lookup table of even shares, with the rows of a norm for shaders, which are exact."""
+
+    texels: Floats32 = np.zeros((1, 4), np.float32)
+    marks: Mapping[float, str] = MappingProxyType({})  #: Texts along a bar, by their places.
+
+
+def lookup_table(scale: ColourScale) -> pv.LookupTable:
+    """Return the lookup table of a colour scale."""
+    if scale.edges is None:
+        table = pv.LookupTable(values=scale.table)
+    else:
+        count = len(scale.table)
+        middles = scale.low + (np.arange(count) + 0.5) / count * (scale.high - scale.low)
+        values = np.column_stack([255 * scale.colours(middles), np.full(count, 255)])
+        table = NormTable(values=np.rint(values).astype(np.uint8))
+        table.texels, ticks = scale.texels, scale.ticks
+        table.marks = dict(zip(scale.places(ticks), distinct_texts(ticks), strict=True))
+    table.log_scale, table.scalar_range = scale.log_scale, (scale.low, scale.high)
+    table.below_range_color, table.above_range_color = scale.below, scale.above
+    table.nan_color = scale.nan
+    return table
+
+
 class MappedColours(NamedTuple):
     """The colour map of a point array of a mesh, and textures in which fragments look values up.
 
@@ -173,15 +200,21 @@ class MappedColours(NamedTuple):
         return np.stack([shares, has_value], axis=-1).astype(np.float32)[None]
 
     def colours(self) -> Floats32:
-        """Return texels (1, 1, N + 3, 4): below the range, its N colours, above, without value."""
+        """Return texels (1, 1, N + 3, 4): below the range, its N colours, above, without value.
+
+        They are those of :attr:`ColourScale.texels`.
+        """
+        if isinstance(self.table, NormTable):
+            return self.table.texels[None, None]
         count = max(int(self.table.GetNumberOfAvailableColors()), 1)
         low, high = self._scaled(self.low), self._scaled(self.high)
         places = low + (np.arange(-1, count + 1) + 0.5) / count * (high - low)
         inside = 10**places if self.table.UsingLogScale() else places
         self.table.SetRange(self.low, self.high)
         values = numpy_to_vtk(np.append(inside, np.nan), deep=True)
-        mapped = vtk_to_numpy(self.table.MapScalars(values, 0, 0))
-        return np.asarray(mapped[None, None] / 255, dtype=np.float32)
+        mapped = vtk_to_numpy(self.table.MapScalars(values, 0, 0)) / 255
+        mapped[:, 3] = 0.0
+        return np.asarray(mapped[None, None], dtype=np.float32)
 
     def _scaled(self, values: ArrayLike) -> Floats:
         return np.asarray(np.log10(values) if self.table.UsingLogScale() else values)

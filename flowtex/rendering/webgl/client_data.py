@@ -19,7 +19,14 @@ from functools import cache, cached_property
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
-from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
+from flowtex._util.colours import (
+    CMAPS,
+    ENTRIES,
+    ColourScale,
+    colour_table,
+    distinct_texts,
+    is_diverging,
+)
 from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
@@ -82,9 +89,10 @@ class Colours:
     name: str | None = None
     unit: str = ""
     values: Floats | None = None  #: Values at all nodes of the field, (T or 1, J, I).
-    low: float = 0.0  #: Values at the ends of the colour map.
-    high: float = 1.0
-    table: Bytes | None = None  #: Colour map, (256, 4) uint8.
+    scale: ColourScale = data_field(default_factory=ColourScale)  #: Their colours.
+    #: Number of colours of a map that is chosen instead, and whether it is reversed.
+    entries: int = ENTRIES
+    flip: bool = False
     #: Colours from 0 to 1 where there are no values, and behind the surface: ``None`` for that of
     #: the page around.
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
@@ -92,7 +100,6 @@ class Colours:
     lighting: bool = False  #: Whether the surface is lit.
     opacity: float = 1.0  #: How much of the background it hides, 0 to 1.
     bar: bool = True  #: Whether there is a legend.
-    log_scale: bool = False  #: Whether the map goes by the logarithm.
     #: Numbers and values of other scalars, sent as well where nobody can be asked later.
     others: tuple[tuple[int, Floats], ...] = ()
     number: int = 0  #: Number of the scalar among those of the field.
@@ -108,10 +115,6 @@ class Colours:
     graticule: bool = False
     #: Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
     land: tuple[float, float, float] | None = None
-
-    def shares(self, values: Floats) -> Floats:
-        """Return the places of values on the colour map, from 0 to 1."""
-        return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,10 +228,22 @@ class ClientData:
                     n: getattr(colours, n)
                     for n in ("name", "unit", "number", "cmap", "auto", "bar", "flat")
                 },
+                "entries": colours.entries,
+                "flip": colours.flip,
                 "label": colours.label or colours.name or "",
-                "low": float(colours.low),
-                "high": float(colours.high),
-                "log": colours.log_scale,
+                "low": float(colours.scale.low),
+                "high": float(colours.scale.high),
+                "log": colours.scale.log_scale,
+                "ticks": [
+                    {"value": value, "text": text}
+                    for value, text in zip(
+                        colours.scale.ticks, distinct_texts(colours.scale.ticks), strict=True
+                    )
+                ],
+                "beyond": [
+                    None if colour is None else plain_list(colour)
+                    for colour in (colours.scale.below, colours.scale.above, colours.scale.nan)
+                ],
                 "steps": 1 if colours.values is None or len(colours.values) == 1 else self.steps,
                 "choices": [
                     {**choice, "steps": self.steps if choice["steps"] > 1 else 1}
@@ -257,8 +272,8 @@ class ClientData:
         """Return the arrays that are the same at all times, the smallest first."""
         geometry, colours = self.textures.geometry, self.colours
         parts: Parts = {}
-        if colours.table is not None and (colours.choices or colours.name is not None):
-            parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
+        if len(colours.scale.table) and (colours.choices or colours.name is not None):
+            parts["cmap"] = colours.scale.part
         if colours.choices:
             parts["maps"] = _maps()
         if isinstance(geometry, TriangleGeometry):

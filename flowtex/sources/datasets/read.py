@@ -158,6 +158,8 @@ def _whole(
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
     elif flow.unit:
         arguments["velocity_unit"] = units.symbol(flow.unit)
+    if nodes.projection is None:
+        arguments["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
     scale = (units.factor(flow.unit, "m/s") or 1.0) if flat and flow.unit else 1.0
 
     def vectors(step: int) -> Floats:

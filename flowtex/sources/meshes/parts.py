@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.vectors import candidates
+from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, data_of
 from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
@@ -210,7 +210,29 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
     text = f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}"
     record("align", text, notable=True)
-    return pv.MultiBlock(list(with_flow.values())).combine()
+    return pv.MultiBlock(_completed(with_flow, record)).combine()
+
+
+def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
+    """Return blocks that all have the scalars of each, which are NaN where a block lacks them."""
+    blocks = {name: part.copy(deep=False) for name, part in parts.items()}
+    for where in ("points", "cells"):
+        arrays = {a.name for b in blocks.values() for a in catalogue(b) if _is_scalar(a, where)}
+        for array in sorted(arrays):
+            lacking = [name for name, block in blocks.items() if array not in data_of(block, where)]
+            for block in blocks.values():
+                count = block.n_points if where == "points" else block.n_cells
+                data = data_of(block, where)
+                values = np.asarray(data[array]) if array in data else np.full(count, np.nan)
+                if lacking:  # of one type, as others are dropped
+                    data[array] = values.astype(np.float64)
+            if lacking:
+                record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
+    return list(blocks.values())
+
+
+def _is_scalar(array: MeshArray, where: str) -> bool:
+    return array.where == where and array.numeric and array.components == 1
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:

@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
-from flowtex.sources.meshes.components import named_axes
+from flowtex.field.derived.vectors import component_name
+from flowtex.sources.meshes.components import NO_VELOCITY, named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.nodes import Masks, Sheet
 from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps, times_of
@@ -80,7 +81,8 @@ def read_meshes(
     volume = VolumeValues(velocity, chosen or cut, count, preference)
     arrays = _stacked(chain([first], steps), velocity, draw, times, preference, record, volume)
     record.notify()
-    arrays |= {"name": name, "reading": record.reading, "volume_values": volume.values()}
+    arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
+    arrays["volume_values"] = volume.values()
     if first.grid.max_cell_dimensionality < 3:
         arrays["notable_normal"] = NOTABLE_SHARE
     if on_grid:
@@ -144,7 +146,7 @@ def _stacked(
         sheet = draw(grid)
         start = sheet if start is None else start
         check_nodes(start, sheet, step.label)
-        values = sheet.nodes(velocity), *_scalars(sheet, preference)
+        values = sheet.nodes(velocity), *_scalars(sheet, preference, velocity)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
         reordered += same is not step
@@ -172,20 +174,34 @@ def _stacked(
     nodal, flat = (common_scalars([s[n] for n in order], moments, record) for s in scalars)
     arrays = {"points": start.points, "velocity": flow, "valid": valid}
     arrays |= {"scalars": nodal, "cell_scalars": flat}
+    single = {array.name for array in start.arrays if array.components == 1}
+    arrays["parts"] = tuple(name for name in (*nodal, *flat) if name not in single)
     triangles = {} if start.triangles is None else {"triangles": start.triangles}
     return {**arrays, **triangles, "times": moments if times is None else times}
 
 
-def _scalars(sheet: Sheet, preference: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the scalars at the nodes, and those of the cells; a name is in one of them."""
+def _scalars(
+    sheet: Sheet, preference: str, velocity: MeshArray
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the scalars at the nodes, and those of the cells; a name is in one of them.
+
+    Components of other vectors than the velocity are among them.
+    """
     nodal: dict[str, Floats] = {}
     flat: dict[str, Floats] = {}
-    for array in sorted(sheet.arrays, key=lambda array: not array.where.startswith(preference)):
-        if array.numeric and array.components == 1 and array.name not in {*nodal, *flat}:
-            if array.where == "points":
-                nodal[array.name] = sheet.nodes(array)
-            else:
-                flat[array.name] = sheet.flat(array)
+    order = sorted(
+        sheet.arrays, key=lambda a: (a.components > 1, not a.where.startswith(preference))
+    )
+    for array in order:
+        is_other = array.name != velocity.name and not NO_VELOCITY.fullmatch(array.name)
+        names = [array.name] if array.components == 1 else []
+        if array.components in (2, 3) and array.real and is_other:
+            names = [component_name(array.name, str(axis)) for axis in range(array.components)]
+        if array.numeric and names and not {*nodal, *flat} & set(names):
+            on_points = array.where == "points"
+            values = sheet.nodes(array) if on_points else sheet.flat(array)
+            columns = [values] if len(names) == 1 else np.moveaxis(values, -1, 0)
+            (nodal if on_points else flat).update(zip(names, columns, strict=True))
     return nodal, flat
 
 

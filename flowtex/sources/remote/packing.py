@@ -22,6 +22,7 @@ VALUES = (
     "length_unit",
     "time_unit",
     "velocity_unit",
+    "vectors",
     "sign_free",
     "units",
     "long_names",
