@@ -17,6 +17,8 @@ const PATH_LENGTH = 4;
 const FEWEST_SAMPLES = 10;
 /** Cosine between the surface and the ray to the eye, at least: that of the shaders. */
 const LEAST_FACING = 0.05;
+/** Shorter side of a pixel on the surface, over the longer one, that counts at least. */
+const LEAST_ROUND = 0.25;
 /** Slope below which nothing moves. */
 const LEAST_SLOPE = 1e-6;
 /** Part of a cell over which a direction in the noise's coordinates is one in space. */
@@ -191,7 +193,7 @@ function indexOf(values: number[], value: number): number {
 }
 
 /**
- * Length of a grain at a point: of the pixel's longer side as it lies on the surface, or of a texel of
+ * Length of a grain at a point: of the pixel's mean side as it lies on the surface, or of a texel of
  * the noise's level, which is that of the pixel unless its own texels are larger.
  */
 export function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
@@ -209,7 +211,10 @@ export function grainAt({ scene, place, position }: PathPlace, settings: Setting
     return paper.grain * (settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel);
   }
   const texel = geometry.extent / Number(settings.resolution);
-  const grain = (pixel / facing) * Number(settings.grain);
+  // Towards the corners of a view in perspective, pixels cover less across the ray.
+  const aside = dot(ray, camera.at(camera.state.focal_point as Vector).ray);
+  const mean = pixel * Math.sqrt(Math.max(aside, LEAST_ROUND / facing) / facing);
+  const grain = mean * Number(settings.grain);
   if (!settings.lod) return texel;
   return settings.fixed_grain ? Math.max(grain, texel) : grain;
 }

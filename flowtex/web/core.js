@@ -721,48 +721,49 @@ s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*densi
 deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
 paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL2=.001;function texelsAt({
-scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[-di-dj,di,dj];return scene.
-cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+columns.before,place[1]+dj+rows.before],
-[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
-left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at,beside=[
-0,0]){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(at,beside),[before,after,late]=moment,numbers=texels.map(
-([texel])=>texel),steps=(before===after?[before]:[before,after]).map(step=>scene.texels(step,numbers)),shares2=before===
-after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map((_,n)=>steps[0](0,n))):texels.map(()=>1);return layer=>{
-let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+(layer>slices.lags.length?-1:1)*slices.lags.length,
-from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,n).forEach((value,c)=>{sum[c]+=weight*
-shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{
-let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){
-let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
-lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/
-POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+
-late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[before,from]=[after,lags[m]]}return result2}
-function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)return moved=>add(position,fromFrame(geometry.
-frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,place[0]),between(alongJ,place[1])],start=pointAt(scene,place);
-return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,
-subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(pointAt(scene,place),scene.header.geometry.
-center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(
-c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,local)}function sidesAt(scene,place){
-let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(
-place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0))]}let[i,j]=place.map(
-(n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(at(.5,0),at(-.5,0)),subtract2(
-at(0,.5),at(0,-.5))]}function partingAt(at,half){let{scene,place}=at,[first,second]=sidesAt(scene,place),normal=cross2(first,
-second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).slice(0,3))),across=unit(cross2(
-normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(normal,first)].map(side=>by*dot2(
-across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){let n=Math.min(
-Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){let n=values.
-findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-1])}function grainAt({
-scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=cross2(...sidesAt(scene,place)),{height,
-ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(paper){let[
-across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+
-1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.lod?Math.max(
-pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*Number(
-settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
-let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
-0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
-function velocityAt(at){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[
-x,y,z],small=scale2(slope,SMALL2*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?
-subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(2)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_SLOPE=1e-6,SMALL2=.001;
+function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[-di-dj,
+di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+columns.before,place[1]+
+dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map(
+(share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}
+function layersAt(at,beside=[0,0]){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(at,beside),[before,after,late]=moment,
+numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:[before,after]).map(step=>scene.texels(step,numbers)),
+shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map((_,n)=>steps[0](0,n))):texels.
+map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+(layer>slices.lags.length?
+-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,n).forEach(
+(value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];
+return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}
+function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(
+reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=
+POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/
+(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[
+before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)
+return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,place[0]),between(
+alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];
+return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(
+pointAt(scene,place),scene.header.geometry.center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.
+cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,
+local)}function sidesAt(scene,place){let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(
+scene,placeIn(Math.floor(place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(
+0,0))]}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(
+at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5))]}function partingAt(at,half){let{scene,place}=at,[first,second]=sidesAt(
+scene,place),normal=cross2(first,second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).
+slice(0,3))),across=unit(cross2(normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(
+normal,first)].map(side=>by*dot2(across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){
+let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
+let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=cross2(...sidesAt(
+scene,place)),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/
+rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.
+length-2);return(along2[n+1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*
+(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),aside=dot2(
+ray,camera.at(camera.state.focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.
+grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],
+[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(
+add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function velocityAt(at){
+let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(
+slope,SMALL2*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(
+at)(small)??position,position):slope;return scale2(unit(along2),layers(2)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
 let{scene,position}=at,{slices,paper}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
 slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
 sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.

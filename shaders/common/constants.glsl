@@ -34,6 +34,7 @@ const float FLOWTEX_EDGE_CELLS = 8.0;
 // Levels of detail.
 const float FLOWTEX_LEAST_SQUARE = 1e-38; // square of the longest side of a footprint
 const float FLOWTEX_LEAST_TEXELS = 1e-6;  // side of a footprint in texels
+const float FLOWTEX_LEAST_ROUND = 0.25;   // shorter side of a footprint, over the longer one, that counts
 const float FLOWTEX_LEAST_FACING = 0.05;  // cosine between the normal and the ray to the eye
 const float FLOWTEX_LEVELS_AROUND = 6.0;  // levels of detail in one round of hues
 const float FLOWTEX_HUE_SHIFT = 0.333;    // from one colour channel to the next, in rounds

@@ -48,7 +48,9 @@ void flowtexMove(float slope, float speed)
 float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
   vec2 footprint = flowtexFootprint(dx, dy);
-  flowtexPixel = u_lod ? footprint.x : u_texel / u_grain;
+  // The mean of both sides, as the longer one alone would draw grains out where it is far longer.
+  float side = sqrt(footprint.x * max(footprint.y, FLOWTEX_LEAST_ROUND * footprint.x));
+  flowtexPixel = u_lod ? side : u_texel / u_grain;
   float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
   flowtexNoiseLevel = log2(grain / u_texel);
   float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, FLOWTEX_LAST_OCTAVE);

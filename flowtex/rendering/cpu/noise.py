@@ -139,7 +139,8 @@ class SpaceNoise(Lookup):
         if fragments.normal is not None:
             position = on_surface(position, fragments.normal, np.asarray(values["u_eye"]))
         texel = values["u_texel"]
-        self._pixel = footprint(position.dx, position.dy)[0]
+        longest, shortest = footprint(position.dx, position.dy)
+        self._pixel = np.sqrt(longest * np.maximum(shortest, const.LEAST_ROUND * longest))
         if not values["u_lod"]:
             self._pixel = np.full(len(fragments), texel / values["u_grain"])
         grain = self._pixel * values["u_grain"]
