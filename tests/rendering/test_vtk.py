@@ -425,7 +425,7 @@ def test_streaming_shows_no_edge_where_its_rate_changes(plotter: Any) -> None:
 
 
 @pytest.mark.parametrize("tilt", [60, 75, 80])
-def test_streaks_do_not_smear_towards_the_horizon(tilt: float, opengl: Any) -> None:
+def test_streaks_do_not_smear_towards_the_horizon(tilt: int, opengl: Any) -> None:
     y, x = np.mgrid[-10:10:41j, -10:10:41j]
     points = np.stack([x, y], axis=-1)
     field = flowtex.FlowField.from_arrays(points, np.stack([0 * x, 1 + 0 * x], axis=-1))
