@@ -67,7 +67,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new Kr[i](s);for(let u=0,m=0;u<c;u+=1)for(let p=u;p<s;p+=c,m+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+m]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let u=0;u<r[0];u+=1)for(let m=h;m<s;m+=1)l[m]+=l[m-h];for(let u=0;u<r[1];u+=1)for(let m=0;m<
 s;m+=h)for(let p=m+c;p<m+h;p+=1)l[p]+=l[p-c];return Jr(a,n?Da(l,n.map(u=>2**u)):l)}function Da(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>lr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var ur=1e-6,Je=typeof Float32Array<"u"?Float32Array:Array;var Pc=Math.PI/180,Rc=180/Math.PI;function rn(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>lr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var ur=1e-6,Je=typeof Float32Array<"u"?Float32Array:Array;var Rc=Math.PI/180,Lc=180/Math.PI;function rn(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function nn(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<ur?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
 a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function za(){var a=new Je(3);return Je!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function sn(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function an(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function on(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function cn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -75,7 +75,7 @@ r,a[2]=e[2]+t[2]*r,a}function ln(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;ret
 s,a}function hn(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function mn(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[0],o=t[1],c=t[2];
 return a[0]=n*c-s*o,a[1]=s*i-r*c,a[2]=r*o-n*i,a}function un(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[3]*r+t[7]*n+t[11]*s+t[15];return i=i||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 i,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/i,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/i,a}function pr(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Oc=(function(){var a=za();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Fc=(function(){var a=za();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var z=a=>a,re=()=>[0,0,0],pn=a=>new Array(a).fill(0),O=(a,e)=>hn(z(a),z(e)),R=a=>sn(z(a)),S=(a,e)=>an(re(),z(a),z(e)),k=(a,e)=>on(
 re(),z(a),e),V=(a,e)=>mn(re(),z(a),z(e)),U=a=>ln(re(),z(a)),P=(a,e,t=1)=>cn(re(),z(a),z(e),t);function Ze(a,e,t){let r=nn(
 pn(16),t*Math.PI/180,z(e));return r===null?re():un(re(),z(a),r)}function N(a,e){let t=rn(pn(9),a);return pr(re(),z(e),t)}
@@ -381,43 +381,43 @@ floor(t/9)+t%3];return e}function yt(a,e,t){return[t,a+Math.min(Math.max(e,0),Ui
 t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[a[3*r+c],o])}var gt=class{shape;blocks;constructor(e,t){this.shape=[e.shape[0],
 e.shape[1]],this.blocks=t.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(e){let{blocks:t}=this,
 r=e.reduce((i,o,c)=>i|(o<0?0:1<<c),0),n=new Uint32Array(3*t.length),s=0;for(let i=0;i<t.length;i+=1)if(t[i]&r)for(let o=0;o<
-3;o+=1)n[s++]=3*i+o;return n.slice(0,s)}};var rs=8,Di=4,Bi=10,Hi=.05,as=1e-6,zi=.001;function Gi({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.header.
-geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],b)=>[f,d+p[b]])}let[o,c]=[e[0]+t+s.before,e[1]+r+n.before],
-[l,h]=[Math.floor(o),Math.floor(c)],[u,m]=[o-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map((p,f)=>{let d=_(l+(f&1),
-0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function is(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.header,
-s=Gi(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),u=i===o?[1]:[1-c,c],m=me(t.header)?Wi(s.
-map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],b)=>{let g=p+(p>n.lags.length?-1:1)*
-n.lags.length,y=m[b]<0&&p>0?g:p;h.forEach((v,x)=>{u[x]&&v(y,b).forEach((w,M)=>{f[M]+=d*u[x]*w*(M<3?m[b]:1)})})}),f}}function Wi(a){
-let e=[0,0,0];return a.map(([t,r,n])=>{let s=O(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function ji(a,e,t,r,n){let[
-s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let u=a(t+h+1).slice(
-0,3);for(let m=1;m<=rs;m+=1){let p=m/rs,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),b=s.map((g,y)=>g+d*(u[y]-g));if(l.push(
-k(b,r*f*n)),f===c)break}[s,i]=[u,e[h]]}return l}function os({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.header;
-if(!r)return l=>P(t,Q(n.frame,l));let{alongI:s,alongJ:i}=r,o=[ns(s,e[0]),ns(i,e[1])],c=ke(a,e);return([l,h])=>{let u=[ss(
-s,o[0]+l),ss(i,o[1]+h)];return u.some(Number.isNaN)?null:P(t,S(ke(a,u),c))}}function Sr(a,e){return P(ke(a,e),a.header.geometry.
-center)}function ke(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>Le(r,i=>t[3*i+s]));return Q(a.
-header.geometry.frame,n)}function $i(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>ke(a,yt(Math.floor(
+3;o+=1)n[s++]=3*i+o;return n.slice(0,s)}};var rs=8,Di=4,Bi=10,Hi=.05,zi=.25,as=1e-6,Gi=.001;function Wi({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
+header.geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],b)=>[f,d+p[b]])}let[o,c]=[e[0]+t+s.before,e[1]+r+
+n.before],[l,h]=[Math.floor(o),Math.floor(c)],[u,m]=[o-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map((p,f)=>{let d=_(
+l+(f&1),0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function is(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
+header,s=Wi(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),u=i===o?[1]:[1-c,c],m=me(t.header)?
+ji(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],b)=>{let g=p+(p>n.lags.length?
+-1:1)*n.lags.length,y=m[b]<0&&p>0?g:p;h.forEach((v,x)=>{u[x]&&v(y,b).forEach((w,M)=>{f[M]+=d*u[x]*w*(M<3?m[b]:1)})})}),f}}
+function ji(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=O(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function $i(a,e,t,r,n){
+let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let u=a(t+h+
+1).slice(0,3);for(let m=1;m<=rs;m+=1){let p=m/rs,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),b=s.map((g,y)=>g+d*(u[y]-g));
+if(l.push(k(b,r*f*n)),f===c)break}[s,i]=[u,e[h]]}return l}function os({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.
+header;if(!r)return l=>P(t,Q(n.frame,l));let{alongI:s,alongJ:i}=r,o=[ns(s,e[0]),ns(i,e[1])],c=ke(a,e);return([l,h])=>{let u=[
+ss(s,o[0]+l),ss(i,o[1]+h)];return u.some(Number.isNaN)?null:P(t,S(ke(a,u),c))}}function Sr(a,e){return P(ke(a,e),a.header.
+geometry.center)}function ke(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>Le(r,i=>t[3*i+s]));return Q(
+a.header.geometry.frame,n)}function Yi(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>ke(a,yt(Math.floor(
 e[1]),c,l));return[S(o(1,0),o(0,0)),S(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>_(o,.5,t[1-c]-1.5)),i=(o,c)=>ke(a,[n+o,s+c]);
 return[S(i(.5,0),i(-.5,0)),S(i(0,.5),i(0,-.5))]}function ns(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function ss(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Yi({scene:a,place:e,position:t},r,n,s){let{
-geometry:i,paper:o}=a.header,c=V(...$i(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(O(U(c),h)),Hi),m=2*l/s;if(o){let[
-d,b]=[o.alongI,o.alongJ].map((y,v)=>{let x=Math.min(Math.floor(e[v]),y.length-2);return(y[x+1]-y[x])*o.size[v]}),g=Math.
-sqrt(R(c)/(d*b));return o.grain*(r.lod?Math.max(m/Math.sqrt(u),g):g)}let p=i.extent/Number(r.resolution),f=m/u*Number(r.
-grain);return r.lod?r.fixed_grain?Math.max(f,p):f:p}function Xi(a,e,t){let r=[],[n,s]=[a,t];for(let i of e){let o=R(S(i,
-n));if(o>=s){s>0&&r.push(P(n,S(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r}function Tr(a){let{scene:e,position:t}=a,
-{slices:r,paper:n,speed:s}=e.header,i=is(a),[o,c,l]=i(0),h=[o,c,l],u=k(h,zi*(n?1/n.size[0]:r.cell)/(R(h)||1)),m=R(h)>as?
-S(os(a)(u)??t,t):h;return k(U(m),i(2)[3]*s.typical)}function cs(a,e,t,r){let{scene:n,position:s}=a,{slices:i,paper:o}=n.
-header,c=is(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],m=os(a),p=[],f=e.two_sided||!l?i.sides:1;for(let w=0;w<f&&R(u)>
-as;w+=1){let M=o?1:h[3]*i.unit,E=ji(c,i.lags,w*i.lags.length,w?1:-1,M).map(m),T=E.findIndex(L=>L===null);p.push(E.slice(
-0,T<0?void 0:T))}let d=Number(e.samples),b=it(n.header,e,!0)?2*d-1:d,g=f===2?Math.floor(b/2):b-1,y=Number(e.spacing)*Yi(
-a,e,t,r),v=w=>{let[M=[],A=[]]=p.map(E=>Xi(s,E,w));return[...M.reverse(),s,...A]};return{path:v(Di*Math.max(g,Bi)*y),sampled:v(
-g*y),directed:l,velocity:Tr(a)}}var Ki=8,qi=1e-6,Ji=.001,Zi=89.99,Qi=a=>a-360*Math.round(a/360);function _r([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Xi({scene:a,place:e,position:t},r,n,s){let{
+geometry:i,paper:o}=a.header,c=V(...Yi(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(O(U(c),h)),Hi),m=2*l/s;if(o){let[
+g,y]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.size[w]}),v=Math.
+sqrt(R(c)/(g*y));return o.grain*(r.lod?Math.max(m/Math.sqrt(u),v):v)}let p=i.extent/Number(r.resolution),f=O(h,n.at(n.state.
+focal_point).ray),b=m*Math.sqrt(Math.max(f,zi/u)/u)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(b,p):b:p}function Ki(a,e,t){
+let r=[],[n,s]=[a,t];for(let i of e){let o=R(S(i,n));if(o>=s){s>0&&r.push(P(n,S(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}
+return r}function Tr(a){let{scene:e,position:t}=a,{slices:r,paper:n,speed:s}=e.header,i=is(a),[o,c,l]=i(0),h=[o,c,l],u=k(
+h,Gi*(n?1/n.size[0]:r.cell)/(R(h)||1)),m=R(h)>as?S(os(a)(u)??t,t):h;return k(U(m),i(2)[3]*s.typical)}function cs(a,e,t,r){
+let{scene:n,position:s}=a,{slices:i,paper:o}=n.header,c=is(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],m=os(a),p=[],f=e.
+two_sided||!l?i.sides:1;for(let w=0;w<f&&R(u)>as;w+=1){let M=o?1:h[3]*i.unit,E=$i(c,i.lags,w*i.lags.length,w?1:-1,M).map(
+m),T=E.findIndex(L=>L===null);p.push(E.slice(0,T<0?void 0:T))}let d=Number(e.samples),b=it(n.header,e,!0)?2*d-1:d,g=f===
+2?Math.floor(b/2):b-1,y=Number(e.spacing)*Xi(a,e,t,r),v=w=>{let[M=[],A=[]]=p.map(E=>Ki(s,E,w));return[...M.reverse(),s,...A]};
+return{path:v(Di*Math.max(g,Bi)*y),sampled:v(g*y),directed:l,velocity:Tr(a)}}var qi=8,Ji=1e-6,Zi=.001,Qi=89.99,eo=a=>a-360*Math.round(a/360);function _r([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function vt({header:a},e){return e.map((t,r)=>_(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ls=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function hs(a,e,[t,r],n){let{earth:s}=a.header,i=_r(e).map(d=>s&&bt(s,Sr(a,d),n));if(i.some(d=>!d||Math.
-abs(d[1])>Zi))return null;let[o,c,l,h]=i.map(d=>[Qi(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
-...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Ji*p)?null:[(o[1]*
+abs(d[1])>Qi))return null;let[o,c,l,h]=i.map(d=>[eo(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
+...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Zi*p)?null:[(o[1]*
 m[0]-o[0]*m[1])/f,(o[0]*u[1]-o[1]*u[0])/f]}function ms(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&bt(n,
-t,r);if(!i)return e;let o=vt(a,e);for(let c=0;c<Ki;c+=1){let l=hs(a,o,i,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
-.5+qi?m:0),u=vt(a,o.map((m,p)=>m+h[p]));if(String(u)===String(o))return o.map((m,p)=>m+_(l[p],0,1));o=u}return e}function us(a,e){
+t,r);if(!i)return e;let o=vt(a,e);for(let c=0;c<qi;c+=1){let l=hs(a,o,i,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
+.5+Ji?m:0),u=vt(a,o.map((m,p)=>m+h[p]));if(String(u)===String(o))return o.map((m,p)=>m+_(l[p],0,1));o=u}return e}function us(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=vt(a,e),s=ls(e.map((i,o)=>i-n[o]));return _r(
 n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function ps(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
 o=s&&bt(s,n,e);if(!o)return null;let c=m=>Jn(s,m.position,Tr(m),e),l=vt(t,r);if(i.triangles||!hs(t,l,o,e))return c(a);let h=ls(
@@ -425,28 +425,28 @@ r.map((m,p)=>m-l[p])),u=_r(l).map(m=>c({...a,place:m,position:Sr(t,m)}));return[
 0))}function fs(a,e,t){let{layers:r,camera:n,moment:s,anchor:i,canvas:o}=a,{graphics:c,header:l}=r[0].scene,[h]=r[0].scene.pickers,
 u=G(l.geometry,n,i),m=yn(u,[e,t],[o.width,o.height]),[p,f,d]=s,b=c.numbers(()=>{r[0].scene.bodies.hide(m,i),r.forEach(({
 scene:T},L)=>{c.programs.use(h,{u_matrix:m,u_between:d,u_part:L}),T.draw(p,f,i,!1)})});if(!b[3])return null;let[g,y]=new Float32Array(
-b.buffer,0,2),v=r[b[2]],{geometry:x}=v.scene.header,w=x.triangles?yt(b[3]-1,g,y):eo(x,g,y),M=ro(v.scene,n,v.scene.cornersAt(
-w),e,t),A=ms(v.scene,w,M,r[0].scene.parts.get("lonlat")),E=x.triangles?A:to(l,v,A);return{point:{position:M,index:E,values:no(
-v.scene,s,A)},layer:v,place:A}}function eo({rows:a,columns:e,shape:t},r,n){let s=(i,{size:o,before:c},l)=>_(i*o-.5-c,0,l-
-1);return[s(r,e,t[1]),s(n,a,t[0])]}function to(a,{key:e},[t,r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,u]=n?.shapes[0]??
-s.shape,m=i.tileCells*(n?.tileBlocks??0),p=(f,d,b)=>mt(f+d*m,o,b);return[p(t,l,u),p(r,c,h)]}function ro(a,e,t,r,n){let{data:s}=a.
+b.buffer,0,2),v=r[b[2]],{geometry:x}=v.scene.header,w=x.triangles?yt(b[3]-1,g,y):to(x,g,y),M=no(v.scene,n,v.scene.cornersAt(
+w),e,t),A=ms(v.scene,w,M,r[0].scene.parts.get("lonlat")),E=x.triangles?A:ro(l,v,A);return{point:{position:M,index:E,values:so(
+v.scene,s,A)},layer:v,place:A}}function to({rows:a,columns:e,shape:t},r,n){let s=(i,{size:o,before:c},l)=>_(i*o-.5-c,0,l-
+1);return[s(r,e,t[1]),s(n,a,t[0])]}function ro(a,{key:e},[t,r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,u]=n?.shapes[0]??
+s.shape,m=i.tileCells*(n?.tileBlocks??0),p=(f,d,b)=>mt(f+d*m,o,b);return[p(t,l,u),p(r,c,h)]}function no(a,e,t,r,n){let{data:s}=a.
 part("position"),{frame:i,center:o}=a.header.geometry,c=[0,1,2].map(f=>Le(t,d=>s[3*d+f])),l=P(Q(i,c),o),[h,u]=e.ray(r,n),
-m=e.axes[2],p=O(S(l,h),m)/O(u,m);return P(h,u,p)}function no(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=us(
+m=e.axes[2],p=O(S(l,h),m)/O(u,m);return P(h,u,p)}function so(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=us(
 a,t),c=i.triangles?Math.floor(t[1]):o[0][0],[l,h,u]=e,m={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){
 let d=a.scalarParts(l,h,f),[b,g]=d.map(v=>n.get(v)?.data);if(f.name===null||f.name in m||!b||!g)continue;let y=v=>b[v]+u*
 (g[v]-b[v]);m[f.name]=f.flat?y(c):Le(o,y)}return m}function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function bs(a){return a[0]*a[3]-a[1]*a[2]}function gs(a,e,t){var r=e[0],n=e[1],
 s=e[2],i=e[3],o=e[4],c=e[5],l=t[0],h=t[1],u=t[2],m=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+i*h,a[2]=r*u+s*m,a[3]=
-n*u+i*m,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var ao=4,io=.3,Pr=1e-6,ys=(a,e)=>gs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
-i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(bs(o));if(!(c>io**2&&c<ao**2))return null;
+n*u+i*m,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var io=4,oo=.3,Pr=1e-6,ys=(a,e)=>gs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
+i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(bs(o));if(!(c>oo**2&&c<io**2))return null;
 let[l,h,u,m,p,f]=vs(o),d=([M,A])=>Math.abs((l*M+u*A+p)/n-1)<1+Pr&&Math.abs((h*M+m*A+f)/s-1)<1+Pr,b=[[0,0],[t,0],[0,r],[t,
 r]].every(d),[g,y,v,x]=o,w=Math.abs(g-1)+Math.abs(x-1)+Math.abs(y)+Math.abs(v)<Pr;if(w)for(let M of[4,5])o[M]=Math.round(
-o[M]);return{matrix:o,covers:b,shifts:w}}var oo=14,co=40,ws=1.3,Ms=5e4,lo=256;function Rr(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var ho=(a,e)=>a.
+o[M]);return{matrix:o,covers:b,shifts:w}}var co=14,lo=40,ws=1.3,Ms=5e4,ho=256;function Rr(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var mo=(a,e)=>a.
 getContext("2d",{alpha:e}),xt=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
 createElement("canvas");lastPen;lastCamera=null;coarse=document.createElement("canvas");coarsePen;front=document.createElement(
 "canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
 strip:4,draft:4};triangles=0;isCoarse=!1;constructor(e,t){this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=
-e.canvas;let{canvas:r,back:n,last:s,coarse:i}=this,o=[r,n,s,i].map(c=>ho(c,e.isClear??!1));[this.pen,this.backPen,this.lastPen,
+e.canvas;let{canvas:r,back:n,last:s,coarse:i}=this,o=[r,n,s,i].map(c=>mo(c,e.isClear??!1));[this.pen,this.backPen,this.lastPen,
 this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.
 canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=!0}resize(e,t){let{canvas:r,back:n,last:s}=this;
 n.width=r.width,n.height=r.height,this.backPen?.drawImage(r,0,0),r.width=s.width=e,r.height=s.height=t,n.width>1&&this.pen?.
@@ -456,14 +456,14 @@ s=this.strip(e,t)&&!this.isRefined;while(!s&&performance.now()<r);return s}get i
 this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(e){this.isRefined=!1,this.layers=this.content.
 arrange(e)}draft(e,t,r){let{width:n,height:s}=this.canvas,i=Number(this.viewer.settings.samples),o=r?this.graphics.waiting.
 size+1:1;this.arrange(t),this.warm(e,t);let c=e.price*this.factor(i),l=this.viewer.player.playing&&!this.viewer.isHeld,h=En(
-c,this.fixed.draft,n*s,i,l),u=Math.max(h/o,oo),m=An(c,this.fixed.draft,n*s,i,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
+c,this.fixed.draft,n*s,i,l),u=Math.max(h/o,co),m=An(c,this.fixed.draft,n*s,i,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
 max(Math.round(s*m.scale),1);this.draftVersion=this.version;let d=m.scale<1?this.reuse():null;if(!d?.covers){let g={width:p,
 height:f,top:0,rows:f};this.timed(e,g,m.samples,()=>{this.render(e,t,g,m.samples),this.copy(this.pen,g,s,0)})}d&&this.pen&&
 (this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),Rr(this.pen,this.last),this.pen.setTransform(
 1,0,0,1,0,0)),this.isCoarse=m.scale<1||m.samples<i;let b=!this.isCoarse&&!this.content.smooth;return b&&this.complete(),
 this.drawLines(t),b&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,{settings:s}=this.viewer,{smooth:i}=this.
 content,o=Number(s.samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))return!1;
-this.warm(e,t);let c=e.price*this.factor(o),l=Math.min(n-this.rowsDone,i?lo:n),h=Math.min(Sn(co,c,this.fixed.strip,r,o),
+this.warm(e,t);let c=e.price*this.factor(o),l=Math.min(n-this.rowsDone,i?ho:n),h=Math.min(Sn(lo,c,this.fixed.strip,r,o),
 l),u={width:r,height:n,top:this.rowsDone,rows:h};return this.timed(e,u,o,()=>{this.render(e,t,u,o,i);let m=i?{...u,height:h,
 top:0}:u;this.copy(this.backPen,m,m.height,this.rowsDone)}),this.rowsDone+=h,this.rowsDone<n?!1:(Rr(this.pen,this.back),
 this.complete(),this.drawLines(t),!0)}drawLines(e){let{front:t,frontPen:r,graphics:n}=this,{camera:s,ratio:i}=this.viewer,
@@ -524,22 +524,22 @@ l.position)),l.radius<r?!1:(o.add(l.position),!0)));return[...e,...c]}isNeeded(e
 limits,{cell:c,low:l,size:h}=e,u=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[m,p]=this.sides(e),f=.5*(R(m)+
 R(p)),d=Math.max(Ss(t,u)-f,0);return!(n<s*i*r*kr(t,d))&&this.sees(t,u,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
 t);if(!r.length)return e;let n=r.map(i=>{let[o,c]=this.sides(i),l=R(c)>R(o)?1:0,h=[...i.size];h[l]*=.5;let u=[...i.low];
-return u[l]+=h[l],[{...i,size:h,key:ce(i.key+wt)},{...i,size:h,low:u,key:ce(i.key+mo)}]}),s=e.filter(i=>this.area(i)<=t);
+return u[l]+=h[l],[{...i,size:h,key:ce(i.key+wt)},{...i,size:h,low:u,key:ce(i.key+uo)}]}),s=e.filter(i=>this.area(i)<=t);
 return this.divided([...s,...n.map(([i])=>i),...n.map(([,i])=>i)],t)}sides({cell:e,low:t,size:r}){let n=(s,i)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*i]);return[S(n(1,.5),n(0,.5)),S(n(.5,1),n(.5,0))]}area(e){return R(V(...this.sides(e)))}};function Oe(a,e,[
 t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],i=new Array(n).fill(0);for(let o=0;o<Et;o+=1)for(let c=0;c<n;c+=1)i[c]+=
 s[o]*a[n*e[o]+c];return i}var Tt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
 t/this.most))}add(e){let t=Es(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
 n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Es(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
-cubes.get(o)??[])s=Math.min(s,R(S(e,c)))}return s}},wt=2654435769,mo=2246822507,uo=[739982445,695872825],As=15;function Es(a,e,t){
-return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of uo)
+cubes.get(o)??[])s=Math.min(s,R(S(e,c)))}return s}},wt=2654435769,uo=2246822507,po=[739982445,695872825],As=15;function Es(a,e,t){
+return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of po)
 e=Math.imul(e^e>>>As,t)>>>0;return(e^e>>>As)>>>0}var Mt=a=>a/2**32;function Lr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var Ss=({eye:a},e)=>a?R(S(e,a)):1,kr=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>kr(a,Ss(a,e));var Ps=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],Ts=4,po=Ps.reduce((a,[,e])=>a+e,0),fo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+a)}}var Ss=({eye:a},e)=>a?R(S(e,a)):1,kr=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>kr(a,Ss(a,e));var Ps=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],Ts=4,fo=Ps.reduce((a,[,e])=>a+e,0),bo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),_s=({tile:a})=>a?.[0]??1/0,_t=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Pe(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new St(this.surface,n.constants.arrows);let i=this.seeds.seen(e,vr(n,t));if(s?.seeds===
-i&&fo(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:u,place:m,radius:p})=>{let f=o.subarray(4*u,
+i&&bo(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:u,place:m,radius:p})=>{let f=o.subarray(4*u,
 4*u+4);return{corners:f,place:m,radius:p,cell:n.geometry.triangles?u:f[0]}}),l=new Map(r.map(u=>[u,[]])),h=[...r].sort((u,m)=>_s(
 u)-_s(m));for(let u of c)for(let m of h){let p=m.tile?this.inTile(u,m,m.tile):u;if(p){l.get(m)?.push(p);break}}return this.
 last={seeds:i,layers:r,shared:l},l}draw(e,t,r,n,s){let{graphics:i}=this,o=i.context;this.array??=this.make(),o.bindVertexArray(
@@ -556,7 +556,7 @@ M?null:[T,E-T]},b=d(e[0]%f+t[0],1,o,p-1),g=d(Math.floor(e[0]/f)+t[1],0,i,m-1);if
 (p-1)+b[0]]===0)return null;let y=g[0]*p+b[0];return{corners:[y,y+1,y+p,y+p+1],place:[b[1],g[1]],radius:r,cell:y}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of Ps)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,po*Ts,r),e.vertexAttribDivisor(n,1),r+=s*Ts;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+n,s,e.FLOAT,!1,fo*Ts,r),e.vertexAttribDivisor(n,1),r+=s*Ts;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=dt(i,s),c=this.nodes,l=n.triangles?null:ft(n);return Float32Array.
 from(e.flatMap(({corners:h,place:u,radius:m,cell:p})=>{let[f,d]=u,[b,g,y,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 x=V(S(P(g,v),P(b,y)),S(P(y,v),P(b,g)));return[...S(Oe(c,h,u,3),r),...l?Oe(l,h,u,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
@@ -564,8 +564,8 @@ x=V(S(P(g,v),P(b,y)),S(P(y,v),P(b,g)));return[...S(Oe(c,h,u,3),r),...l?Oe(l,h,u,
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let i=this.parts.get("triangles")?.data??[];for(let o=0;o<i.length;o+=3)n.push(
 i[o],i[o+1],i[o+2],i[o+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let i=0;i<(t-1)*(r-1);i+=1){
-if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Fe=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Rs=8,[bo,go]=[24,8],Pt=[1,2],yo=.2;function Ne(a,e,t){
-let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function vo({
+if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Fe=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Rs=8,[go,yo]=[24,8],Pt=[1,2],vo=.2;function Ne(a,e,t){
+let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function xo({
 geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Rs),o=i.map(({way:l,turns:h})=>{let u=P(P(k(r,l[0]),
 n,l[1]),s,-l[2]);return N(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Rs},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
 o),u_lightColours:c(i.map(({color:l})=>l))}}var Rt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
@@ -581,18 +581,18 @@ t.disable(t.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height:n,ratio:
 ({clear:A})=>A===o);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:u}=l,m=h.context,[p,f]=this.programs,d=this.
 drawn??=this.make(),b=G(u,e,t),[g,y,v,x]=e.eye,w=N(u.frame,S([g,y,v],k(u.center,x)));o&&(m.enable(m.BLEND),m.blendFuncSeparate(
 m.SRC_ALPHA,m.ONE_MINUS_SRC_ALPHA,m.ZERO,m.ONE),m.depthMask(!1)),h.programs.use(p,{u_matrix:b,u_anchor:t,u_eye:[...S(w,k(
-t,x)),x],...vo(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Pt[1],Pt[1]);for(let{faces:[
+t,x)),x],...xo(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Pt[1],Pt[1]);for(let{faces:[
 A,E],ambient:T,diffuse:L}of c)E&&(h.programs.use(p,{u_ambient:T,u_diffuse:L}),m.drawElements(m.TRIANGLES,3*E,m.UNSIGNED_INT,
 12*A));m.disable(m.POLYGON_OFFSET_FILL);let M={u_matrix:b,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,1]};h.programs.use(
 f,M),m.bindVertexArray(d.pieces);for(let{pieces:[A,E],width:T}of c)if(E){h.programs.use(f,{u_width:T*s});for(let[L,F,I,H,
-W]of[[d.ends,3,m.FLOAT,bo,0],[d.colours,4,m.UNSIGNED_BYTE,go,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let C of[0,1])m.vertexAttribPointer(
+W]of[[d.ends,3,m.FLOAT,go,0],[d.colours,4,m.UNSIGNED_BYTE,yo,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let C of[0,1])m.vertexAttribPointer(
 W+C,F,I,F===4,H,H*(A+C/2))}m.drawArraysInstanced(m.TRIANGLE_STRIP,0,4,E)}m.bindVertexArray(null),m.depthMask(!0),m.disable(
 m.BLEND)}hide(e,t){let{runs:r,drawn:n,graphics:s}=this;if(!r.length||!n)return;let i=s.context;s.programs.use(this.programs[2],
 {u_matrix:e,u_anchor:t}),i.bindVertexArray(n.faces);for(let{faces:[o,c],clear:l}of r)l||i.drawElements(i.TRIANGLES,3*c,i.
 UNSIGNED_INT,12*o);i.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:i}){let{geometry:o}=this.
 header,c=G(o,t,r);for(let{text:l,position:h,size:u,color:m,plate:p}of this.labels){let f=S(N(o.frame,S(h,o.center)),r),[
 d,b,,g]=[0,1,2,3].map(E=>c[E]*f[0]+c[4+E]*f[1]+c[8+E]*f[2]+c[12+E]);if(g<=0)continue;let[y,v]=[(.5+.5*d/g)*n,(.5-.5*b/g)*
-s],x=u*i,w=yo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,A]=[e.measureText(l).width+2*w,x+
+s],x=u*i,w=vo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,A]=[e.measureText(l).width+2*w,x+
 2*w];e.fillStyle=Ls(p),e.beginPath(),e.roundRect(y,v-A,M,A,w),e.fill(),e.fillStyle=Ls(m),e.fillText(l,y+w,v-.5*A)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,i,o,c]=Fe.map(g=>t.get(g)?.data??[]),l=()=>{let g=e.counted(r.createVertexArray());
 return r.bindVertexArray(g),g},h=(g,y=r.ARRAY_BUFFER)=>{let v=e.counted(r.createBuffer());return r.bindBuffer(y,v),r.bufferData(
@@ -642,14 +642,14 @@ s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.
 o,r),t),l={...this.emptyArray(),groups:Ns(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
 Vs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
 get("land"),n=this.parts.get("position"),s=this.emptyArray();if(!r||!n)return s;let i=this.header.geometry.triangles?r.data:
-xo(r);t.bindVertexArray(s.array);let o=pt(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
-i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function xo({data:a,shape:[
+wo(r);t.bindVertexArray(s.array);let o=pt(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
+i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function wo({data:a,shape:[
 e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.floor(n/t),i=s+t+1;r.push(s,s+1,i+1,s,i+1,i)}return Uint32Array.
-from(r)}var[wo,Mo]=[.01,.2],[ne,Us]=[4,24],Ds=9;function Bs(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+from(r)}var[Mo,Ao]=[.01,.2],[ne,Us]=[4,24],Ds=9;function Bs(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/ne,t.points);s+=1){let i=a[ne*s+3];(r.points[i]??=[]).push(
 ...[0,1,2].map(o=>a[ne*s+o]))}let n=NaN;for(let s=0;s<e.length/ne;s+=1){let i=e[ne*s+3];if(i>=qe.saddle*t.saddles)continue;
 let o=i&qe.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[o[i&qe.leaving?0:1]];i!==n&&c.push(
-[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[ne*s+l]))}return r}function Ao(a,e){let t=[];for(let r=0;r<a.length;r+=ne)
+[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[ne*s+l]))}return r}function Eo(a,e){let t=[];for(let r=0;r<a.length;r+=ne)
 a[r+3]===e&&t.push(a[r],a[r+1],a[r+2]);return Float32Array.from(t)}function Ie(a,e=!1){let t=Float32Array.from(a.flat());
 if(e)return Ne(t,Array.from({length:2*t.length/3},(s,i)=>i>>1),3);let r=[],n=0;for(let s of a){let i=s.length/3;for(let o=n;o<
 n+i-1;o+=1)r.push(o,o+1);n+=i}return Ne(t,r,3)}var kt=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(e,t,r){
@@ -667,12 +667,12 @@ let{header:c,graphics:l}=this,{structure:h,geometry:u}=c,m=h&&this.layers(h,i,o)
 Math.hypot(...y);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:G(u,e,t),u_anchor:t,u_eye:[...S(y,k(t,g)),
 g],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:A,color:E,width:T,
-above:L}of m){let[F,I,H,W=1]=E;l.programs.use(w,{u_width:T*v,u_nearer:wo*x*(1+Mo*L)});for(let C of[0,1])p.vertexAttribPointer(
+above:L}of m){let[F,I,H,W=1]=E;l.programs.use(w,{u_width:T*v,u_nearer:Mo*x*(1+Ao*L)});for(let C of[0,1])p.vertexAttribPointer(
 C,3,p.FLOAT,!1,Us,Us*(M+C/2)),p.vertexAttrib4f(2+C,F,I,H,W);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,A)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Or(r)]);if(this.drawn?.key===l)return this.
 drawn.layers;let h=Bs(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:u,dot:m,rim:p,middle:f}=e,d=[],b=[],g=0,y=(w,M,A,E)=>{
-let T=w.length/6;T&&d.push({first:g,count:T,color:M,width:A,above:E}),b.push(w),g+=T},v=e.nullclines.map((w,M)=>Ao(c?.data??
+let T=w.length/6;T&&d.push({first:g,count:T,color:M,width:A,above:E}),b.push(w),g+=T},v=e.nullclines.map((w,M)=>Eo(c?.data??
 [],M));v.forEach(w=>y(w,p,u[0],0)),v.forEach((w,M)=>y(w,e.nullclines[M].color,u[1],1)),y(Ie(Object.values(h.lines).flat()),
 p,u[0],1.5),Object.entries(h.lines).forEach(([w,M],A)=>y(Ie(M),e.lines[w],u[1],2+A));let x=e.kinds.map((w,M)=>h.points[M]??
 []);return y(Ie(x,!0),p,m[0],6),e.kinds.forEach(({color:w},M)=>y(Ie([x[M]],!0),w,m[1],7)),y(Ie(x.filter((w,M)=>e.kinds[M].
@@ -698,26 +698,26 @@ E?A:A>>T<<T,x=new Uint32Array(m*m);for(let A=0;A<m;A+=1){let E=Math.min(A*u,p.ce
 min(T*u,f.cells),E];(A===0||A===m-1)&&(L=v(L,f.cells,A?b:d)),(T===0||T===m-1)&&(F=v(F,p.cells,T?y:g)),x[A*m+T]=(p.first+
 F)*l[1]+f.first+L}}let w=t,M=(A,E,T)=>{A===E||E===T||A===T||(e[w++]=A,e[w++]=E,e[w++]=T)};for(let A=0;A<m-1;A+=1){let E=Math.
 min(p.first+Math.min(A*u,p.cells),l[0]-2);for(let T=0;T<m-1;T+=1){let L=Math.min(f.first+Math.min(T*u,f.cells),l[1]-2);if(h&&
-!h[E*(l[1]-1)+L])continue;let F=A*m+T,[I,H,W,C]=[x[F],x[F+1],x[F+m+1],x[F+m]];M(I,H,W),M(I,W,C)}}return w}},Eo=99,Ft=class{values;strides;count;width;constructor([
+!h[E*(l[1]-1)+L])continue;let F=A*m+T,[I,H,W,C]=[x[F],x[F+1],x[F+m+1],x[F+m]];M(I,H,W),M(I,W,C)}}return w}},So=99,Ft=class{values;strides;count;width;constructor([
 e,t],r){[this.count,this.width]=r?[t+1,e]:[e+1,t],this.strides=r?[1,t+1]:[t,1],this.values=new Int16Array(this.count*this.
 width)}at(e,t){return e*this.strides[0]+t*this.strides[1]}close(){for(let e=0;e<this.width;e+=1){let[t,r]=[this.at(0,e),
 this.at(this.count-1,e)],n=Math.max(this.values[t],this.values[r]);this.values[t]=this.values[r]=n}}};function Gs({step:a,
 row:e,column:t,shape:r},[n,s],i){let o=Math.min(e+(r[0]<<a),n),c=Math.min(t+(r[1]<<a),s);for(let l=e;l<o;l+=1){let h=(l-
-e>>a)*r[1];for(let u=t;u<c;u+=1)i(l*s+u,h+(u-t>>a))}}function So(a,[e,t],r){let n=(s,i,o,c)=>c?(s+i+o)%o:_(s+i,0,o-1);return a.
+e>>a)*r[1];for(let u=t;u<c;u+=1)i(l*s+u,h+(u-t>>a))}}function To(a,[e,t],r){let n=(s,i,o,c)=>c?(s+i+o)%o:_(s+i,0,o-1);return a.
 map((s,i)=>{let[o,c]=[Math.floor(i/t),i%t],l=s;for(let h of[-1,1]){let u=n(o,h,e,r[0]),m=n(c,h,t,r[1]);l=Math.min(l,a[u*
-t+c],a[o*t+m])}return l})}function Ws(a,e,t,r){let n=new Int16Array(e[0]*e[1]).fill(Eo),s=(l,h,u)=>Gs(h,e,(m,p)=>{h.levels[p]>=
-0&&(l[m]=u(h.levels[p]))});for(let l of a)s(n,l,()=>l.step);let i=So(n,e,t),o=new Int16Array(n.length);for(let l of a){let{
+t+c],a[o*t+m])}return l})}function Ws(a,e,t,r){let n=new Int16Array(e[0]*e[1]).fill(So),s=(l,h,u)=>Gs(h,e,(m,p)=>{h.levels[p]>=
+0&&(l[m]=u(h.levels[p]))});for(let l of a)s(n,l,()=>l.step);let i=To(n,e,t),o=new Int16Array(n.length);for(let l of a){let{
 levels:h,step:u}=l;Gs(l,e,(m,p)=>{h[p]=Math.min(h[p],i[m]+r-u)}),s(o,l,m=>m+u)}let c=[new Ft(e,0),new Ft(e,1)];for(o.forEach(
 (l,h)=>{let[u,m]=[Math.floor(h/e[1]),h%e[1]];[[u,m],[m,u]].forEach(([p,f],d)=>{let{values:b}=c[d];for(let g of[0,1]){let y=c[d].
-at(p+g,f);b[y]=Math.max(b[y],l)}})});;){c.forEach((h,u)=>t[u]&&h.close());let l=a.map(h=>To(h,c));if(!l.some(([,h])=>h))
-return l.map(([h])=>h)}}function To({step:a,row:e,column:t,shape:r,levels:n},s){let i=1<<a,o=new Int8Array(4*n.length),c=!1;
+at(p+g,f);b[y]=Math.max(b[y],l)}})});;){c.forEach((h,u)=>t[u]&&h.close());let l=a.map(h=>_o(h,c));if(!l.some(([,h])=>h))
+return l.map(([h])=>h)}}function _o({step:a,row:e,column:t,shape:r,levels:n},s){let i=1<<a,o=new Int8Array(4*n.length),c=!1;
 for(let l of[0,1,2,3]){let[h,u]=[l>>1,l&1],m=s[h],{values:p}=m;n.forEach((f,d)=>{let b=[Math.floor(d/r[1]),d%r[1]],[g,y]=h?
 [t,e]:[e,t],v=Math.min(g+(b[h]+u)*i,m.count-1),x=y+b[1-h]*i,w=Math.max(Math.min(x+i,m.width),x+1),M=0;for(let A=x;A<w;A+=
 1)M=Math.max(M,p[m.at(v,A)]);if(o[4*d+l]=M-a,!(f<0))for(let A=x;A<w;A+=1)c||=p[m.at(v,A)]!==M,p[m.at(v,A)]=M})}return[o,
 c]}var js={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","position",
 "coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},
-$s=["padded","unit","open","nearest","rays"],_o=8*(4/3),Po=0,Se=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=Po+=1;constructor(e,t,r,n=null){this.
+$s=["padded","unit","open","nearest","rays"],Po=8*(4/3),Ro=0,Se=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=Ro+=1;constructor(e,t,r,n=null){this.
 tile=n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Lt(e,t,r),this.bodies=new Rt(e,t,r),this.arrows=new _t(
 e,t,r),this.marks=new kt(e,t,r)}isReady(e){let t=[!1,!0].map(n=>this.arrows.program(e,n));return[this.earth.isReady,this.
 bodies.isReady,this.marks.isReady(e)].every(Boolean)&&t.every(n=>n?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,
@@ -761,7 +761,7 @@ iangles").data,e):Xn(r,e)}levels(e){return{levels:this.mesh().levels(e),shape:th
 drawn!==null}setTriangles(e,t=new Int8Array){let{drawn:r}=this;r&&String([e,t])===String([r.levels,r.joins])||(this.drawn=
 {levels:e,joins:t},this.drop("index"),this.drop("array"))}isLoaded(e){return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){
 let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*
-_o*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e,t,r){let n=this.graphics.context,
+Po*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e,t,r){let n=this.graphics.context,
 s=String(this.scalarParts(e,t)),i=s!==this.scalarSteps?["scalar","array"]:[];r.some((l,h)=>l!==this.anchor[h])&&i.push("\
 position","array");for(let l of i)this.drop(l);this.scalarSteps=s,this.anchor=r;let o=l=>this.fillArray(l,e,t),c=()=>n.createVertexArray();
 n.bindVertexArray(this.take("array","VertexArray","",c,o))}fillArray(e,t,r){let n=this.graphics.context,{geometry:s,paper:i,
@@ -804,7 +804,7 @@ scalars:i}=this.header,o=s?.repeat??[!1,!1];[this.slices(e),t===e?null:this.slic
 activeTexture(r.TEXTURE0+h),r.bindTexture(h<4?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,l)}),r.activeTexture(r.TEXTURE0+gr.length)}get triangles(){
 return(this.resources.get("index")?.count??0)/3}draw(e,t,r,n){let s=this.graphics.context;this.bindNodes(e,t,r),n&&(this.
 dropSlices(e,t),this.bindTextures(e,t)),s.drawElements(s.TRIANGLES,this.resources.get("index")?.count??0,s.UNSIGNED_INT,
-0),s.bindVertexArray(null)}};var Ro=60,Lo=25,ko=9e8,Oo=3.5,Fo={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+0),s.bindVertexArray(null)}};var Lo=60,ko=25,Oo=9e8,Fo=3.5,No={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ee;constructor(e,t){this.
 host=e,this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.
 refine()}need(e,t){return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.
@@ -830,7 +830,7 @@ h=n.triangles||o?[]:Ws(t,l,n.periodic,c);t.forEach(({levels:u},m)=>this.layers[m
 let{header:r}=this.root,{settings:n,canvas:s,ratio:i}=this.host;if(!r.pyramid)return new Map;this.pyramid??=new ht(r.pyramid,
 Vn(r)??this.root.part("places").data);let o=this.pyramid.choose({...e.sight(s.height/i),planes:e.planes,cellPixels:Dn(r.
 pyramid,n)});this.count+=1;for(let u of o.keys()){let m=this.tiles.get(u);m&&(m.used=this.count)}let c=performance.now()+
-Lo,l=this.obtainable(Bn(o),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
+ko,l=this.obtainable(Bn(o),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
 this.isHere(u,t)&&this.load(u,t,c);let h=wr(o,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
 l.filter(u=>!this.isHere(u,t)||!this.isLoaded(u,t)).length,this.chosen={choices:o,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
 let n=[t,...t.map(o=>[o])],s=o=>n.some(c=>this.failed.has(this.need(o,c))),i=e.map(o=>{let[c,l,h]=oe(o);for(;c<r&&s(B([c,
@@ -840,12 +840,12 @@ return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;!e||this.isWaiting||
 !(this.missing.length||this.hasAsked)||(this.isWaiting=!0,t.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=
 this.missing.length>0;let r=(i,o)=>this.tiles.get(i)?.scene?.lacking(o)??ie(this.root.header,o),n=this.missing.flatMap(i=>this.
-chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},Ro))}trim(e){let t=0;
+chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},Lo))}trim(e){let t=0;
 for(let[r,n]of[...this.tiles].sort(([,s],[,i])=>i.used-s.used)){let{parts:s,scene:i,used:o}=n,c=i?.header.slices.trace?"\
 flow":"slices",l=[...s.keys()].filter(u=>u.startsWith(`${c}/`)),h=i?e.flatMap(u=>ie(i.header,u)):e;for(let u of l.slice(
-0,Math.max(l.length-Fo[c],0))){let m=K(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
+0,Math.max(l.length-No[c],0))){let m=K(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
 let p=[...s.keys()].filter(f=>Me(f,m,this.root.header));for(let f of p)this.release(n,f)}for(let{data:u}of s.values())t+=
-Oo*u.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??ko)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
+Fo*u.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??Oo)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
 t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var It=class{scene=null;tiles=null;shown=null;view;renderer;next=[];constructor(e){this.view=e,this.renderer=new xt(e,this),
 !e.graphics.gl&&e.panel.fail("This browser has no WebGL2, which is needed to draw the picture.","Turn on hardware accele\
@@ -926,7 +926,7 @@ void main()
   flowtexPlaceOut = (u_flowMatrix * vec4(place, 0.0, 1.0)).xyw;
   gl_Position = projectTile(place);
 }
-`;var Ks=1e-5,Vt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,q=Math.PI/180,Co=88*q,qs='export it with projection="mercator"';
+`;var Ks=1e-5,Vt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,q=Math.PI/180,Vo=88*q,qs='export it with projection="mercator"';
 function de({lng:a,lat:e}){let t=Math.sin(_(e,-Vt,Vt)*q);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
 let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${qs}`);this.box=r;let[n,s]=t.shape,i=(d,b)=>{let[g,y,
 v]=t.data.subarray(3*(d*s+b)),x=de({lng:Math.atan2(y,g)/q,lat:Math.asin(v/Math.hypot(g,y,v))/q}),w=[r[0]+(r[2]-r[0])*b/(s-
@@ -946,8 +946,8 @@ up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:m,view_angle:s},wid
 map(b=>de({lng:0,lat:b/q})[1]),u=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,m=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[u/Math.PI,l-h];return{state:{position:[r,m,n+1/this.slope[0]],focal_point:[r,m,n],up:[0,1,0],parallel:!0,
 parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function Js({width:a,height:e,pitch:t,fov:r}){
-let[n,s]=[t*q,.5*r*q],i=n+s;if(i>Co)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
-hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Fr=8192,Vo=22,Uo=64,Dt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
+let[n,s]=[t*q,.5*r*q],i=n+s;if(i>Vo)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
+hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Fr=8192,Uo=22,Do=64,Dt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
 e!==void 0,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.next=null}painted(e){let{camera:t}=this.view;t&&
 this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,next:t,shown:r}=this;return!this.isUsed||e.
@@ -959,14 +959,14 @@ LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercato
 shaderData,c=r.get(`${o}
 ${i}
 ${Xs}`,Ys);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,Vo)),u=n.placeOf(l.state.focal_point),m=2**h,
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,Uo)),u=n.placeOf(l.state.focal_point),m=2**h,
 p=[Math.floor(u[0]*m),_(Math.floor(u[1]*m),0,m-1)],f=Math.floor(p[0]/m),d={z:h,x:p[0]-f*m,y:p[1]},b=T=>T.map((L,F)=>(L*m-
-p[F])*Fr),[g,y,v,x]=n.box,[w,M]=[[g,y],[v,x]].map(T=>b(n.placeOf(T)));t.bindVertexArray(e.array);let A=s?Uo:1,E=s?0:Math.
+p[F])*Fr),[g,y,v,x]=n.box,[w,M]=[[g,y],[v,x]].map(T=>b(n.placeOf(T)));t.bindVertexArray(e.array);let A=s?Do:1,E=s?0:Math.
 round(de(e.center)[0]-u[0]);for(let T of e.isRepeated&&!s?[-1,0,1]:[0]){let L={wrap:f+E+T,canonical:d},F=e.getProjectionData(
 {tileID:L,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:F.mainMatrix,u_projection_fallback_matrix:F.fallbackMatrix,u_projection_tile_mercator_coords:F.
 tileMercatorCoords,u_projection_clipping_plane:F.clippingPlane,u_projection_transition:F.projectionTransition,u_box:[...w,
-M[0]-w[0],M[1]-w[1]],u_mapCells:A,u_flowMatrix:Do(this.view.header,l,n,p,1/(m*Fr)),u_flowPicture:0,u_opacity:e.opacity}),
-t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*A+2,A)}return t.bindVertexArray(null),!0}};function Do({geometry:a},e,t,r,n){
+M[0]-w[0],M[1]-w[1]],u_mapCells:A,u_flowMatrix:Bo(this.view.header,l,n,p,1/(m*Fr)),u_flowPicture:0,u_opacity:e.opacity}),
+t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*A+2,A)}return t.bindVertexArray(null),!0}};function Bo({geometry:a},e,t,r,n){
 let{center:s,frame:i}=a,{focal_point:o}=e.state,c=N(i,S(o,s)),l=G(a,e,c),h=[0,1].map(f=>N(i,[0,1].map(d=>d===f?n/t.slope[f]:
 0).concat(0))),u=t.placeOf(o),m=[0,1].map(f=>(r[f]*n*Fr-u[f])/t.slope[f]).concat(0);return[...h,[0,0,0],N(i,m)].flatMap(
 (f,d)=>[0,1,2,3].map(b=>f.reduce((g,y,v)=>g+l[4*v+b]*y,d===3?l[12+b]:0)))}var Bt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
@@ -997,11 +997,11 @@ configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r]
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new D(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new D(`Unsupported or unknown dtype: ${a}`);return t===
-"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Bo(a){return(a.id==="fixedscaleoffset"||a.id==="num\
+"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Ho(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
 ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function ra(a,e={}){let t=[],r=Zs(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
-scaleoffset"){if(!Bo(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
+scaleoffset"){if(!Ho(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
 configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Zs(c).dataType;
 if(!Ht(l,"number")&&!Ht(l,"bigint"))throw new D(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:i,...o}=s;t.
@@ -1020,20 +1020,20 @@ fill_value]}return a.fill_value}function Ir(a,...e){if(!e.some(t=>a instanceof t
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
 a.byteLength);r=new Response(n.slice().buffer)}aa(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var oa=Ho();function Ho(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+ed to decode ${e}`)}}var oa=zo();function zo(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
 18}function ca(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var Ge=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=zt(t.dataType),this.#s=t.shape,this.#e=Gt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
 return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return oa&&this.#n==="big"&&(t=t.slice(),Nr(t,ca(this.#t))),
 t}computeEncodedSize(e){return e}decode(e){return oa&&this.#n==="big"&&(e=e.slice(),Nr(e,ca(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var jt=class{};function $t(a){return()=>{throw new ge(`${a} encode`)}}var Yt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=$t("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Xt=class{};var Kt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=$t("gzip");async decode(e){let t=await ia(
-e,{format:"gzip"});return new Uint8Array(t)}};var We=class{};var qt=class{};var Jt=class{};var Zt=class{};var je=class{};var Qt=class{};function zo(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"gzip"});return new Uint8Array(t)}};var We=class{};var qt=class{};var Jt=class{};var Zt=class{};var je=class{};var Qt=class{};function Go(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Kt,n=()=>Qt;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Zt).set("bytes",()=>Ge).set("crc32c",()=>Yt).set("vlen-utf8",()=>je).set("json2",()=>We).set("bit\
 round",()=>Ce).set("cast_value",()=>jt).set("scale_offset",()=>qt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>je).set("numcodecs.shuf\
-fle",()=>Jt).set("numcodecs.delta",()=>Xt).set("numcodecs.bitround",()=>Ce).set("numcodecs.json2",()=>We)}var $e=zo();function Ye(a){
-let e;function t(){return e||(e=Go(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new Ue({direction:n,
+fle",()=>Jt).set("numcodecs.delta",()=>Xt).set("numcodecs.bitround",()=>Ce).set("numcodecs.json2",()=>We)}var $e=Go();function Ye(a){
+let e;function t(){return e||(e=Wo(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new Ue({direction:n,
 codec:s,cause:o})}}return{async encode(n){let s=await t();for(let{name:o,codec:c}of s.arrayToArray)n=await r("encode",o,
 ()=>c.encode(n));let i=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:o,codec:c}of s.
 bytesToBytes)i=await r("encode",o,()=>c.encode(i));return i},async decode(n){let s=await t();for(let o=s.bytesToBytes.length-
@@ -1042,12 +1042,12 @@ name,()=>s.arrayToBytes.codec.decode(n));for(let o=s.arrayToArray.length-1;o>=0;
 i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=la(s.arrayToBytes.name,s.arrayToBytes.
 codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=la(o,c,i);return i}}}function la(a,e,t){if(!e.computeEncodedSize)throw new D(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
-ine`);return e.computeEncodedSize(t)}async function Go(a){let e=a.codecs.map(async i=>{let o=await $e.get(i.name)?.();if(!o)
+ine`);return e.computeEncodedSize(t)}async function Wo(a){let e=a.codecs.map(async i=>{let o=await $e.get(i.name)?.();if(!o)
 throw new Ve(i.name);return{Codec:o,meta:i}}),t=[],r,n=[],s={...a};for await(let{Codec:i,meta:o}of e){let c=i.fromConfig(
 o.configuration,s);switch(c.kind){case"array_to_array":t.push({name:o.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
-s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!Wo(s))throw new D(
+s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!jo(s))throw new D(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:Ge.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function Wo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var ha=18446744073709551615n;function ma(a,e,t,r){if(!a.store.getRange)throw new ge("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function jo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var ha=18446744073709551615n;function ma(a,e,t,r){if(!a.store.getRange)throw new ge("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),i=Ye({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),o=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let u=l.map((x,w)=>Math.floor(x/s[w])),
 m=a.resolve(t(u)).path;m in c||(c[m]=(async()=>{let x=await i.computeEncodedSize(o),w=await n(m,{suffixLength:x},h);return w?
@@ -1056,56 +1056,56 @@ g=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*b[M],0),y=f[g],v=f[g+1];if(!(y===ha&&
 v)},h)}}var se=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function tr(a){return new se(
 a??new Map)}var ye=class extends se{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function ua(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function jo(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function pa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?jo(
-a,t):a;return Gt(e,r)}}var er=Symbol("zarrita.context");function $o(a,e){let{configuration:t}=e.codecs.find(sa)??{},r={encodeChunkKey:ta(e.chunk_key_encoding),TypedArray:zt(e.data_type),
+function ua(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function $o(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function pa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?$o(
+a,t):a;return Gt(e,r)}}var er=Symbol("zarrita.context");function Yo(a,e){let{configuration:t}=e.codecs.find(sa)??{},r={encodeChunkKey:ta(e.chunk_key_encoding),TypedArray:zt(e.data_type),
 fillValue:e.fill_value};if(t){let s=ua(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:Ye({dataType:e.
 data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:pa(s),getChunkBytes:ma(a,e.chunk_grid.
 configuration.chunk_shape,r.encodeChunkKey,t)}}let n=ua(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:Ye({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
 getStrides:pa(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var le=class extends se{kind="\
-array";#e;[er];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Wt(r)},this[er]=$o(this,this.#e)}get attrs(){return this.#e.
+array";#e;[er];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Wt(r)},this[er]=Yo(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[er].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
 Qs();let n=this[er],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
  non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=ea(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
 o=new n.TypedArray(i);return o.fill(n.fillValue),{data:o,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Ht(this.dtype,e)}};function fa(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function da(a,...e){return fa(a,e)}async function ya(a){let e=a.store.arrayExtensions;return e?.length?await da(a,...e):a}var rr=Yo();function Yo(){let a=new WeakMap;
+codec.decode(s)}is(e){return Ht(this.dtype,e)}};function fa(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function da(a,...e){return fa(a,e)}async function ya(a){let e=a.store.arrayExtensions;return e?.length?await da(a,...e):a}var rr=Xo();function Xo(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function Xo(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-ze(t):{}}async function Ko(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Xo(t,r)),
+return r.v3>r.v2?"v3":"v2"}}}async function Ko(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+ze(t):{}}async function qo(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Ko(t,r)),
 r?.throwIfAborted(),e.kind==="array"?ba(t,n,r):e.kind==="group"?ga(t,n,r):ba(t,n,r).catch(s=>(Ir(s,J,D),ga(t,n,r)))}async function ba(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new J("v2 array",{path:r});return rr.increment(
 a.store,"v2"),ya(new le(a.store,a.path,ra(ze(n),e)))}async function ga(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
 store.get(r,{signal:t});if(!n)throw new J("v2 group",{path:r});return rr.increment(a.store,"v2"),new ye(a.store,a.path,na(
-ze(n),e))}async function qo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new J(
+ze(n),e))}async function Jo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new J(
 "v3 array or group",{path:r});let s=ze(n);return s.node_type==="array"&&(s.fill_value=Wt(s)),s.node_type==="array"?ya(new le(
-t,a.path,s)):new ye(t,a.path,s)}async function Jo(a,e={}){let t="store"in a?a:new se(a),r=await qo(t,e.signal);if(rr.increment(
+t,a.path,s)):new ye(t,a.path,s)}async function Zo(a,e={}){let t="store"in a?a:new se(a),r=await Jo(t,e.signal);if(rr.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof le||e.kind==="group"&&r instanceof ye)return r;let n=r instanceof
 le?"array":"group";throw new J(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function ee(a,e={}){let t="store"in
 a?a.store:a,r=rr.versionMax(t),n=r==="v2"?ee.v2:ee.v3,s=r==="v2"?ee.v3:ee.v2;return n(a,e).catch(i=>(Ir(i,J,D),s(a,e)))}
-ee.v2=Ko;ee.v3=Jo;var va=[300,1e3,3e3],xa=2e4,Qo=[401,403,404,410],Ma=200,ec=429,tc=500,rc=2197175160,Cr=4,nc=8,sc=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
-super(t),this.fault=e,this.detail=r}},ac=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
-8*(e+1);s+=1)n=n>>>1^(n&1?rc:0);return n}));function ic(a){let[e,t,r,n]=ac,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
+ee.v2=qo;ee.v3=Zo;var va=[300,1e3,3e3],xa=2e4,ec=[401,403,404,410],Ma=200,tc=429,rc=500,nc=2197175160,Cr=4,sc=8,ac=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
+super(t),this.fault=e,this.detail=r}},ic=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
+8*(e+1);s+=1)n=n>>>1^(n&1?nc:0);return n}));function oc(a){let[e,t,r,n]=ic,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
 s;o+=4)i^=a[o]|a[o+1]<<8|a[o+2]<<16|a[o+3]<<24,i=n[i&255]^r[i>>>8&255]^t[i>>>16&255]^e[i>>>24];for(let o=s;o<a.length;o+=
 1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function Aa(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
 read()??{};if(i||!o)break;t.push(o),r+=o.length,e(r)}}catch(i){throw n?.cancel().catch(()=>{}),i}let s=new Uint8Array(r);
 return t.reduce((i,o)=>(s.set(o,i),i+o.length),0),s}var Vr=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Cr;if(t<0)throw new Error("the checksum is missing");
-let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Cr).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==ic(i))throw new Error(
+let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Cr).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==oc(i))throw new Error(
 "checksum mismatch");return i}computeEncodedSize(e){return e+Cr}},Ur=class a{kind="bytes_to_bytes";most;constructor(e){this.
-most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,nc),sc))}encode(){throw new Error("nothi\
+most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,sc),ac))}encode(){throw new Error("nothi\
 ng is written")}async decode(e){let t=new Blob([e]).stream();return Aa(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};$e.set("gzip",()=>Promise.resolve(
-Ur));$e.set("crc32c",()=>Promise.resolve(Vr));function oc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
-reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function cc(a,e){
+Ur));$e.set("crc32c",()=>Promise.resolve(Vr));function cc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
+reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function lc(a,e){
 let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,xa);try{e.throwIfAborted();
 let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await Aa(s===Ma?i:null,()=>{clearTimeout(n),n=setTimeout(r,xa)});
 return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function wa(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await cc(a,e);if(n===Ma)return s;if(Qo.includes(n))return;if(r=`the server answer\
-s ${n}`,n<tc&&n!==ec)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===va.length)throw new $(
-"unreachable",r);await oc(va[t],e)}}var nr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+let r="no server answers";try{let[n,s]=await lc(a,e);if(n===Ma)return s;if(ec.includes(n))return;if(r=`the server answer\
+s ${n}`,n<rc&&n!==tc)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===va.length)throw new $(
+"unreachable",r);await cc(va[t],e)}}var nr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
 s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await wa(this.url+e,t);if(!r)
@@ -1114,20 +1114,20 @@ url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>t
 if(a instanceof $)return a;let e=a instanceof J&&!a.found?"missing":"broken";return new $(e,a instanceof Error?a.message:
 String(a))}var sr=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new nr(
 this.url,this.described);return(await ee.v3(tr(e),{kind:"group"})).attrs}async array(e){let t=new nr(this.url,this.described),
-r=await ee.v3(tr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var lc=64,hc=32,ar=4096,mc=2**28,uc=["padded","unit","open","nearest","normal","rays"],pc={missing:"it is not in the sto\
+r=await ee.v3(tr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var hc=64,mc=32,ar=4096,uc=2**28,pc=["padded","unit","open","nearest","normal","rays"],fc={missing:"it is not in the sto\
 re, or the store is not public.",broken:"its data in the store are corrupt.",unreachable:"the store does not answer. The\
- server or the network may be down, or the server does not allow this page to read it (CORS)."},fc=["format","fingerprin\
+ server or the network may be down, or the server does not allow this page to read it (CORS)."},dc=["format","fingerprin\
 t","parameter","lines"],ve=(a,e)=>Number.isInteger(a)&&Number(a)>0&&Number(a)<=e,Y=(a,e)=>Array.isArray(a)&&a.every(Number.
-isFinite)&&(e??a.length)===a.length,dc=(a,e)=>Y(a,e)&&a.every(Number.isInteger);function bc({nodes:a,longest:e=0,poles:t=[]}){
+isFinite)&&(e??a.length)===a.length,bc=(a,e)=>Y(a,e)&&a.every(Number.isInteger);function gc({nodes:a,longest:e=0,poles:t=[]}){
 return Number.isFinite(e)&&t.length<=2&&t.every(({component:r,line:n,inward:s,near:i,plane:o})=>[0,1].includes(r)&&r===t[0].
-component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(i,ar)&&Y(o,6))}function gc(a,{geometry:e,slices:t}){let{geometry:r,
+component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(i,ar)&&Y(o,6))}function yc(a,{geometry:e,slices:t}){let{geometry:r,
 slices:n}=a,{shape:s,rows:i,columns:o}=r,{trace:c}=n;if(!(Y(s,2)&&s.every(h=>ve(h,ar)&&h>1)&&[i,o].every(({before:h,size:u},m)=>Number.
 isInteger(h)&&ve(u,ar)&&h>=0&&h+s[m]<=u)&&Number.isInteger(r.levels)&&r.levels>=0&&2**r.levels<=Math.max(i.size,o.size)&&
 r.triangles===e.triangles&&r.planar===e.planar&&Number.isFinite(r.extent)&&Y(r.periodic.map(Number),2)&&Y(r.center,3)&&Y(
-r.frame,9)&&ve(n.count,lc)&&[2,4].includes(n.channels)&&Y(n.lags)&&ve(n.lags.length,hc)&&n.sides===t.sides&&Y(n.extra)&&
-n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&Y([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>uc.includes(
-h))&&Y(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,ar)&&c.drawn[u]+s[u]<=h)&&dc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
-0)&&Y(c.closed.map(Number),2)&&Y([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&bc(c)&&(!c.timed||Y([c.timed.unit,c.
+r.frame,9)&&ve(n.count,hc)&&[2,4].includes(n.channels)&&Y(n.lags)&&ve(n.lags.length,mc)&&n.sides===t.sides&&Y(n.extra)&&
+n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&Y([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>pc.includes(
+h))&&Y(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,ar)&&c.drawn[u]+s[u]<=h)&&bc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
+0)&&Y(c.closed.map(Number),2)&&Y([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&gc(c)&&(!c.timed||Y([c.timed.unit,c.
 timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function Ta({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:i,extra:o}=e,c=(p,...f)=>[...p,...f].reduce((d,b)=>d*b,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
@@ -1137,16 +1137,16 @@ columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[In
 i)]],u.extra=[Uint16Array,[c(l,o.length)]];let m=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:u,
 needed:m}}function Dr(a,e,t){let{sizes:r}=Ta(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
 let c=r[s.split("/")[0]];if(!(c?i instanceof c[0]&&c[1].includes(i.length):s==="mesh"&&i instanceof Float32Array&&o.length===
-3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function yc(a,{
+3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function vc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[i,{drawn:o,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let u=(Math.floor(h/s)+o[0])*c[1]+h%s+o[1];l[h]=r*_e[Number(a.data[i*(u+1)-1-Number(t.
 trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function Sa(a){let e=Ea(a);return e.
-fault==="other"||e.detail!==e.message?e:new $(e.fault,pc[e.fault],e.message)}var ir=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
+fault==="other"||e.detail!==e.message?e:new $(e.fault,fc[e.fault],e.message)}var ir=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
 r.url,t),this.store=new sr(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=Sa(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
-file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if(fc.every(n=>t?.[n]===
+file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if(dc.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
 ion: export the page again.`;throw new $("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],i=B(s);return this.
 loaded(r,async o=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(i):
@@ -1158,7 +1158,7 @@ e/${i}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEvent
 try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),Sa(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),i=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},o=await i(0),[c,l]=mr(o),h=c.reduce((f,{bytes:d})=>f+d,l);if(!ve(
-h,mc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/o.length)*o.length);u.set(
+h,uc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/o.length)*o.length);u.set(
 o);for(let f=1;f*o.length<h;f+=1)u.set(await i(f),f*o.length);let m=new Map;for(let f of Zr(u.buffer)){let[d,b]=ue(f.name)??
 ["",f.name];if(d&&d!==B(t))throw new Error(`in place of tile ${B(t)} is ${d}`);m.set(b,{...f,name:b})}if(new TextDecoder().
 decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${B(t)} belongs to another flow`);return m.delete(
@@ -1167,21 +1167,21 @@ decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${B(t)} 
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),i={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${B(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:i,pace:o}=this.header.
-slices;return gc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
+slices;return yc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(i=>{let[o,c]=i.name.split("\
 /");if(Number(c)!==n)throw new Error(`in place of step ${n} is ${i.name}`);return{...i,name:`${o}/${t}`}})}async values(e,t,r,n,s,i){
 let o=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,m=(l>1?r:[0]).map(d=>h?`scalars/${d}/${h}`:`scala\
 rs/${d}`),p=c===null?[]:m.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.values()];let f=await Promise.all(p.map(async d=>{
-let b=l>1?K(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(b)??this.flow(e,b,s));return{...yc(x,
+let b=l>1?K(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(b)??this.flow(e,b,s));return{...vc(x,
 t,this.header.speed.typical),name:d}}let g=l>1?this.told.steps[b]:0,v=(await this.file("values",e,[g,e[1],e[2],h],s)).get(
 `scalars/${g}/${h}`);if(!v)throw new Error(`tile ${B(e)} has no values of step ${g}`);return{...v,name:d}}));Dr(f,t,this.
-header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var vc=4096,xc=4,_a=32,wc=.25,Mc=1e4,Pa=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var xc=4096,wc=4,_a=32,Mc=.25,Ac=1e4,Pa=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Ae(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
-ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await Ac(n):t;if(this.gl!==e)return;let o=Ec(s[0]),c=new Bt(
+ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await Ec(n):t;if(this.gl!==e)return;let o=Sc(s[0]),c=new Bt(
 o,i.flatMap(([f,d,b])=>f?[]:[[d,b]]),new Map,new Map),l=o.store?new ir(o,n):c,h={header:o,settings:{...o.settings,...o.own,
 ...this.own},player:new ct};this.shownOpacity=r??s[0].opacity;let u=async(f,d)=>{let b=!0,g=new Ct(f,{...h,source:l,isComing:()=>b});
 d(g);for(let y of c.parts){let v=await c.kept(y);if(g.lifetime.isOver)break;g.setPart(v)}return b=!1,Object.keys(this.colours).
@@ -1205,7 +1205,7 @@ l=e.painter.shown;if(!i||!r||!c||!l)return null;let h=c.point.position,u={scene:
 [m,p]=ps(u,n.get("lonlat"))??[NaN,NaN],{path:f}=cs(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
 map(d=>i.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:i}=t.mercator,{pyramid:o,geometry:c}=t.
-header,l=wc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
+header,l=Mc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
 parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,_a,_a,1),await La(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
@@ -1214,12 +1214,12 @@ shaderData:m,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:m,getP
 opacity:o};for(let d of u){let b=d.draw({...f,mercator:n.mercator,isRepeated:u.length===1});typeof b=="string"&&b?this.failed(
 "The flow cannot be drawn on the map.",b):b!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,
 ratio:o,text:c}=Ra(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
-[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(xc*i.width*i.height/(u*m));this.pictures[h]?.follow(l[h],
-Math.min(o,o*p,vc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
+[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(wc*i.width*i.height/(u*m));this.pictures[h]?.follow(l[h],
+Math.min(o,o*p,xc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
 scene||!t.every(r=>r.isComplete)?!1:this.look===Ra(e,this.globe).text}};function Ra(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
 fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function La(a){
-let e=performance.now()+Mc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Ac(a){
+let e=performance.now()+Ac;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Ec(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function Ec(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
+json()}function Sc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
 graticule:!1}}}}export{Pa as FlowtexLayer};
