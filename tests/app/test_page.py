@@ -465,7 +465,9 @@ server.start(host="127.0.0.1", port=0, open_browser=False, show_connection_info=
 def test_the_view_alone_serves_in_an_application_of_ones_own(page: Page) -> None:
     """The lines of docs/app.md, as they stand there."""
     text = (Path(__file__).parents[2] / "docs" / "app.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"```py\n(from flowtex.app import FlowArea\n.*?)```", text, re.DOTALL)
+    (block,) = re.findall(
+        r"```python\n(import flowtex\nfrom flowtex.app import FlowArea\n.*?)```", text, re.DOTALL
+    )
     assert block.endswith("server.start()\n")
     script = OWN.replace("BLOCK", block.removesuffix("server.start()\n"))
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
