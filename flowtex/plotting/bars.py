@@ -248,7 +248,10 @@ def _write_labels(
 @lru_cache(16)
 def _round_labels(low: float, high: float, *, log_scale: bool) -> vtkDataArray:
     values = round_values(low, high, log_scale=log_scale, steps=(1, 2, 5, 10))
-    return numpy_to_vtk(np.clip(values, low, high), deep=True)
+    clipped = np.clip(values, low, high)
+    # A value just beyond an end would be written with all digits of the end.
+    is_round = np.isclose(clipped, values, rtol=0, atol=1e-9 * (high - low))
+    return numpy_to_vtk(clipped[is_round] if is_round.sum() > 1 else clipped, deep=True)
 
 
 def _fit(

@@ -116,7 +116,9 @@ def test_bar_is_as_tall_as_that_of_pyvista() -> None:
     assert heights[1] == pytest.approx(heights[0], rel=0.1)
 
 
-@pytest.mark.parametrize("limits", [(0.0, 7.25), (-3e-7, 1.3e-6), (1e5, 3.7e5), (99.2, 101.1)])
+@pytest.mark.parametrize(
+    "limits", [(0.0, 7.25), (-3e-7, 1.3e-6), (1e5, 3.7e5), (99.2, 101.1), (0.0006, 6.1)]
+)
 def test_labels_are_multiples_of_one_two_or_five(limits: tuple[float, float]) -> None:
     made: Any = pv.Plotter(off_screen=True, window_size=[640, 480])
     made.flowtex.add(sheet(), scalars="height", clim=limits)
