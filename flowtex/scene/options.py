@@ -45,6 +45,7 @@ from flowtex.field import FlowField, Surface
 from flowtex.field.derived import SIGNED
 from flowtex.field.derived.vectors import COMPONENTS, component_name
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
+from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import Camera, read_camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 from flowtex.sources.datasets import is_dataset
@@ -565,8 +566,9 @@ class Options:
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         array: Any = values.get("scalars")
-        if is_array := "field" in accepted and np.ndim(array) > 0:
-            values["scalars"] = DATA
+        is_list = isinstance(array, (list, tuple))  # perhaps of rows of different lengths
+        if is_array := "field" in accepted and (is_list or np.ndim(array) > 0):
+            array, values["scalars"] = with_gaps("scalars", array), DATA
         parts = {
             name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
             for name, kind in _KINDS.items()
@@ -585,7 +587,7 @@ class Options:
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         if is_array:  # which is read with the mesh, and is no argument of its own
-            object.__setattr__(parts["field"], ARRAY, np.asarray(array))
+            object.__setattr__(parts["field"], ARRAY, array)
         return cls(**parts, settings=values)
 
 

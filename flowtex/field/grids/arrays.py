@@ -65,7 +65,7 @@ def grid_nodes(
     mask = None if valid is None else with_gaps("valid", valid)
     count = len(velocity) if isinstance(velocity, LazySteps) or v.ndim == 4 else 1
     faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
-    cells = max(p.shape[0] - 1, 0), max(p.shape[1] - 1, 0)
+    cells = tuple(max(n - 1, 0) for n in p.shape[:2])
     faults = faults or cell_faults(cells, count, on_cells, scalars)
     raise_faults(faults + (sign_free_faults(v) if sign_free else []))
     v = v[None] if v.ndim == 3 else v
