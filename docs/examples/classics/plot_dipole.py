@@ -18,5 +18,5 @@ for place, charge in ((-0.8, 1), (0.8, -1)):
     distance = np.linalg.norm(away, axis=-1, keepdims=True)
     field += charge * away / np.maximum(distance, 0.05) ** 3
 
-electric = flowtex.FlowField.from_arrays((x, y), field)
+electric = flowtex.FlowField.from_arrays((x, y), field, vectors="E")
 flowtex.show(electric, cmap="inferno", log_scale=True, clim=(0.08, 30))

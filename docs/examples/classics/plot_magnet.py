@@ -17,5 +17,5 @@ for place in (-1, 1):
     square = np.maximum((X - place) ** 2 + Y**2, 0.01)
     field += np.stack([-Y, X - place], axis=-1) / square[..., None]
 
-magnetic = flowtex.FlowField.from_arrays((x, y), field)
+magnetic = flowtex.FlowField.from_arrays((x, y), field, vectors="B")
 flowtex.show(magnetic, cmap="inferno", log_scale=True, clim=(0.1, 8), arrows=40)
