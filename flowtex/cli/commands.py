@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
 
 from flowtex._util.arguments import closest, elsewhere
-from flowtex._util.child import FORKS, prepare
+from flowtex._util.child import FORKS, fork_server
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import Ended, ended_by_signals
 from flowtex.cli.console import announcer, complain, describe, require_app
@@ -94,11 +94,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Ended as ended:
         return ended.code
     except Exception as error:
-        code = _exit_code(error)
-        if debug or code is None:
+        is_of_system = isinstance(error, diagnostics.OpenGLMissingError)
+        # Other errors than these are defects of the program.
+        if debug or not (is_of_system or isinstance(error, (CycloptsError, FieldError))):
             raise
         complain(_explained(error))
-        return code
+        return 1 if is_of_system else 2
     finally:
         warnings.showwarning = print_warning
     return result if isinstance(result, int) else 0
@@ -140,18 +141,11 @@ def _warn(message: Warning | str, *_: Any) -> None:
     complain(message if isinstance(message, Warning) else UserWarning(message), "yellow")
 
 
-def _exit_code(error: Exception) -> int | None:
-    """Exit code of an error that the user can correct; ``None`` for a defect of the program."""
-    if isinstance(error, diagnostics.OpenGLMissingError):
-        return 1
-    return 2 if isinstance(error, (CycloptsError, FieldError)) else None
-
-
 def begin() -> None:
     """Load the libraries of the page in the background, where it is served by processes."""
     require_app()
     if FORKS and _host.get() is None:
-        prepare(PRELOAD)
+        fork_server(PRELOAD)
 
 
 def serve_processes(page: ServeFlags | None) -> bool:

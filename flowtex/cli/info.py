@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from flowtex.field import FlowField
-    from flowtex.sources.summary import ArraySummary, FileSummary
+    from flowtex.sources.summary import FileSummary
 
 #: Times and blocks that are listed one by one at most.
 MOST_TIMES, MOST_BLOCKS = 8, 40
@@ -150,15 +150,11 @@ def _array_table(summary: FileSummary) -> Table:
     table = _table("array", "on", *numbers, right=numbers)
     for array in summary.arrays:
         parts = f" = {', '.join(array.parts)}" if array.parts else ""
-        table.add_row(f"{array.name}{parts}", array.where, str(array.components), *_span(array))
+        magnitude = " (magnitude)" if array.components > 1 else ""
+        is_known = math.isfinite(array.low)
+        span = (f"{array.low:.4g}", f"{array.high:.4g}{magnitude}") if is_known else ("", "")
+        table.add_row(f"{array.name}{parts}", array.where, str(array.components), *span)
     return table
-
-
-def _span(array: ArraySummary) -> tuple[str, str]:
-    if not math.isfinite(array.low):
-        return "", ""
-    magnitude = " (magnitude)" if array.components > 1 else ""
-    return f"{array.low:.4g}", f"{array.high:.4g}{magnitude}"
 
 
 def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:

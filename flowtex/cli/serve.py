@@ -76,20 +76,23 @@ def serve(
             f"{store} is missing or not a pyramid; build one with `flowtex pyramid FILE -o {store}`"
         )
         raise UsageError(msg)
-    from flowtex.app.server.security import known_hosts, new_secret
-    from flowtex.app.server.store_site import ServedStore, run_store
+    from flowtex.app.server.security import LimitedServer, known_hosts, new_secret
+    from flowtex.app.server.site import serve_until_ended
+    from flowtex.app.server.store_site import ServedStore, store_application
     from flowtex.rendering.diagnostics import has_display
 
     with waiting(f"Reading {store.name}") as end_waiting:
         field = open_store(store)
         served = ServedStore(store)
-        page = _page(field, title, options, f"store/{served.run}/")
-        serving = run_store(
-            served,
-            page,
-            (server.host, server.port),
-            token=token or new_secret(),
-            hosts=known_hosts(server.host, server.allow_host),
+        page, word = _page(field, title, options, f"store/{served.run}/"), token or new_secret()
+        hosts = known_hosts(server.host, server.allow_host)
+        limited = LimitedServer(
+            store_application(served, page, word, hosts), handler_cancellation=True
+        )
+        serving = serve_until_ended(
+            lambda: limited.start((server.host, server.port)),
+            limited.stop,
+            (server.host, server.port, f"{word}/"),
             announce=announcer(describe(field), server.host, end_waiting),
             open_browser=server.open_browser and has_display(),
         )

@@ -193,15 +193,6 @@ class Padding:
         return (np.arange(self.nodes) + self.before + 0.5) / self.size
 
 
-def paddings(shape: tuple[int, int], periodic: tuple[bool, bool]) -> tuple[int, Padding, Padding]:
-    """Return the mip levels of a whole surface, and how its rows and columns lie in textures."""
-    levels = int(np.clip(np.log2(max(min(shape) / 4, 1)), 0, DEEPEST))
-    rows, columns = (
-        Padding.of(n, levels, periodic=p) for n, p in zip(shape, periodic, strict=True)
-    )
-    return levels, rows, columns
-
-
 class DrawnSurface:
     """Base of surfaces of both kinds: the frame in which they are drawn.
 
@@ -220,13 +211,6 @@ class DrawnSurface:
     @property
     def points(self) -> Floats:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
-        raise NotImplementedError
-
-    def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
-        """Return the values of a scalar (..., J, I) at the nodes or cells that are drawn.
-
-        Cells have their first node's place, and triangles their own, (..., 1, M).
-        """
         raise NotImplementedError
 
     def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
@@ -306,7 +290,12 @@ class SurfaceGeometry(DrawnSurface):
     @classmethod
     def of(cls, field: FlowField) -> SurfaceGeometry:
         """Lay out a field's surface."""
-        return cls(field, *paddings(field.shape, field.periodic), field.surface)
+        levels = int(np.clip(np.log2(max(min(field.shape) / 4, 1)), 0, DEEPEST))
+        rows, columns = (
+            Padding.of(n, levels, periodic=p)
+            for n, p in zip(field.shape, field.periodic, strict=True)
+        )
+        return cls(field, levels, rows, columns, field.surface)
 
     @classmethod
     def of_tile(

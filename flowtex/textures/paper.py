@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy
@@ -63,21 +62,36 @@ class PaperTextures:
         cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
         """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``."""
-        field, corrected = store.field, settings.noise_correction
-        height, width = _size(field, settings.resolution)
-        along_i, along_j = _coordinates(field, correction=corrected)
-        index = _texel_positions(along_i, along_j, height, width)
-        size = np.broadcast_arrays(
-            _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
-        )
-        texels = TexelMap(field, index, np.stack(size, axis=-1), corrected)
+        field, corrected, seed = store.field, settings.noise_correction, settings.seed
+        along_i, along_j = lines = _coordinates(field, correction=corrected)
+        counts = _size(field, settings.resolution)
+        middles = [
+            np.interp((np.arange(count) + 0.5) / count, line, np.arange(len(line)))
+            for line, count in zip(lines, counts, strict=True)
+        ]
+        index = np.stack(np.meshgrid(*middles), axis=-1)
+        # Cells by texel.
+        size = np.empty_like(index)
+        for axis, (line, count) in enumerate(zip(lines, counts, strict=True)):
+            cell = np.clip(index[..., axis].astype(np.intp), 0, len(line) - 2)
+            size[..., axis] = 1 / (np.diff(line)[cell] * count)
+        if settings.noise == "image" and image is not None:
+            noise = image
+        elif settings.noise != "texture":
+            msg = f"pattern is {settings.noise!r}; expected 'texture', or 'image' with an image"
+            raise FieldError(msg)
+        elif corrected:
+            noise = _unit(_even_noise(field, index, size, seed))
+        else:
+            noise = _unit(np.random.default_rng(seed).standard_normal(index.shape[:2]))
         return cls(
-            step=np.minimum(_steps(store, index, texels.size), LONGEST_STEP).astype(np.float32),
+            noise=noise,
+            step=np.minimum(_steps(store, index, size), LONGEST_STEP).astype(np.float32),
             along_i=along_i,
             along_j=along_j,
             repeat=field.periodic,
             corrected=corrected,
-            **_noise(texels, settings, image),
+            picture=settings.noise == "image",
         )
 
     def with_image(self, image: Floats32) -> PaperTextures:
@@ -141,38 +155,12 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
     return lines[0], lines[1]
 
 
-def _size(field: FlowField, resolution: int) -> tuple[int, int]:
-    """Return the height and width, powers of two in about the proportion of the surface."""
-    lengths = side_lengths(field)
-    shares = np.maximum(lengths / lengths.max(), 1 / 8) * resolution
-    width, height = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
-    return height, width
-
-
-def _texel_positions(along_i: Floats, along_j: Floats, height: int, width: int) -> Floats:
-    """Return the index-space position of the middle of each texel, (H, W, 2)."""
-    i = np.interp((np.arange(width) + 0.5) / width, along_i, np.arange(len(along_i)))
-    j = np.interp((np.arange(height) + 0.5) / height, along_j, np.arange(len(along_j)))
-    return np.stack(np.meshgrid(i, j), axis=-1)
-
-
-def _slope(line: Floats, x: Floats, texels: int) -> Floats:
-    """Return cells by texel at positions along a line."""
-    cell = np.clip(x.astype(np.intp), 0, len(line) - 2)
-    return np.asarray(1 / (np.diff(line)[cell] * texels))
-
-
-def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict[str, Any]:
-    """Return the attributes of the noise, or of the picture in its place."""
-    pattern, seed = settings.noise, settings.seed
-    if pattern == "image" and image is not None:
-        return {"noise": image, "picture": True}
-    if pattern != "texture":
-        msg = f"pattern is {pattern!r}; expected 'texture', or 'image' with an image"
-        raise FieldError(msg)
-    if texels.corrected:
-        return {"noise": _unit(even_noise(texels, seed))}
-    return {"noise": _unit(np.random.default_rng(seed).standard_normal(texels.shape))}
+def _size(field: FlowField, resolution: int) -> tuple[int, ...]:
+    """Return the width and height, powers of two in about the proportion of the surface."""
+    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
+    lengths = [t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)]
+    shares = np.maximum(lengths / np.max(lengths), 1 / 8) * resolution
+    return tuple(int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
 
 
 def _unit(noise: Floats) -> Floats32:
@@ -184,22 +172,16 @@ def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
     field = store.field
     speed = np.abs(field.index_velocity.components).max(axis=0)
     if store.parameter == "arclength":
-        speed = _by_length(speed, field)
+        # Cells crossed in a unit of length; nodes at rest take that of the nearest one.
+        pace = field.index_velocity.speed[0]
+        moving = field.valid & (pace > 1e-7 * pace.max())
+        by_length = speed / np.where(moving, pace, 1.0)[..., None]
+        speed = fill_blanked(by_length, moving) if moving.any() else np.zeros_like(speed)
     speed = speed * store.unit[..., None]
     crossed = (
         np.stack([between_nodes(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
     )
     return np.asarray(1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1])))
-
-
-def _by_length(components: Floats, field: FlowField) -> Floats:
-    """Return the cells crossed in a unit of length; nodes at rest take that of the nearest one."""
-    speed = field.index_velocity.speed[0]
-    moving = field.valid & (speed > 1e-7 * speed.max())
-    if not moving.any():
-        return np.zeros_like(components)
-    by_length = components / np.where(moving, speed, 1.0)[..., None]
-    return fill_blanked(by_length, moving)
 
 
 def _deviations(noise: Floats32) -> list[float]:
@@ -224,51 +206,21 @@ def _bilinear(level: Floats, at: Floats) -> Floats:
     return np.asarray(scipy.ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))
 
 
-@dataclass(frozen=True, eq=False)
-class TexelMap:
-    """Where the texels of a texture lie on a surface."""
-
-    field: FlowField
-    index: Floats  #: Middle of each texel as (i, j), (H, W, 2).
-    size: Floats  #: Size of each texel in cells, (H, W, 2).
-    corrected: bool  #: Whether a pattern is even on the surface, not on the texels.
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Height and width, in texels."""
-        return self.index.shape[0], self.index.shape[1]
-
-    @property
-    def lengths(self) -> Floats:
-        """Sides of the texels in space, (H, W, 2) along i and along j."""
-        tangents = (np.linalg.norm(t, axis=-1) for t in self.field.surface.tangents)
-        return np.stack(
-            [
-                between_nodes(p, self.index) * self.size[..., axis]
-                for axis, p in enumerate(tangents)
-            ],
-            axis=-1,
-        )
-
-
-def even_noise(texels: TexelMap, seed: int) -> Floats:
+def _even_noise(field: FlowField, index: Floats, size: Floats, seed: int) -> Floats:
     """Return noise (H, W) from 0 to 1, at each texel as coarse as the texel is long.
 
-    A texel takes the random number of the cube of a lattice in space in which it lies. The
-    lattice is that power of two of the finest which is nearest to the texel's longer side.
+    Texels are at ``index``, (H, W, 2) as (i, j), of a ``size`` in cells, (H, W, 2). A texel takes
+    the random number of the cube of a lattice in space in which it lies. The lattice is that power
+    of two of the finest which is nearest to the texel's longer side.
     """
-    surface = texels.field.surface
-    size = texels.lengths.max(axis=-1)
-    octave = np.rint(np.log2(np.maximum(size, surface.extent * 1e-7))).astype(np.int64)
-    position = surface.at(texels.index) - surface.center
+    surface = field.surface
+    tangents = (np.linalg.norm(t, axis=-1) for t in surface.tangents)
+    sides = [between_nodes(p, index) * size[..., axis] for axis, p in enumerate(tangents)]
+    longest = np.maximum(np.max(sides, axis=0), surface.extent * 1e-7)
+    octave = np.rint(np.log2(longest)).astype(np.int64)
+    position = surface.at(index) - surface.center
     cell = np.floor(position / (2.0**octave)[..., None]).astype(np.int64)
     return _hash(cell, octave, seed).astype(np.float64) / 2.0**64
-
-
-def side_lengths(field: FlowField) -> Floats:
-    """Return lengths of a surface along i and along j, (2,)."""
-    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
-    return np.array([t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)])
 
 
 def _hash(cell: Ints, octave: Ints, seed: int) -> NDArray[np.uint64]:

@@ -16,9 +16,9 @@ changes to another chart between two steps, and its positions are returned in in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -68,24 +68,24 @@ def integrate(
     is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(_most_steps(sampler)):
+    lines = sampler.grid.rows + sampler.grid.columns
+    for _ in range(min(max(STEPS_PER_LINE * lines, LEAST_STEPS), MOST_STEPS)):
         run.end_resting()
         if not len(run.state.which):
             break
         run.advance()
-    run.end_all()
+    run.go_straight(run.state, run.state.rate)
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
-
-
-def _most_steps(sampler: Sampler) -> int:
-    """Return the number of rounds of steps after which paths are ended."""
-    lines = sampler.grid.rows + sampler.grid.columns
-    return int(np.clip(STEPS_PER_LINE * lines, LEAST_STEPS, MOST_STEPS))
 
 
 @dataclass
 class _Columns:
     """Arrays whose last axis is that of the particles; some of them may be None."""
+
+    def joined(self, other: Self) -> Self:
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        parts = (None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs)
+        return type(self)(*parts)
 
     def pick(self, mask: Bools | Indices) -> Self:
         # Numbers are several times as fast as a mask where there is more than one row.
@@ -177,11 +177,8 @@ class _Run:
         resting = _speed(self.state.rate) < self.state.rest
         if resting.any():
             ended = self.state.pick(resting)
-            self._go_straight(ended, np.zeros_like(ended.y))
+            self.go_straight(ended, np.zeros_like(ended.y))
             self.state = self.state.pick(~resting)
-
-    def end_all(self) -> None:
-        self._go_straight(self.state, self.state.rate)
 
     def advance(self) -> None:
         """Try one step of every particle, and accept it where its error is small enough."""
@@ -204,7 +201,7 @@ class _Run:
         elif good.any():
             moved = state.pick(good)
             self._accept(moved, step.pick(good))
-            self.state = _join(moved, state.pick(~good))
+            self.state = moved.joined(state.pick(~good))
         if (finished := self.state.next >= len(self.lags)).any():
             self.state = self.state.pick(~finished)
 
@@ -241,7 +238,7 @@ class _Run:
             s = share[outside]
             ended = state.pick(outside)
             ended.y, ended.lag = out.at(s), out.lag0 + s * out.h
-            self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
+            self.go_straight(ended, out.k0 + s * (out.k1 - out.k0))
             state.next[outside] = len(self.lags)
         state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
         self._interrupt(state, index, outside)
@@ -303,7 +300,7 @@ class _Run:
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         return low
 
-    def _go_straight(self, state: _Particles, rate: Floats) -> None:
+    def go_straight(self, state: _Particles, rate: Floats) -> None:
         """End paths at their positions, and fill the remaining lags straight ahead."""
         self.reach[state.which] = state.lag
         m, n = np.nonzero(np.arange(len(self.lags))[:, None] >= state.next)
@@ -317,12 +314,3 @@ def _speed(rate: Floats) -> Floats:
     """Return the greatest component of a rate, (N,)."""
     size = np.abs(rate)
     return np.asarray(np.maximum(size[0], size[1]))
-
-
-def _join(one: _Particles, two: _Particles) -> _Particles:
-    """Concatenate particles."""
-    pairs = zip(vars(one).values(), vars(two).values(), strict=True)
-    joined: Iterator[Any] = (
-        None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
-    )
-    return _Particles(*joined)

@@ -32,7 +32,7 @@ from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangles import triangle_paths, triangle_slices
+from flowtex.trace.triangles.trace import triangle_paths, triangle_slices
 
 A = TypeVar("A")
 B = TypeVar("B")

@@ -26,7 +26,6 @@ from typing import Any
 
 from flowtex._util import __version__
 from flowtex._util.arguments import checked_target
-from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
@@ -34,7 +33,6 @@ from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.scene.signatures import accepts_options
-from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.web import preview
 from flowtex.web.linked import (
     MAPLIBRE,
@@ -211,26 +209,21 @@ def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientDa
         pyramid, finest = scene.pyramid, 0
         if pyramid is not None:
             finest, room = pyramid.depth, float(TILE_BYTES)
-            root = _arrays_bytes(scene, scene.steps)
-            while finest and (room := room - root * _times_larger(pyramid, finest - 1)) >= 0:
+            root = _arrays_bytes(scene) / math.prod(pyramid.shape(pyramid.depth))
+            while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
                 finest -= 1
             pyramid = pyramid if finest < pyramid.depth else None
         scenes.append(replace(scene, pyramid=pyramid, finest=finest))
     return scenes
 
 
-def _times_larger(pyramid: Pyramid, level: int) -> float:
-    """Return the number of nodes of a level over that of the root."""
-    return math.prod(pyramid.shape(level)) / math.prod(pyramid.shape(pyramid.depth))
-
-
-def _arrays_bytes(scene: ClientData, steps: int) -> int:
+def _arrays_bytes(scene: ClientData) -> float:
     """Estimate the packed bytes of the arrays of a scene without tiles; no slices are made."""
     surface = _packed_bytes(scene.surface())
     if scene.traced:
-        return surface + steps * _packed_bytes(scene.step(0))
+        return surface + scene.steps * _packed_bytes(scene.step(0))
     values = VALUES_SHARE * scene.nbytes_of_values
-    return int(surface + steps * (PACKED_SHARE * scene.nbytes_of_step + values))
+    return surface + scene.steps * (PACKED_SHARE * scene.nbytes_of_step + values)
 
 
 def _packed_bytes(parts: Parts) -> int:
@@ -386,15 +379,6 @@ def json_text(value: object) -> str:
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
 
 
-def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
-    steps = track(range(scene.steps), scene.steps, "Packing time steps")
-    return chain(
-        scene.surface().items(),
-        (part for step in steps for part in scene.step(step).items()),
-        (part for tile in TileSource(scene, budget=0).tiles() for part in tile.items()),
-    )
-
-
 def _packed(
     scenes: Sequence[ClientData], link: StoreLink | None, time: float | None
 ) -> Iterator[tuple[int, Header, str]]:
@@ -402,8 +386,13 @@ def _packed(
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
-        parts = _parts(scene) if link is None else first_parts(scene, time).items()
-        for name, array in parts:
+        steps = track(range(scene.steps), scene.steps, "Packing time steps")
+        parts = chain(
+            [scene.surface()], map(scene.step, steps), TileSource(scene, budget=0).tiles()
+        )
+        if link is not None:
+            parts = chain([first_parts(scene, time)])
+        for name, array in chain.from_iterable(part.items() for part in parts):
             if name in names:  # values of all times are parts of each step
                 continue
             names.add(name)

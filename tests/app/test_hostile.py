@@ -24,7 +24,7 @@ from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers.library import Choice
 from flowtex.app.streaming import points
-from flowtex.app.streaming.painter import MOST_PIXELS
+from flowtex.app.streaming.stream import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.scene.probe import probe

@@ -18,8 +18,7 @@ import pytest
 from child_handler import is_gone
 from waiting import PATIENCE_S, wait_until
 
-from flowtex._util.child import Child, ChildError
-from flowtex._util.child.forkserver import FORKS
+from flowtex._util.child import FORKS, Child, ChildError
 from flowtex._util.child.worker import MessageError, read_message, settle, write_message
 from flowtex._util.progress import Stopped, stoppable
 

@@ -25,8 +25,8 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import whole_file
-from flowtex.app.streaming.painter import LINE_GREY, TILE_PX
-from flowtex.app.streaming.viewport import GAP_PX, Rect, Viewport
+from flowtex.app.streaming.stream import LINE_GREY, TILE_PX
+from flowtex.app.streaming.viewport import GAP_PX, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.encoders import (
@@ -88,25 +88,19 @@ class TiledPicture:
         rows[:] = LINE_GREY
         panes, times = self._viewport.panes, self._supersampling
         wide = (width - (len(panes) - 1) * self._gap) // len(panes)
-        done = 0
+        done, side = 0, TILE_PX // times
         for number, pane in enumerate(panes):
             first = number * (wide + self._gap)
             pane_width = wide if number < len(panes) - 1 else width - first
             self._viewport.window.size = pane_width * times, height * times
-            for tile in self._tiles(pane_width, height):
-                left, top, across, down = tile
+            for top, left in product(range(0, height, side), range(0, pane_width, side)):
+                across, down = min(side, pane_width - left), min(side, height - top)
                 part = (times * left, times * top, times * across, times * down)
                 pixels = pane.draw(part[2], part[3], part)
                 place = slice(top, top + down), slice(first + left, first + left + across)
                 rows[place] = averaged(pixels, times)
                 done += across * down
                 yield canvas, done / (width * height)
-
-    def _tiles(self, width: int, height: int) -> Iterator[Rect]:
-        """Yield rows of tiles."""
-        side = TILE_PX // self._supersampling
-        for top, left in product(range(0, height, side), range(0, width, side)):
-            yield left, top, min(side, width - left), min(side, height - top)
 
     def annotate(self, picture: Bytes) -> list[Layout]:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
@@ -159,9 +153,6 @@ class Job:
         """Cancel the job; :meth:`run` ends with ``Stopped`` and no file is left."""
         self.cancelled = not self.done
 
-    def _unwanted(self) -> bool:
-        return self.cancelled or self.done
-
     async def run(self) -> Path:
         """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
         viewport = self._viewport.copy()
@@ -178,13 +169,8 @@ class Job:
         raise NotImplementedError
 
     def _tiled(self, viewport: Viewport) -> TiledPicture:
-        return TiledPicture(
-            viewport,
-            self._size,
-            self._density,
-            self._supersampling,
-            annotations=self._annotations,
-        )
+        options = (self._size, self._density, self._supersampling)
+        return TiledPicture(viewport, *options, annotations=self._annotations)
 
     async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
         """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
@@ -206,7 +192,7 @@ class Job:
         """Call a function in the job's thread, where tracing can be stopped."""
 
         def stopping() -> T:
-            with stoppable(self._unwanted):
+            with stoppable(lambda: self.cancelled or self.done):
                 return work(*arguments)
 
         return await asyncio.get_running_loop().run_in_executor(self._pool, stopping)
@@ -289,7 +275,7 @@ class MovieJob(Job):
                 writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
             if writing is not None:
                 await writing
-            await self._in_thread(writer.finish, self._unwanted)
+            await self._in_thread(writer.finish, lambda: self.cancelled)
         finally:
             # In the thread, after its present work.
             self.done = True

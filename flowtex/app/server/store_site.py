@@ -15,15 +15,14 @@ from __future__ import annotations
 import asyncio
 import re
 import secrets
-from collections.abc import Callable, Container
+from collections.abc import Container
 from pathlib import Path
 
 import numpy as np
 from aiohttp import web
 
 from flowtex._util.extras import import_extra
-from flowtex.app.server.security import LOCAL, LimitedServer, guard, is_same
-from flowtex.app.server.site import serve_until_ended
+from flowtex.app.server.security import LOCAL, guard, is_same
 from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import DOCUMENT, ReadFault, fault_words, is_refused, objects_at
@@ -58,20 +57,14 @@ class ServedStore:
 
     async def get(self, name: str) -> bytes:
         """Return an object; a LookupError if it does not exist, a ReadFault when reading fails."""
-        if name not in self._metadata:
-            self._check(name)
-        return await self._read(name)
-
-    def _check(self, name: str) -> None:
-        """Raise a LookupError if a name is not that of an object of an array."""
         array, _, rest = name.partition("/c/")
         words, counts = rest.split("/"), self._counts.get(array, ())
-        if len(words) != len(counts) or not all(map(_NUMBER.fullmatch, words)):
+        is_chunk = len(words) == len(counts) and all(
+            _NUMBER.fullmatch(word) and int(word) < count
+            for word, count in zip(words, counts, strict=True)
+        )
+        if not (is_chunk or name in self._metadata):
             raise LookupError(name)
-        if not all(int(word) < count for word, count in zip(words, counts, strict=True)):
-            raise LookupError(name)
-
-    async def _read(self, name: str) -> bytes:
         obstore = import_extra("obstore", "store")
         async with self._reads:
             try:
@@ -107,7 +100,12 @@ def store_application(
             body = await served.get(name)
         except LookupError:
             raise web.HTTPNotFound(text="This object does not exist.") from None
-        return web.Response(body=body, headers=_headers(name))
+        metadata = name.endswith(DOCUMENT)
+        headers = {
+            "Content-Type": "application/json" if metadata else "application/octet-stream",
+            "Cache-Control": "no-store" if metadata else f"private, max-age={KEPT_S}",
+        }
+        return web.Response(body=body, headers=headers)
 
     async def to_page(request: web.Request) -> web.Response:
         check(request)
@@ -120,32 +118,3 @@ def store_application(
     router.add_get("/", page_handler)  # refused without the token
     router.add_get("/{token}", to_page)
     return application
-
-
-def _headers(name: str) -> dict[str, str]:
-    metadata = name.endswith(DOCUMENT)
-    return {
-        "Content-Type": "application/json" if metadata else "application/octet-stream",
-        "Cache-Control": "no-store" if metadata else f"private, max-age={KEPT_S}",
-    }
-
-
-async def run_store(
-    served: ServedStore,
-    page: str,
-    endpoint: tuple[str, int],
-    *,
-    token: str,
-    hosts: Container[str],
-    announce: Callable[[str], None],
-    open_browser: bool,
-) -> None:
-    """Serve a page and its store until the task is cancelled."""
-    server = LimitedServer(store_application(served, page, token, hosts), handler_cancellation=True)
-    await serve_until_ended(
-        lambda: server.start(endpoint),
-        server.stop,
-        (*endpoint, f"{token}/"),
-        announce=announce,
-        open_browser=open_browser,
-    )

@@ -67,7 +67,6 @@ class HandedScene:
     def __init__(self, routes: Routes) -> None:
         self._routes = routes
         self._source: TileSource | None = None
-        self._reported: set[TileKey | None] = set()
         self._generation, self._stem, self._address = 0, "", ""
 
     def update(self, pane: Pane, background: object) -> None:
@@ -120,7 +119,9 @@ class HandedScene:
             except Stopped:  # the scene is no longer shown
                 parts = {}
             except Exception as error:
-                self._log_error(key, error)
+                # Coarser tiles replace it.
+                part = "the surface" if key is None else f"tile {tuple(key)}"
+                _log.warning("%s could not be made: %s", part, error)
                 raise FileNotFoundError(name) from error
             # Packing takes a while, and the loop has other pages to serve.
             body = await loop.run_in_executor(None, parts_file, parts)
@@ -128,17 +129,9 @@ class HandedScene:
 
         return content
 
-    def _log_error(self, key: TileKey | None, error: Exception) -> None:
-        """Log the error of a tile once; coarser tiles replace it."""
-        if key not in self._reported:
-            self._reported.add(key)
-            part = "the surface" if key is None else f"tile {tuple(key)}"
-            _log.warning("%s could not be made: %s", part, error)
-
     def close(self) -> None:
         """Stop serving the parts."""
         self._routes.withdraw(self._stem)
-        self._reported.clear()
         if self._source is not None:
             self._source.close()
         self._source = None

@@ -3,6 +3,10 @@
 One task draws. It sleeps until a picture is requested, draws quick ones for as long as they are
 requested, and the full one once nothing has moved for a moment. Requests are not queued: the next
 picture shows the latest state. Pictures are sent by a remote controlled area (trame-rca).
+
+A graphics card draws everything at full quality at once. A processor takes too long for that, so
+what moves is a draft of fewer pixels and samples, over which the full picture is drawn a tile at a
+time.
 """
 
 from __future__ import annotations
@@ -10,17 +14,21 @@ from __future__ import annotations
 import asyncio
 import io
 import logging
+import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from flowtex._util.array_types import Bytes
 from flowtex.app.server.page import Signal
-from flowtex.app.server.validation import mapping
-from flowtex.app.streaming.painter import ViewPainter, view_pixels
-from flowtex.app.streaming.viewport import Viewport
+from flowtex.app.server.validation import clipped, mapping
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 from flowtex.errors import FieldError
+from flowtex.rendering.diagnostics import opengl_report
 
 #: Seconds to answer a new page before anything is drawn for it.
 ANSWER_S = 0.05
@@ -38,8 +46,83 @@ WATCH_INTERVAL_S = 0.1
 CONGESTION_S = 2.0
 #: JPEG qualities in motion and at rest.
 MOTION_QUALITY, REST_QUALITY = 80, 94
+#: Pixels of a picture, at most: a screen of 2,560 x 1,600.
+MOST_PIXELS = 4_100_000
+#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
+SIDES_PX, PIXEL_RATIOS = (16.0, 8192.0), (0.25, 8.0)
+#: Pixels and samples of a draft, at most: a processor draws it in about a fifteenth of a second.
+#: Its pixels are larger, so its streaks are as long with fewer samples.
+DRAFT_PIXELS, DRAFT_SAMPLES = 80_000, 9
+#: About the side in pixels of a tile, which a processor draws in about a tenth of a second.
+TILE_PX = 224
+#: Grey of the line between two panes.
+LINE_GREY = 128
 
 _log = logging.getLogger(__name__)
+
+
+class ViewPainter:
+    """Draws all panes of a viewport, which may come and go."""
+
+    def __init__(self, viewport: Viewport) -> None:
+        self._viewport = viewport
+        self.slow = opengl_report().software  #: Whether drafts are drawn in motion.
+        self.complete = False  #: Whether the last picture that was drawn is at full quality.
+        self.drafting = False  #: Whether a setting is changed for the moment, for a draft.
+        self._last: list[Bytes] = []
+        self._state = 0
+
+    def forget(self) -> None:
+        """Discard the drawn picture, which no longer shows the present state."""
+        self.complete = False
+        self._state += 1
+
+    def quick(self) -> Bytes:
+        """Return a picture as good as there is time for in motion, (h, w, 3) uint8."""
+        panes = self._viewport.panes
+        self.complete = True
+        self._last = [self._quick(pane, DRAFT_PIXELS / len(panes)) for pane in panes]
+        return self._joined(self._last)
+
+    def _quick(self, pane: Pane, most: float) -> Bytes:
+        (width, height), settings = pane.size, pane.handle.settings
+        scale = min(math.sqrt(most / max(width * height, 1)), 1.0)
+        if not self.slow or (scale == 1.0 and settings.samples <= DRAFT_SAMPLES):
+            return pane.draw(width, height)
+        self.complete = False
+        self.drafting = True
+        chosen, settings.samples = settings.samples, min(DRAFT_SAMPLES, settings.samples)
+        try:
+            return pane.draw(max(round(width * scale), 16), max(round(height * scale), 16))
+        finally:
+            settings.samples = chosen
+            self.drafting = False
+
+    def full(self) -> Generator[Bytes, None, None]:
+        """Draw the full picture over the quick one; yield it after each tile, to cancel there."""
+        state, panes = self._state, list(self._viewport.panes)
+        if len(self._last) != len(panes):
+            self.quick()
+        pairs = zip(self._last, panes, strict=True)
+        canvases = [_resized(last, *pane.size).copy() for last, pane in pairs]
+        for canvas, pane in zip(canvases, panes, strict=True):
+            for left, top, wide, high in _tiles(canvas.shape[1], canvas.shape[0]):
+                tile = pane.draw(wide, high, (left, top, wide, high))
+                canvas[top : top + high, left : left + wide] = tile
+                yield self._joined(canvases)
+        self.complete = state == self._state
+
+    def _joined(self, pictures: list[Bytes]) -> Bytes:
+        """Put pictures side by side, a line between them."""
+        if len(pictures) == 1:
+            return pictures[0]
+        height, width = (max(p.shape[axis] for p in pictures) for axis in (0, 1))
+        gap = max(round(GAP_PX * width / self._viewport.pane_size[0]), 1)
+        joined = np.full((height, len(pictures) * (width + gap) - gap, 3), LINE_GREY, np.uint8)
+        for number, picture in enumerate(pictures):
+            left = number * (width + gap)
+            joined[:, left : left + width] = _resized(picture, width, height)
+        return joined
 
 
 class FrameStream:
@@ -186,19 +269,17 @@ class FrameStream:
     async def _full(self) -> None:
         """Draw the full picture, and give up as soon as something changes."""
         looked = time.perf_counter()
-        canvas: Bytes | None = None
         if self.painter.complete:
-            canvas = self.painter.quick()
-        else:
-            for canvas in self.painter.full():
-                await asyncio.sleep(0)
-                if self._wake.is_set():
-                    return
-                if time.perf_counter() - looked > PARTIAL_INTERVAL_S:
-                    await self._send(canvas, MOTION_QUALITY)
-                    looked = time.perf_counter()
-        if canvas is not None:
-            await self._send(canvas, REST_QUALITY, sharp=True)
+            await self._send(self.painter.quick(), REST_QUALITY, sharp=True)
+            return
+        for canvas in self.painter.full():
+            await asyncio.sleep(0)
+            if self._wake.is_set():
+                return
+            if time.perf_counter() - looked > PARTIAL_INTERVAL_S:
+                await self._send(canvas, MOTION_QUALITY)
+                looked = time.perf_counter()
+        await self._send(canvas, REST_QUALITY, sharp=True)
 
     async def _send(self, pixels: Bytes, quality: int, *, sharp: bool = False) -> None:
         height, width = pixels.shape[:2]
@@ -206,15 +287,10 @@ class FrameStream:
         content = await loop.run_in_executor(None, encode, pixels, quality)
         meta = {"type": "image/jpeg", "codec": "", "w": width, "h": height, "key": "key"}
         meta |= {"st": time.time_ns() // 1_000_000, "quality": quality, "sharp": sharp}
-        await self._uncongested()
-        self.streamer.push_content(self.area_name, meta, content)
-
-    async def _uncongested(self) -> None:
-        """Wait while earlier pictures are still on their way."""
-        end = time.perf_counter() + CONGESTION_S
-        monitor = self.streamer.coreServer.network_monitor
+        end, monitor = time.perf_counter() + CONGESTION_S, self.streamer.coreServer.network_monitor
         while monitor.pending > 1 and time.perf_counter() < end:
             await asyncio.sleep(0.002)
+        self.streamer.push_content(self.area_name, meta, content)
 
 
 def encode(pixels: Bytes, quality: int) -> bytes:
@@ -225,3 +301,41 @@ def encode(pixels: Bytes, quality: int) -> bytes:
     subsampling = 0 if quality >= REST_QUALITY else 2
     Image.fromarray(pixels).save(buffer, "JPEG", quality=quality, subsampling=subsampling)
     return buffer.getvalue()
+
+
+def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
+    """Return the size in pixels of a view of CSS pixels ``w``, ``h`` times ``p``."""
+    ratio = clipped(size.get("p"), 1.0, *PIXEL_RATIOS)
+    width, height = (
+        min(max(clipped(size.get(side), SIDES_PX[0], *SIDES_PX) * ratio, SIDES_PX[0]), SIDES_PX[1])
+        for side in ("w", "h")
+    )
+    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
+    return round(width * shrink), round(height * shrink)
+
+
+def _tiles(width: int, height: int) -> list[Rect]:
+    """Return tiles of about the same size, from the middle of the view outwards."""
+    tiles = [
+        (x, y, right - x, below - y)
+        for y, below in pairwise(_cuts(height))
+        for x, right in pairwise(_cuts(width))
+    ]
+    return sorted(
+        tiles, key=lambda t: math.hypot(2 * t[0] + t[2] - width, 2 * t[1] + t[3] - height)
+    )
+
+
+def _resized(pixels: Bytes, width: int, height: int) -> Bytes:
+    if pixels.shape[:2] == (height, width):
+        return pixels
+    from PIL import Image
+
+    smooth = Image.Resampling.BILINEAR
+    return np.asarray(Image.fromarray(pixels).resize((width, height), smooth))
+
+
+def _cuts(length: int) -> list[int]:
+    """Return the ends of about equal parts, even, as derivatives need 2 x 2 pixels."""
+    count = math.ceil(length / TILE_PX)
+    return [2 * round(length * n / count / 2) for n in range(count)] + [length]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex._util.child import Child, ChildError, prepare
+from flowtex._util.child import FORKS, Child, ChildError, fork_server
 from flowtex._util.notices import Notice, notify
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
@@ -177,4 +177,5 @@ def open_remote(paths: Sequence[Path]) -> RemoteSource:
 
 def prepare_readers() -> None:
     """Load the readers of files in the background, so that the first file opens sooner."""
-    prepare(PRELOAD)
+    if FORKS:
+        fork_server(PRELOAD)

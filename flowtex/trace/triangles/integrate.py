@@ -98,17 +98,13 @@ def integrate(
     )
     # Values too large or too small to represent end a path.
     with np.errstate(all="ignore"):
-        for _ in range(most_steps or _most_steps(points)):
+        usual = STEPS_PER_ROW * int(np.sqrt(len(points)))
+        for _ in range(most_steps or min(max(usual, LEAST_STEPS), MOST_STEPS)):
             if not len(run.state.which):
                 break
             run.advance()
         run.end_all()
     return TrianglePaths(run.triangle, run.shares, run.further, run.ahead, run.reach)
-
-
-def _most_steps(points: Floats) -> int:
-    """Return the number of rounds of steps after which paths are ended."""
-    return int(np.clip(STEPS_PER_ROW * int(np.sqrt(len(points))), LEAST_STEPS, MOST_STEPS))
 
 
 def begin(motion: Motion, nodes: Indices) -> Indices:

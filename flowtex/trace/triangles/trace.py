@@ -126,7 +126,11 @@ def _direct_lags(field: FlowField, parameter: str, lags: Floats, unit: Floats) -
     speed = field.index_velocity.speed[0][field.valid]
     moving = speed[speed > 0]
     pace = float(np.median(moving)) if parameter == "time" and len(moving) else 1.0
-    return direct_lags(lags, pace * float(unit.flat[0]) / small_cell(field))
+    cells = lags * (pace * float(unit.flat[0]) / small_cell(field))
+    direct = max(int(np.searchsorted(cells, DIRECT_CELLS, side="right")), LEAST_DIRECT)
+    # Each has to be twice the one before.
+    doubled = np.allclose(lags[1:], 2 * lags[:-1], rtol=ROUNDING, atol=0)
+    return direct if direct < len(lags) and doubled else len(lags)
 
 
 def triangle_paths(
@@ -140,7 +144,7 @@ def triangle_paths(
     tolerance: float,
 ) -> Paths:
     """Return what :func:`flowtex.trace.paths` does; a path that has ended stays at its end."""
-    surface, mesh = _surface(field), _mesh(field)
+    surface, mesh = cast("TriangleSurface", field.surface), _mesh(field)
     motion = _motions(field, [step], parameter, direction)[0]
     triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
     second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
@@ -160,11 +164,7 @@ def triangle_paths(
 
 
 def _mesh(field: FlowField) -> TriangleMesh:
-    return TriangleMesh.of(_surface(field))
-
-
-def _surface(field: FlowField) -> TriangleSurface:
-    return cast("TriangleSurface", field.surface)
+    return TriangleMesh.of(cast("TriangleSurface", field.surface))
 
 
 def _motions(
@@ -189,14 +189,6 @@ def _rates(field: FlowField, steps: Sequence[int], parameter: str) -> Floats:
             rate, speed[..., None], out=np.zeros_like(rate), where=(speed > floor)[..., None]
         )
     return np.where(field.valid[..., None], rate, 0.0)
-
-
-def direct_lags(lags: Floats, cells: float) -> int:
-    """Return how many of lags (M,) are integrated: all, unless each is twice the one before."""
-    direct = int(np.searchsorted(lags * cells, DIRECT_CELLS, side="right"))
-    direct = max(direct, LEAST_DIRECT)
-    doubled = np.allclose(lags[1:], 2 * lags[:-1], rtol=ROUNDING, atol=0)
-    return direct if direct < len(lags) and doubled else len(lags)
 
 
 class Composition:

@@ -109,7 +109,7 @@ def test_faults_are_told_to_the_log_and_not_to_others(
         msg = "the disk is /secret"
         raise OSError(msg)
 
-    monkeypatch.setattr(ServedStore, "_read", fail)
+    monkeypatch.setattr(ServedStore, "get", fail)
 
     async def ask(client: Client, at: str) -> None:
         for _ in range(3):

@@ -24,7 +24,7 @@ def test_tiles_are_the_same_picture(kind: str, request: pytest.FixtureRequest) -
 
 
 def test_full_picture_replaces_draft(flat: FlowApp, monkeypatch: pytest.MonkeyPatch) -> None:
-    module = "flowtex.app.streaming.painter"
+    module = "flowtex.app.streaming.stream"
     monkeypatch.setattr(f"{module}.DRAFT_PIXELS", 2_000)
     monkeypatch.setattr(f"{module}.TILE_PX", 64)
     painter = flat.stream.painter

@@ -55,19 +55,15 @@ def process_opener(
             child.close()
             if again and str(error) == ENDED:  # the process to fork from has died
                 return await open_session(again=False)
-            raise _opening_error(error) from error
+            if error.kind and error.kind != "FieldError":
+                msg = f"{error.kind}: {error}\n{error.trace}"
+                raise RuntimeError(msg) from error
+            msg = str(error) if error.kind else f"the process of the page {error}"
+            raise FieldError(msg) from error
         opened(about["said"])
         return ProcessSession(child, about)
 
     return open_session
-
-
-def _opening_error(error: ChildError) -> Exception:
-    if error.kind == "FieldError":
-        return FieldError(str(error))
-    if error.kind:
-        return RuntimeError(f"{error.kind}: {error}\n{error.trace}")
-    return FieldError(f"the process of the page {error}")
 
 
 class ProcessSession(Session):
