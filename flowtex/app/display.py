@@ -60,7 +60,11 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     >>> flowtex.show(mesh, scalars="vorticity", cmap="RdBu_r", zoom=3)  # doctest: +SKIP
     """
     if in_notebook():
-        return _show_widget(mesh, size, options)
+        _refuse_vtk(options)
+        from flowtex.widget import FlowWidget
+
+        options |= {} if size is None else {"size": size}
+        return FlowWidget(mesh, **options).show()
     from flowtex.rendering.diagnostics import has_display, prefer_headless, require_opengl
 
     require_pyvista("a window or a page with a server")
@@ -90,15 +94,6 @@ def _refuse_vtk(options: dict[str, Any]) -> None:
                 "flowtex.render, or with plotter.flowtex.add and plotter.show"
             )
             raise FieldError(msg)
-
-
-def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> FlowWidget:
-    _refuse_vtk(options)
-    from flowtex.widget import FlowWidget
-
-    if size is not None:
-        options["size"] = size
-    return FlowWidget(mesh, **options).show()
 
 
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:

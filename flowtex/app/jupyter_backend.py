@@ -22,7 +22,13 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     :class:`flowtex.FlowWidget` that is returned. A warning lists what the browser does not draw.
     """
     if not _is_requested():
-        return _show_otherwise(plotter, screenshot, options)
+        import pyvista as pv
+        from pyvista.jupyter.notebook import show_static_image
+
+        for backend in pv.registered_jupyter_backends():
+            if backend.name != NAME:
+                return backend.handler(plotter, screenshot=screenshot, **options)
+        return show_static_image(plotter, screenshot)
     if screenshot:
         plotter.screenshot(screenshot)
     begin_trial()
@@ -46,14 +52,3 @@ def _is_requested() -> bool:
             named = frame.f_locals["jupyter_backend"]
             return named is not None and str(named).lower() == NAME
     return True
-
-
-def _show_otherwise(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Any:
-    """Show a plotter as PyVista does without this backend."""
-    import pyvista as pv
-    from pyvista.jupyter.notebook import show_static_image
-
-    for backend in pv.registered_jupyter_backends():
-        if backend.name != NAME:
-            return backend.handler(plotter, screenshot=screenshot, **options)
-    return show_static_image(plotter, screenshot)

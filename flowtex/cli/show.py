@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -29,6 +29,7 @@ from flowtex.field.formula import KNOWN
 
 if TYPE_CHECKING:
     from flowtex.app import Library
+    from flowtex.field import FlowField
     from flowtex.sources.mesh_source import FlowSource
 
 #: Initial zoom and focus of examples.
@@ -67,12 +68,14 @@ def demo(
     if serve_processes(page):
         return 0
     from flowtex.app import Library
+    from flowtex.field.formula.make import formula
 
     names = [example, *(name for name in NAMES if name != example)]
     shown = {name.replace("_", " "): name for name in names}
-    typed = {name.replace("_", " "): partial(_known_formula, name) for name in KNOWN}
+    makers = {title: getattr(examples, f"{name}_field") for title, name in shown.items()}
+    makers |= {name.replace("_", " "): partial(formula, name) for name in KNOWN}
     library = Library(
-        {title: partial(_example, name) for title, name in shown.items()} | typed,
+        {title: partial(_source, make) for title, make in makers.items()},
         python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
         looks=FIRST_LOOKS,
         typed=True,
@@ -81,17 +84,10 @@ def demo(
     return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
 
 
-def _example(name: str) -> FlowSource:
+def _source(make: Callable[[], FlowField]) -> FlowSource:
     from flowtex.sources.mesh_source import FlowSource
 
-    return FlowSource(getattr(examples, f"{name}_field")())
-
-
-def _known_formula(name: str) -> FlowSource:
-    from flowtex.field.formula.make import formula
-    from flowtex.sources.mesh_source import FlowSource
-
-    return FlowSource(formula(name))
+    return FlowSource(make())
 
 
 def show(

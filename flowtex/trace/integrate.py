@@ -79,15 +79,17 @@ def integrate(
 
 
 @dataclass
-class _Columns:
-    """Arrays whose last axis is that of the particles; some of them may be None."""
+class Columns:
+    """Base of arrays whose last axis is that of the particles; some of them may be None."""
 
     def joined(self, other: Self) -> Self:
+        """Return these particles and others."""
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
         parts = (None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs)
         return type(self)(*parts)
 
     def pick(self, mask: Bools | Indices) -> Self:
+        """Return some of the particles."""
         # Numbers are several times as fast as a mask where there is more than one row.
         at = np.flatnonzero(mask) if mask.dtype == bool else mask
         parts = vars(self).values()
@@ -95,7 +97,7 @@ class _Columns:
 
 
 @dataclass
-class _Particles(_Columns):
+class _Particles(Columns):
     """Particles still under way; the last axis is theirs."""
 
     which: Indices
@@ -111,7 +113,7 @@ class _Particles(_Columns):
 
 
 @dataclass
-class IntegrationStep(_Columns):
+class IntegrationStep(Columns):
     """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
 
     y0: Floats

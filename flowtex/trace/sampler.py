@@ -73,9 +73,11 @@ class Sampler(ABC):
         self._patches = [Patch(grid, parts)]
         if poles is not None and self.charts is not None:
             self._patches += [cap(pole, grid, parts, self.charts.near) for pole in poles]
-        self._axes: _Axes | None = None
+        #: The metric at the nodes of a sign-free field, by ``METRIC``.
+        self._metric: list[Floats] = []
         if field.sign_free:
-            self._axes = _Axes(field, grid)
+            p = field.surface.tangents
+            self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
             flat, *caps = self._patches
             flat = flat.without_sign(fill_blanked(field.velocity[0], field.valid))
             self._patches = [flat, *(patch.without_sign() for patch in caps)]
@@ -105,10 +107,22 @@ class Sampler(ABC):
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
             result[self._poles.component, turned] *= -1
-        if self._axes is not None and ahead is not None:
-            result *= self._axes.sign(position, result, ahead, chart)
+        if self._metric and ahead is not None:
+            result *= self._sign(position, result, ahead, chart)
             return result
         return np.negative(result, out=result) if direction < 0 else result
+
+    def _sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
+        """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
+        along = one[0] * two[0] + one[1] * two[1]
+        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
+        flat_position, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        at = self.grid.corners(flat_position).at
+        ii, ij, jj = (part[at] for part in self._metric)
+        if self._poles is not None:
+            ij = np.where(self._poles.mirrored(flat_position), -ij, ij)
+        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
+        return np.where(along < 0, -1.0, 1.0)
 
     def room(self, position: Floats) -> AnyArray | int:
         """Return the cells that particles may move at once, for all or (N,)."""
@@ -125,27 +139,6 @@ class Sampler(ABC):
     @abstractmethod
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Return the rate on one chart, forward."""
-
-
-class _Axes:
-    """Choice between the two directions of a sign-free velocity."""
-
-    def __init__(self, field: FlowField, grid: NodeGrid) -> None:
-        p = field.surface.tangents
-        self._grid, self._poles = grid, field.surface.poles
-        self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
-
-    def sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
-        """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
-        along = one[0] * two[0] + one[1] * two[1]
-        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
-        flat_position, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
-        at = self._grid.corners(flat_position).at
-        ii, ij, jj = (part[at] for part in self._metric)
-        if self._poles is not None:
-            ij = np.where(self._poles.mirrored(flat_position), -ij, ij)
-        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
-        return np.where(along < 0, -1.0, 1.0)
 
 
 class LengthSampler(Sampler):

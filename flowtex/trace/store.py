@@ -132,7 +132,12 @@ class SliceStore:
             reach = float(self.lags[-1] * self.unit.max())
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
             first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
-            steps = _thinned_steps(first, last, step, HELD_BYTES // (STEP_BYTES * self.unit.size))
+            # Every n-th of them where they are many.
+            apart = -(
+                -(last - first) // max(HELD_BYTES // (STEP_BYTES * self.unit.size), LEAST_HELD)
+            )
+            some = range(first + (step - first) % apart, last, apart)
+            steps = sorted({first, *some, last - 1})
             part = self.field.at_steps(steps)
             return self._trace_with(part, self.lags, steps=[steps.index(step)])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
@@ -159,13 +164,6 @@ class SliceStore:
         optional = (part for part in (field.has_position, field.triangles) if part is not None)
         choices = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
         return digest(*arrays, *optional, words=(choices, *sorted(options.items())))
-
-
-def _thinned_steps(first: int, last: int, step: int, most: int) -> list[int]:
-    """Return steps from ``first`` to ``last`` with ``step``, every n-th where they are many."""
-    apart = -(-(last - first) // max(most, LEAST_HELD))
-    steps = range(first + (step - first) % apart, last, apart)
-    return sorted({first, *steps, last - 1})
 
 
 _stores: WeakCache[SliceStore] = WeakCache()

@@ -68,8 +68,7 @@ class WebView:
 
     def data(self) -> ClientData:
         """Return the data for the client; makes noise textures, and traces nothing."""
-        scene = self.scene
-        return self._data(scene, scene.pyramid)
+        return self._data(self.scene, self.scene.pyramid)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -100,6 +99,11 @@ class WebView:
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
+        marks = None
+        if not self.field.sign_free:  # found when they are requested
+            is_flat = self.field.surface.frame is not None
+            kinds = (kind for kind in MARK_PARTS.values() if is_flat or kind != "nullclines")
+            marks = Marks(self.scene.structure, tuple(kinds))
         return ClientData(
             textures,
             colours,
@@ -107,7 +111,7 @@ class WebView:
             pyramid,
             traces=True,
             bodies=self._bodies,
-            marks=marks_of(self.scene),
+            marks=marks,
         )
 
     def show(self, field: FlowField) -> None:
@@ -122,15 +126,6 @@ class WebView:
     def close(self) -> None:
         """Stop following the settings."""
         self.scene.close()
-
-
-def marks_of(scene: Scene) -> Marks | None:
-    """Return the critical points and separatrices of a scene, found when they are requested."""
-    if scene.field.sign_free:
-        return None
-    is_flat = scene.field.surface.frame is not None
-    kinds = (kind for kind in MARK_PARTS.values() if is_flat or kind != "nullclines")
-    return Marks(scene.structure, tuple(kinds))
 
 
 def colours_of(

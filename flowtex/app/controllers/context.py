@@ -128,8 +128,14 @@ async def announced(
     context: Context, request: LoadRequest, fail: Callable[[], None]
 ) -> AsyncIterator[None]:
     """Show progress on the page; if opening fails, show the reason and call ``fail``."""
-    announcement = asyncio.create_task(_show_busy(context, request))
     name, problem = shortened(request.name, NAME_LENGTH), ""
+
+    async def show_busy() -> None:
+        await asyncio.sleep(BUSY_DELAY_S)
+        if not request.over:
+            context.state.send(busy=f"Opening {name}")
+
+    announcement = asyncio.create_task(show_busy())
     try:
         yield
     except Stopped:
@@ -146,13 +152,6 @@ async def announced(
     if problem and not request.over:
         context.complain(problem)
         fail()
-
-
-async def _show_busy(context: Context, request: LoadRequest) -> None:
-    """Show the name of the flow being opened, after a short delay."""
-    await asyncio.sleep(BUSY_DELAY_S)
-    if not request.over:
-        context.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")
 
 
 def without_folder(problem: str, name: str) -> str:

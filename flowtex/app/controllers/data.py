@@ -196,7 +196,9 @@ class Data(Controller):
         before = self._current, self._goal
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
-        same |= _are_of_one_formula(flow.field, self._current.field)
+        # Two flows of one formula differ only in the values of parameters.
+        a, b = flow.field.formula, self._current.field.formula
+        same |= a is not None and b is not None and (a.texts, a.ranges) == (b.texts, b.ranges)
         keep = same and _axis(new.plane) == _axis(old.plane)
         # A file that has changed has other values.
         same = same and flow.source.identity == self._current.source.identity
@@ -293,12 +295,6 @@ def about(field: FlowField) -> str:
     if closed:
         words.append(f"periodic along {' and '.join(sorted(closed))}")
     return " · ".join(words)
-
-
-def _are_of_one_formula(first: FlowField, second: FlowField) -> bool:
-    """Return whether two flows differ only in the values of parameters."""
-    a, b = first.formula, second.formula
-    return a is not None and b is not None and (a.texts, a.ranges) == (b.texts, b.ranges)
 
 
 class FileBeside(Controller):

@@ -256,16 +256,17 @@ class MovieJob(Job):
                 pane.handle.settings.update(
                     motion=motion, period=self.frames.seconds, speed=self.frames.speed
                 )
-        fps, count = self.frames.fps, len(self.frames)
-        opening = asyncio.ensure_future(
-            self._in_thread(MovieWriter, self.path, self._size, fps, self._quality)
-        )
+        count, tiled = len(self.frames), self._tiled(viewport)
+        writer = MovieWriter(self.path, self._size, self.frames.fps, self._quality)
         try:
-            writer = await asyncio.shield(opening)
-            tiled = self._tiled(viewport)
             writing: asyncio.Future[None] | None = None
             for number in range(count):
-                await self._show(viewport, number)
+                if viewport.field.steady:
+                    viewport.clock = self.frames.clocks[number]
+                else:
+                    time = self.frames.times[number]
+                    await self._in_thread(viewport.trace, time)
+                    viewport.set_time(time)
                 picture = await self._draw(tiled, 0.95 * number / count, 0.95 / count)
                 if writing is not None:
                     await writing
@@ -279,17 +280,7 @@ class MovieJob(Job):
         finally:
             # In the thread, after its present work.
             self.done = True
-            await asyncio.wait([opening])  # this may be cancelled while the file is being opened
-            if not opening.cancelled() and opening.exception() is None:
-                await asyncio.wrap_future(self._pool.submit(opening.result().abandon))
-
-    async def _show(self, viewport: Viewport, number: int) -> None:
-        if viewport.field.steady:
-            viewport.clock = self.frames.clocks[number]
-            return
-        time = self.frames.times[number]
-        await self._in_thread(viewport.trace, time)
-        viewport.set_time(time)
+            await asyncio.wrap_future(self._pool.submit(writer.abandon))
 
 
 def _moving(settings: Settings, field: FlowField) -> Settings:

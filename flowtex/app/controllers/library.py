@@ -397,6 +397,8 @@ def _free(name: str, taken: Iterable[str]) -> str:
 
 def find_files(folder: Path) -> list[tuple[str, Path]]:
     """Find files below a folder, except those outside of it to which links lead."""
+    from flowtex.sources.meshes.plot3d import find_grid
+
     files: list[tuple[str, Path]] = []
     waiting = [(folder, 0)]
     while waiting and len(files) < MOST_FILES:
@@ -416,7 +418,13 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
                 files.append((path.relative_to(folder).as_posix(), path))
     files = files[:MOST_FILES]
     members = {member for _, path in files for member in members_of(path)}
-    return [(n, path) for n, path in files if path not in members and not _is_solution(path)]
+    # The solution of a PLOT3D pair is opened along with its grid.
+    members.update(
+        path
+        for _, path in files
+        if path.suffix.lower() == ".bin" and find_grid(path) not in (None, path)
+    )
+    return [(name, path) for name, path in files if path not in members]
 
 
 def _reason(path: Path) -> str:
@@ -425,10 +433,3 @@ def _reason(path: Path) -> str:
     if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
         return f"it has no vectors, and {beside.name} does not exist"
     return UNSHOWN.get(path.suffix.lower(), "")
-
-
-def _is_solution(path: Path) -> bool:
-    """Return whether a file is the solution of a PLOT3D pair, opened along with its grid."""
-    from flowtex.sources.meshes import plot3d
-
-    return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

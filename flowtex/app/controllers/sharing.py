@@ -6,7 +6,6 @@ import asyncio
 import logging
 import shutil
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -95,22 +94,19 @@ class Sharing(Controller):
             raise ExportError(msg)
         path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
         try:
-            return self._job_of(kind, path)
+            size = (int(self._number("out_width")), int(self._number("out_height")))
+            options: dict[str, Any] = {
+                "supersampling": 2 if get("out_smooth") else 1,
+                "density": self._number("out_density"),
+                "annotations": bool(get("out_annotations")),
+            }
+            if kind == "PNG":
+                return PictureJob(self.viewport, path, size, **options)
+            options |= {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
+            return MovieJob(self.viewport, path, size, **options)
         except BaseException:
-            _remove_folder(path)
+            shutil.rmtree(path.parent, ignore_errors=True)
             raise
-
-    def _job_of(self, kind: str, path: Path) -> Job:
-        size = (int(self._number("out_width")), int(self._number("out_height")))
-        options: dict[str, Any] = {
-            "supersampling": 2 if self.state.get("out_smooth") else 1,
-            "density": self._number("out_density"),
-            "annotations": bool(self.state.get("out_annotations")),
-        }
-        if kind == "PNG":
-            return PictureJob(self.viewport, path, size, **options)
-        seconds, fps = self._number("out_seconds"), self._number("out_fps")
-        return MovieJob(self.viewport, path, size, seconds=seconds, fps=fps, **options)
 
     def _number(self, name: str) -> float:
         value = self.state.get(name)
@@ -125,7 +121,7 @@ class Sharing(Controller):
             # It was cancelled, and its window is closed before another one is opened.
             await asyncio.wait([before])
         if job.cancelled:
-            _remove_folder(job.path)
+            shutil.rmtree(job.path.parent, ignore_errors=True)
             return
         reporting = asyncio.create_task(self._report_progress(job))
         path: Path | None = None
@@ -143,7 +139,7 @@ class Sharing(Controller):
         finally:
             reporting.cancel()
             if path is None:
-                _remove_folder(job.path)
+                shutil.rmtree(job.path.parent, ignore_errors=True)
             if job is self._job:
                 self._job = None
                 self.state.send(out_progress=None)
@@ -191,9 +187,3 @@ class Sharing(Controller):
         if self._task is not None:
             self._task.cancel()
         self.downloads.close()
-
-
-def _remove_folder(path: Path) -> None:
-    """Remove the folder of a file that was not written."""
-    with suppress(OSError):
-        shutil.rmtree(path.parent)

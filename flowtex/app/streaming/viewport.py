@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -22,7 +22,6 @@ from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
-from flowtex.field.surface import Surface
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
@@ -30,9 +29,6 @@ from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene, follow
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkCamera
 
 #: Colours behind the surface, by theme.
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
@@ -363,7 +359,10 @@ class Viewport:
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             # The drawn mesh has only the triangles of the last part.
-            mesh = _meshes.get("mesh", partial(_whole_mesh, surface), owner=surface)
+            corners: Any = surface.corners_of(surface.drawn)
+            points = surface.points.reshape(-1, 3)
+            make = partial(pv.PolyData.from_regular_faces, points, corners)
+            mesh = _meshes.get("mesh", make, owner=surface)
             hit, _ = mesh.ray_trace(start, start + direction * reach, first_point=True)
             return np.asarray(hit, dtype=float) if len(hit) else None
         normal = np.cross(*surface.frame)
@@ -379,12 +378,6 @@ class Viewport:
 
 
 _meshes: WeakCache[pv.PolyData] = WeakCache()
-
-
-def _whole_mesh(surface: Surface) -> pv.PolyData:
-    """Return the mesh of all drawn triangles of a surface."""
-    triangles: Any = surface.corners_of(surface.drawn)
-    return pv.PolyData.from_regular_faces(surface.points.reshape(-1, 3), triangles)
 
 
 def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
@@ -450,8 +443,15 @@ class OffscreenWindow:
         renderer.SetViewport(0, 0, *np.divide((width, height), self.plotter.window_size))
         renderer.ResetCameraClippingRange()
         saved = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
-        if part is not None:
-            self._narrow(camera, part)
+        if part is not None:  # the camera is narrowed to it
+            (left, top, across, down), (whole_width, whole_height) = part, self.size
+            camera.SetWindowCenter(
+                (2 * left + across - whole_width) / across, (whole_height - 2 * top - down) / down
+            )
+            share = down / whole_height
+            camera.SetParallelScale(saved[1] * share)
+            half = np.radians(saved[2]) / 2
+            camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * share))))
         window.Render()
         camera.SetWindowCenter(*saved[0])
         camera.SetParallelScale(saved[1])
@@ -460,15 +460,3 @@ class OffscreenWindow:
         window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
         rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
         return np.ascontiguousarray(rows[::-1])
-
-    def _narrow(self, camera: vtkCamera, part: Rect) -> None:
-        """Narrow the VTK camera to a part of the view."""
-        left, top, width, height = part
-        whole_width, whole_height = self.size
-        camera.SetWindowCenter(
-            (2 * left + width - whole_width) / width, (whole_height - 2 * top - height) / height
-        )
-        share = height / whole_height
-        camera.SetParallelScale(camera.GetParallelScale() * share)
-        half = np.radians(camera.GetViewAngle()) / 2
-        camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * share))))

@@ -10,9 +10,8 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, wait
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,7 +19,7 @@ import numpy as np
 
 from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
-from flowtex._util.progress import Stopped, check, pool, stoppable
+from flowtex._util.progress import Stopped, pool, stoppable
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -31,29 +30,12 @@ BUDGET_BYTES = 1_000_000_000
 TEXEL_BYTES, NODE_BYTES = 8, 200
 #: Memory of a triangle that has its own vertices.
 TRIANGLE_BYTES = 250
-#: Most tiles that are made at once for one view. All views of a process together make as many, or
-#: one for each core.
+#: Most tiles that are made at once for one view.
 MOST_THREADS = 4
-#: Seconds between checks whether a waiting tile is still requested.
-LOOK_INTERVAL_S = 0.1
 #: Seconds before the last request within which a tile must have been requested, or it is dropped.
 GRACE_S = 2.0
 #: Seconds after which a tile that failed may be requested again.
 RETRY_S = 10.0
-
-
-_turns = threading.BoundedSemaphore(max(os.cpu_count() or 1, MOST_THREADS))
-
-
-@contextmanager
-def _turn() -> Iterator[None]:
-    """Wait for a turn among the tiles of all loaders of this process."""
-    while not _turns.acquire(timeout=LOOK_INTERVAL_S):
-        check()
-    try:
-        yield
-    finally:
-        _turns.release()
 
 
 @dataclass(eq=False)
@@ -192,15 +174,14 @@ class TileLoader:
     def _is_requested(self, key: TileKey) -> bool:
         return self._requests.get(key, -np.inf) > self._latest - GRACE_S
 
-    def _tile(self, key: TileKey, step: int) -> Tile:
-        """Return a tile without layers, with a halo that is wide enough for a destination time."""
-        textures = self.pyramid.tile(key, (step,))
-        return Tile(key, textures, textures and self._prepare(textures))
-
     def _make(self, key: TileKey, step: int) -> None:
+        def begin() -> Tile:
+            textures = self.pyramid.tile(key, (step,))
+            return Tile(key, textures, textures and self._prepare(textures))
+
         try:
-            with stoppable(lambda: not self._is_requested(key)), _turn():
-                tile = self._tiles.get(key, lambda: self._tile(key, step))
+            with stoppable(lambda: not self._is_requested(key)):
+                tile = self._tiles.get(key, begin)
                 tile.layers[step] = tile.make(step)
                 self._tiles.put(key, tile)  # to count its new size
         except Stopped:

@@ -36,7 +36,12 @@ class Structure:
     """Critical points and separatrices of a field. All methods may be called from any thread."""
 
     def __init__(self, field: FlowField) -> None:
-        self._whole, self._field = field, _searched(field)
+        self._whole, self._field = field, field
+        # A large field is coarsened for the search.
+        if field.valid.size > SEARCHED_NODES:
+            has_levels = has_pyramid(field) or field.triangles is not None
+            pyramid = shared_pyramid(field, "arclength", "streamlines") if has_levels else None
+            self._field = pyramid.root if pyramid else coarsened_field(field, SEARCHED_NODES)
         self._lock = threading.Lock()
         self._all: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
@@ -146,12 +151,3 @@ def check_structure(field: FlowField, settings: Settings) -> None:
         if name == "nullclines" and field.surface.frame is None:
             msg = "nullclines is True; expected False: the surface is curved and has no x and y"
             raise SettingsError(msg)
-
-
-def _searched(field: FlowField) -> FlowField:
-    """Return the field to search, coarsened if it is large."""
-    if field.valid.size <= SEARCHED_NODES:
-        return field
-    if has_pyramid(field) or field.triangles is not None:
-        return shared_pyramid(field, "arclength", "streamlines").root
-    return coarsened_field(field, SEARCHED_NODES)

@@ -14,13 +14,12 @@ its reach, and beyond it the path goes straight on in space.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.trace.integrate import MOST_STEPS
+from flowtex.trace.integrate import MOST_STEPS, Columns
 from flowtex.trace.triangles.motion import (
     AFTER,
     BEHIND,
@@ -141,7 +140,7 @@ def _three(two: Floats) -> Floats:
 
 
 @dataclass
-class _Particles:
+class _Particles(Columns):
     """Particles still under way; the last axis is theirs."""
 
     which: Indices
@@ -154,10 +153,6 @@ class _Particles:
     lag: Floats
     due: Floats  #: The next lag to record.
     last: Floats
-
-    def pick(self, mask: Bools | Indices) -> Self:
-        at = np.flatnonzero(mask) if mask.dtype == bool else mask
-        return type(self)(*(getattr(self, f.name).take(at, axis=-1) for f in fields(self)))
 
 
 class _Run:

@@ -9,16 +9,16 @@ velocity is linear, so the shares change by a linear law too, whatever the shape
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.integrate import Columns
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
 #: Triangles whose geometry is computed at once.
@@ -144,7 +144,7 @@ AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in 
 
 
 @dataclass
-class Derivatives:
+class Derivatives(Columns):
     """Motion of particles at one moment, each in time and length units of its triangle."""
 
     first: Floats  #: Derivatives of the second and third share by time, (2, N).
@@ -157,12 +157,6 @@ class Derivatives:
     pace: Floats
     rest: Floats  #: Square of the speed up to which a particle stands still, (N,).
     until: Floats | None = None  #: Lag at which the law becomes another, (N,), or ``None``.
-
-    def pick(self, mask: Bools) -> Derivatives:
-        """Return the derivatives of some particles."""
-        arrays: Iterator[Any] = (getattr(self, part.name) for part in fields(self))
-        picked: Iterator[Any] = (None if a is None else a[..., mask] for a in arrays)
-        return Derivatives(*picked)
 
     def put(self, at: Indices, values: Derivatives) -> None:
         """Write the derivatives of some particles (n,) in place."""

@@ -56,7 +56,7 @@ NO_NAMES = [
 
 def test_no_name_leads_elsewhere(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     served = ServedStore(store)
-    monkeypatch.setattr(served, "_read", None)  # nothing is looked for
+    monkeypatch.setattr(served, "_reads", None)  # nothing is looked for
     for name in NO_NAMES:
         with pytest.raises(LookupError):
             asyncio.run(served.get(name))

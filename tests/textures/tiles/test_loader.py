@@ -146,22 +146,3 @@ def test_what_is_asked_for_now_comes_before_what_was(monkeypatch: pytest.MonkeyP
     loader.wait()
     assert [key for key, _ in source.began] == [KEYS[0], *KEYS[6:], *KEYS[1:4]]
     loader.close()
-
-
-@pytest.mark.threads
-def test_all_loaders_together_make_so_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.loader._turns", threading.BoundedSemaphore(2))
-    sources: list[Any] = [Source() for _ in range(4)]
-    loaders = [TileLoader(source) for source in sources]
-    for loader in loaders:
-        loader.request(KEYS[:2], [0])
-    wait_until(lambda: Source.now == 2)
-    Source.most = 2
-    loaders[0].close()  # what waits for its turn is given up
-    for source in sources:
-        source.go.set()
-    for loader in loaders[1:]:
-        loader.wait()
-        assert all(loader.get(key, [0]) for key in KEYS[:2])
-        loader.close()
-    assert Source.most == 2

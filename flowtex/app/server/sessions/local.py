@@ -125,7 +125,13 @@ def opener(make_app: MakeApp, secret: str) -> OpenSession:
         except BaseException:
             AVAILABLE_SERVERS.pop(server.name, None)
             raise
-        return await LocalSession.open(app, secret)
+        session = LocalSession(app)
+        try:
+            await session.start(secret)
+        except BaseException:
+            await session.end()
+            raise
+        return session
 
     return open_session
 
@@ -139,18 +145,8 @@ class LocalSession(Session):
         self._endpoint: Any = None
         self._task: asyncio.Task[None] | None = None
 
-    @classmethod
-    async def open(cls, app: Any, secret: str) -> LocalSession:
-        """Start the trame server of an application."""
-        session = cls(app)
-        try:
-            await session._start(secret)
-        except BaseException:
-            await session.end()
-            raise
-        return session
-
-    async def _start(self, secret: str) -> None:
+    async def start(self, secret: str) -> None:
+        """Start the trame server of the application."""
         server = self.app.server
         web_servers: list[Any] = []
         self.app.stream.watched = lambda: self.connected
@@ -204,25 +200,22 @@ class LocalSession(Session):
 
     async def end(self) -> None:
         """Close the connection and the application, and forget the trame server."""
-        Routes.of(self.app.server).close()
+        server = self.app.server
+        Routes.of(server).close()
         await self.disconnect()
         try:
             self.app.close()
         finally:
-            await self._stop()
-
-    async def _stop(self) -> None:
-        server = self.app.server
-        await server.stop()
-        if self._task is not None:
-            await self._task
-        AVAILABLE_SERVERS.pop(server.name, None)
-        # Both libraries keep a reference to the server that they used last.
-        if CoreServer.server is server:
-            CoreServer.server = None
-            wslink.server.ws_server = None
-        if getattr(HTML_CTX, "_server", None) is server:
-            HTML_CTX._server = None
+            await server.stop()
+            if self._task is not None:
+                await self._task
+            AVAILABLE_SERVERS.pop(server.name, None)
+            # Both libraries keep a reference to the server that they used last.
+            if CoreServer.server is server:
+                CoreServer.server = None
+                wslink.server.ws_server = None
+            if getattr(HTML_CTX, "_server", None) is server:
+                HTML_CTX._server = None
 
 
 @contextmanager

@@ -194,7 +194,11 @@ class Sessions:
         async with self._opening:
             if self._closed:
                 raise ClosedError
-            await self._make_room()
+            if len(self) >= self.limit:
+                oldest = max(self._by_token, key=lambda other: self._by_token[other].away)
+                if self._by_token[oldest].away < REPLACE_AFTER_S:
+                    raise FullError
+                await self.end(oldest)
             session = await self._begin()
             session.expect()
             return session
@@ -214,14 +218,6 @@ class Sessions:
         self._by_token.pop(session.token, None)
         if self._ready is session:
             self._ready = None
-
-    async def _make_room(self) -> None:
-        if len(self) < self.limit:
-            return
-        token = max(self._by_token, key=lambda token: self._by_token[token].away)
-        if self._by_token[token].away < REPLACE_AFTER_S:
-            raise FullError
-        await self.end(token)
 
     async def end(self, token: str) -> None:
         """End the session of a token, and free its memory."""
