@@ -137,16 +137,6 @@ def check_page_file(output: Path) -> None:
     checked_target(output)
 
 
-def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
-    """Raise an error if the movie could not be written, before anything is drawn."""
-    from flowtex.plotting.offscreen.encoders import check_movie, default_fps
-
-    try:
-        check_movie(output, size, default_fps(output) if fps is None else fps, quality)
-    except ModuleNotFoundError as error:
-        raise UsageError(str(error)) from error
-
-
 def drawing(*groups: object) -> dict[str, Any]:
     """Return the drawing options of flags; raise an error if they conflict."""
     values = arguments(*groups)

@@ -16,7 +16,6 @@ from flowtex._util.whole_file import whole_file
 from flowtex._util.written import UnreadableError, numbers
 from flowtex.cli.console import (
     check_lines,
-    check_movie_file,
     check_page_file,
     check_picture_file,
     describe,
@@ -128,10 +127,14 @@ def movie(
     """Write a file as a movie: a seamless loop, or all times of a time-varying flow."""
     start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
-    check_movie_file(output, options["size"], fps, quality)
-    check_lines(choice, options)
+    from flowtex.plotting.offscreen.encoders import check_movie, default_fps
     from flowtex.rendering import diagnostics
 
+    try:
+        check_movie(output, options["size"], default_fps(output) if fps is None else fps, quality)
+    except ModuleNotFoundError as error:
+        raise UsageError(str(error)) from error
+    check_lines(choice, options)
     diagnostics.begin_trial()
     field = load_field(files, choice)
     diagnostics.require_opengl()

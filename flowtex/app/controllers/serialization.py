@@ -41,7 +41,7 @@ from flowtex.app.controllers.context import State
 from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.rendering.camera import Camera, CameraValues
+from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Appearance as Look
 from flowtex.scene.signatures import option_form
 from flowtex.settings import TABLE, SettingsError
@@ -215,10 +215,16 @@ def to_python(
         lines += [f"pl.subplot(0, {column})"] if len(panes) > 1 else []
         lines += _add_lines(state, different)
     lines += ["pl.link_views()", "pl.subplot(0, 0)"] if len(panes) > 1 else []
-    lines += [
-        f"pl.set_background({_literal(_background(state))})",
-        *_camera_lines(state.get("camera")),
-    ]
+    background = str(state.get("background", DEFAULTS["background"]))
+    if background == DEFAULTS["background"]:
+        background = THEMES[str(state.get("theme", DEFAULTS["theme"]))]
+    lines.append(f"pl.set_background({_literal(background)})")
+    if camera := state.get("camera"):
+        lines.append(f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}")
+        for name in ("position", "focal_point", "up", "parallel_scale", "view_angle"):
+            value = camera[name]
+            plain = float(value) if isinstance(value, (int, float)) else tuple(map(float, value))
+            lines.append(f"pl.camera.{name} = {plain!r}")
     lines.append("pl.show()" if picture is None else f"pl.screenshot({_literal(picture)})")
     return "\n".join(lines) + "\n"
 
@@ -278,20 +284,3 @@ def _add_lines(state: State, different: State) -> list[str]:
     instants = [(name, state.get(name)) for name in ("time", "clock")]
     changes = [(n, v) for n, v in instants if v is not None and v != DEFAULTS.get(n)]
     return lines + [f"handle.{name} = {value!r}" for name, value in changes]
-
-
-def _background(state: State) -> str:
-    background = str(state.get("background", DEFAULTS["background"]))
-    theme = str(state.get("theme", DEFAULTS["theme"]))
-    return THEMES[theme] if background == DEFAULTS["background"] else background
-
-
-def _camera_lines(camera: CameraValues | None) -> list[str]:
-    if not camera:
-        return []
-    lines = [f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}"]
-    for name in ("position", "focal_point", "up", "parallel_scale", "view_angle"):
-        value = camera[name]
-        plain = float(value) if isinstance(value, (int, float)) else tuple(map(float, value))
-        lines.append(f"pl.camera.{name} = {plain!r}")
-    return lines

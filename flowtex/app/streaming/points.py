@@ -168,6 +168,11 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
     _, order = np.unique(-lags, return_index=True)
     sampled = np.concatenate([path[inside], found.points])[order]
     weights = found.weights / found.weights.max()
+    # Greys, or the colours of a picture over white.
+    rgb = np.repeat(found.greys[:, None], 3, axis=1)
+    if found.noise.ndim == 2:
+        rgb = found.noise[:, :3] + 1.0 - found.noise[:, 3:]
+    whole = np.rint(255 * np.clip(rgb, 0, 1)).astype(int)
     return {
         "point": values_of(found.field_values, index),
         "path": {
@@ -177,9 +182,9 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
             "velocity": _in_surface(found, field).tolist(),
         },
         "samples": [
-            {"position": position, "weight": weight, "colour": colour}
-            for position, weight, colour in zip(
-                found.points.tolist(), weights.tolist(), colours_of(found), strict=True
+            {"position": position, "weight": weight, "colour": f"#{r:02x}{g:02x}{b:02x}"}
+            for position, weight, (r, g, b) in zip(
+                found.points.tolist(), weights.tolist(), whole.tolist(), strict=True
             )
         ],
         "words": [list(line) for line in words_of(found)],
@@ -198,22 +203,21 @@ def _in_surface(found: Probe, field: FlowField) -> Floats:
     return velocity
 
 
-def colours_of(found: Probe) -> list[str]:
-    """Return the colours of the samples: greys, or those of a picture over white."""
-    rgb = np.repeat(found.greys[:, None], 3, axis=1)
-    if found.noise.ndim == 2:
-        rgb = found.noise[:, :3] + 1.0 - found.noise[:, 3:]
-    whole = np.rint(255 * np.clip(rgb, 0, 1)).astype(int)
-    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in whole.tolist()]
-
-
 def words_of(found: Probe) -> list[tuple[str, str]]:
     """Return labels and values that describe the samples."""
     length = found.field_values.length_unit
     unit = length if found.parameter == "arclength" else found.field_values.time_unit
     pixels = f"{number_text(found.grain / found.pixel, 3)} pixels"
+    count, reasons = len(found.lags), []
+    if found.asked > found.setting + 1:
+        reasons.append(f"{found.setting} are set; motion doubles them")
+    elif found.asked > found.setting:
+        reasons.append(f"{found.setting} are set, plus one for the point itself")
+    if count < found.asked:
+        reasons.append("the path ends")
+    samples = f"{count} of {found.asked}" if count < found.asked else f"{count}"
     lines = [
-        ("samples", _samples(found)),
+        ("samples", f"{samples}: {'; '.join(reasons)}" if reasons else samples),
         ("level of detail", f"{found.level:.2f}"),
         ("grain", f"{with_unit(found.grain, length)}, {pixels}"),
         ("step", with_unit(found.step, unit)),
@@ -224,17 +228,3 @@ def words_of(found: Probe) -> list[tuple[str, str]]:
         return lines
     mean = float(found.weights @ found.noise)
     return [*lines, ("value", f"{mean:+.2f} × {found.gain:.2f} = {found.value:+.2f}")]
-
-
-def _samples(found: Probe) -> str:
-    """Return the number of samples, and why it differs from the setting."""
-    count = len(found.lags)
-    reasons = []
-    if found.asked > found.setting + 1:
-        reasons.append(f"{found.setting} are set; motion doubles them")
-    elif found.asked > found.setting:
-        reasons.append(f"{found.setting} are set, plus one for the point itself")
-    if count < found.asked:
-        reasons.append("the path ends")
-    text = f"{count} of {found.asked}" if count < found.asked else f"{count}"
-    return f"{text}: {'; '.join(reasons)}" if reasons else text

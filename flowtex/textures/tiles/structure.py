@@ -70,7 +70,8 @@ class Structure:
                 field, points = self._field.at_step(step), self._all_points(step)
                 lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
                 _keep(self._lines, step, (saddles, lines))
-            kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
+            ordered = CriticalPoints({id(line.saddle): line.saddle for line in lines}.values())
+            kept = {id(saddle) for saddle in ordered.strongest(saddles)}
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 
     def orbits(self, step: int) -> list[ClosedOrbit]:
@@ -115,12 +116,6 @@ class Structure:
         count = self._lines.get(step, (0, None))[0]
         has_lines = saddles <= count and (not saddles or step in self._orbits)
         return (not points or step in self._points) and has_lines
-
-
-def _saddles(lines: Separatrices) -> CriticalPoints:
-    """Return the saddles of lines, each once, the strongest first."""
-    saddles = {id(line.saddle): line.saddle for line in lines}
-    return CriticalPoints(list(saddles.values())).strongest(len(saddles))
 
 
 def _keep(steps: OrderedDict[int, T], step: int, structure: T) -> None:

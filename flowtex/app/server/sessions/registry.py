@@ -107,13 +107,6 @@ class Session(ABC):
             self._left = time.monotonic()
         return socket
 
-    async def is_free(self) -> bool:
-        """Wait a little for the page to disconnect, and return whether it has."""
-        end = time.monotonic() + RECONNECT_WAIT_S
-        while self.connected and time.monotonic() < end:
-            await asyncio.sleep(0.02)
-        return not self.connected
-
     async def disconnect(self) -> None:
         """Close the connection."""
         for socket in list(self._sockets):
@@ -184,9 +177,13 @@ class Sessions:
         its own session.
         """
         session = self._by_token.get(token or "")
-        if session is not None and await session.is_free() and session.token in self._by_token:
-            session.expect()
-            return session
+        if session is not None:
+            end = time.monotonic() + RECONNECT_WAIT_S
+            while session.connected and time.monotonic() < end:
+                await asyncio.sleep(0.02)
+            if not session.connected and session.token in self._by_token:
+                session.expect()
+                return session
         if self._ready is not None:
             session, self._ready = self._ready, None
             session.expect()
