@@ -381,7 +381,7 @@ class FileBeside(Controller):
         """Return the file, and the part of it that is shown."""
         if not self.name:
             return {"beside_file": self._goal} if self._goal else {}
-        handle = self.viewport.panes[1].handle
+        handle = self.viewport.panes[1]
         beside: dict[str, Any] = {**asdict(self._choice), "time": None}
         if not handle.field.steady:
             beside["time"] = handle.time

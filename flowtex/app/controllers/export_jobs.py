@@ -72,7 +72,7 @@ class TiledPicture:
         self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
         viewport.window.longest_side = TILE_PX
         for pane in viewport.panes:
-            pane.handle.density = density * supersampling
+            pane.density = density * supersampling
         self._rows = slice(0, size[1])  # those with a flow
         if annotations:
             layouts = self.annotate(np.zeros((size[1], size[0], 3), np.uint8))
@@ -96,7 +96,7 @@ class TiledPicture:
             for top, left in product(range(0, height, side), range(0, pane_width, side)):
                 across, down = min(side, pane_width - left), min(side, height - top)
                 part = (times * left, times * top, times * across, times * down)
-                pixels = pane.draw(part[2], part[3], part)
+                pixels = self._viewport.draw(part[2], part[3], part, pane=pane)
                 place = slice(top, top + down), slice(first + left, first + left + across)
                 rows[place] = averaged(pixels, times)
                 done += across * down
@@ -106,7 +106,7 @@ class TiledPicture:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
         viewport, count, layouts = self._viewport, len(self._viewport.panes), []
         for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
-            scene = pane.handle.scene
+            scene = pane.scene
             values = dict(scene.settings)
             written = annotate(
                 view,
@@ -253,7 +253,7 @@ class MovieJob(Job):
         if viewport.field.steady:
             motion = _moving(viewport.handle.settings, viewport.field).motion
             for pane in viewport.panes:
-                pane.handle.settings.update(
+                pane.settings.update(
                     motion=motion, period=self.frames.seconds, speed=self.frames.speed
                 )
         count, tiled = len(self.frames), self._tiled(viewport)

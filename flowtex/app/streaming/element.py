@@ -24,8 +24,9 @@ from flowtex.app.server.files import Content, Give, Routes
 from flowtex.app.server.page import PageState, Signal, running_loop, start_task
 from flowtex.app.server.validation import mapping, name_among, number
 from flowtex.app.streaming.stream import FrameStream
-from flowtex.app.streaming.viewport import Pane, Viewport
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
+from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
@@ -69,9 +70,9 @@ class HandedScene:
         self._source: TileSource | None = None
         self._generation, self._stem, self._address = 0, "", ""
 
-    def update(self, pane: Pane, background: object) -> None:
+    def update(self, pane: FlowHandle, background: object) -> None:
         """Replace the scene by that of a pane, or by the same in other colours."""
-        data = WebView(pane.handle.scene, background=background).data()
+        data = WebView(pane.scene, background=background).data()
         colours = replace(data.colours, bar=True)  # VTK draws none into its pictures
         source = self._source
         if source is not None and source.scene.textures is data.textures:
@@ -84,14 +85,11 @@ class HandedScene:
         self._stem = f"parts-{next(_numbers)}"
         self._address = self._routes.give_each(self._stem, lambda name: self._give(source, name))
 
-    def message(self, pane: Pane, **values: object) -> Header:
+    def message(self, pane: FlowHandle, **values: object) -> Header:
         """Return the header, with further values of the pane, and the address of the parts."""
         header: Header = {}
         if self._source is not None:
-            handle = pane.handle
-            header = self._source.scene.header(
-                handle.settings, time=handle.time, clock=handle.clock
-            )
+            header = self._source.scene.header(pane.settings, time=pane.time, clock=pane.clock)
         return {
             "header": {**header, "generation": self._generation, **values},
             "parts": self._address,
@@ -347,9 +345,9 @@ class Element:
             scene.close()
 
 
-def _appearance(pane: Pane) -> tuple[object, ...]:
+def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     """Return the values of a pane that determine its textures, its colours and its texts."""
-    scene = pane.handle.scene
+    scene = pane.scene
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
     baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
@@ -393,8 +391,8 @@ class Player:
         self._viewport.set_still(still=not playing)
         if playing and self._viewport.field.steady:
             for pane in self._viewport.panes:
-                if pane.handle.settings.motion == "off":
-                    pane.handle.settings.motion = "speed"
+                if pane.settings.motion == "off":
+                    pane.settings.motion = "speed"
         self.playing_changed.emit()
         self._stream.moved()
 

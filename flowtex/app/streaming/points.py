@@ -14,9 +14,10 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.app.server.validation import mapping, number
-from flowtex.app.streaming.viewport import Pane, Viewport
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
 from flowtex.field.locate import CURVED_TOLERANCE, FLAT_TOLERANCE
+from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import SPEED
 from flowtex.scene.probe import PointValues, Probe, locate, probe, values_at
@@ -70,11 +71,11 @@ class PointReader:
         if index is None:
             return None
         if not request.get("path"):
-            point = values_of(values_at(shown.handle.field, index, shown.handle.time), index)
+            point = values_of(values_at(shown.field, index, shown.time), index)
             return {"point": point | self._mark(shown, point["position"])}
         # Two panes of one flow show its path in both, as the first one draws it.
         first = shown if "field" in self._viewport.differences else panes[0]
-        scene, clock = first.handle.scene.copy(), self._viewport.clock
+        scene, clock = first.scene.copy(), self._viewport.clock
         camera, size = self._viewport.camera, self._viewport.pane_size
 
         def work() -> Probe | None:
@@ -87,13 +88,13 @@ class PointReader:
         if probed is None:
             return None
         alone = "field" in self._viewport.differences
-        read = path_of(probed, index, first.handle.field)
+        read = path_of(probed, index, first.field)
         read["point"] |= self._mark(first, read["point"]["position"])
         return {**read, "alone": alone}
 
-    def _mark(self, pane: Pane, position: Sequence[float]) -> dict[str, str]:
+    def _mark(self, pane: FlowHandle, position: Sequence[float]) -> dict[str, str]:
         """Return the kind of the critical point that is marked near a position, if any."""
-        scene = pane.handle.scene
+        scene = pane.scene
         if not (count := scene.settings.critical_points):
             return {}
         height = 2 * self._viewport.camera.height
@@ -107,14 +108,14 @@ class PointReader:
 
     def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
         """Return the place (j, i) on the surface."""
-        pane: Pane = self._viewport.panes[pane_number]
-        field = pane.handle.field
+        pane = self._viewport.panes[pane_number]
+        field = pane.field
         place = _numbers(request.get("place"), 2)
         if place is not None:
             x, y = (min(max(v, -1.0), 1.0) for v in place)
             point = self._viewport.surface_point(x, y, pane_number)
             # Points on a flat surface are exact, so its border is as drawn.
-            flat = pane.handle.scene.whole.surface.frame is not None
+            flat = pane.scene.whole.surface.frame is not None
             tolerance = FLAT_TOLERANCE if flat else CURVED_TOLERANCE
             return None if point is None else locate(field, point, tolerance=tolerance)
         if field.triangles is not None:

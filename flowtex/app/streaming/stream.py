@@ -26,8 +26,9 @@ import numpy as np
 from flowtex._util.array_types import Bytes
 from flowtex.app.server.page import Signal
 from flowtex.app.server.validation import clipped, mapping
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.app.streaming.viewport import GAP_PX, Rect, Viewport
 from flowtex.errors import FieldError
+from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.diagnostics import opengl_report
 
 #: Seconds to answer a new page before anything is drawn for it.
@@ -84,16 +85,17 @@ class ViewPainter:
         self._last = [self._quick(pane, DRAFT_PIXELS / len(panes)) for pane in panes]
         return self._joined(self._last)
 
-    def _quick(self, pane: Pane, most: float) -> Bytes:
-        (width, height), settings = pane.size, pane.handle.settings
+    def _quick(self, pane: FlowHandle, most: float) -> Bytes:
+        (width, height), settings = self._viewport.pane_size, pane.settings
         scale = min(math.sqrt(most / max(width * height, 1)), 1.0)
         if not self.slow or (scale == 1.0 and settings.samples <= DRAFT_SAMPLES):
-            return pane.draw(width, height)
+            return self._viewport.draw(width, height, pane=pane)
         self.complete = False
         self.drafting = True
         chosen, settings.samples = settings.samples, min(DRAFT_SAMPLES, settings.samples)
         try:
-            return pane.draw(max(round(width * scale), 16), max(round(height * scale), 16))
+            width, height = (max(round(side * scale), 16) for side in (width, height))
+            return self._viewport.draw(width, height, pane=pane)
         finally:
             settings.samples = chosen
             self.drafting = False
@@ -103,11 +105,10 @@ class ViewPainter:
         state, panes = self._state, list(self._viewport.panes)
         if len(self._last) != len(panes):
             self.quick()
-        pairs = zip(self._last, panes, strict=True)
-        canvases = [_resized(last, *pane.size).copy() for last, pane in pairs]
+        canvases = [_resized(last, *self._viewport.pane_size).copy() for last in self._last]
         for canvas, pane in zip(canvases, panes, strict=True):
             for left, top, wide, high in _tiles(canvas.shape[1], canvas.shape[0]):
-                tile = pane.draw(wide, high, (left, top, wide, high))
+                tile = self._viewport.draw(wide, high, (left, top, wide, high), pane=pane)
                 canvas[top : top + high, left : left + wide] = tile
                 yield self._joined(canvases)
         self.complete = state == self._state

@@ -39,27 +39,6 @@ Rect = tuple[int, int, int, int]
 LONGEST_SIDE_PX = 1 << 15
 
 
-class Pane:
-    """One of the views side by side: a texture with its own settings."""
-
-    def __init__(self, handle: FlowHandle, viewport: Viewport) -> None:
-        self.handle = handle
-        self._viewport = viewport
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of a whole picture, in pixels."""
-        return self._viewport.pane_size
-
-    def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
-        """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
-        for other in self._viewport.panes:
-            other.handle.actor.SetVisibility(other is self and other.handle.visible)
-        whole = self._viewport.window.size[1]
-        self.handle.draw_for(whole if part is None else part[3], whole)
-        return self._viewport.window.draw(width, height, part)
-
-
 class Viewport:
     """A flow texture, its camera, and pictures; options are those of ``plotter.flowtex.add``."""
 
@@ -84,9 +63,9 @@ class Viewport:
         self._stop_following: Callable[[], None] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
-        #: The views side by side, one or two.
         self._still = True
-        self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
+        #: The textures of the views side by side, one or two.
+        self.panes: list[FlowHandle] = [self._pane(Scene.from_options(field, first))]
         # Only draw() renders: a texture requests a picture at each change.
         self.window.plotter.suppress_rendering = True
         self.resize(*self._size)
@@ -100,7 +79,7 @@ class Viewport:
     @property
     def handle(self) -> FlowHandle:
         """The texture of the first pane."""
-        return self.panes[0].handle
+        return self.panes[0]
 
     @property
     def settings(self) -> Settings:
@@ -138,30 +117,30 @@ class Viewport:
         """Scene of the first pane, whose appearance all panes share."""
         return self.handle.scene
 
-    def _pane(self, scene: Scene) -> Pane:
+    def _pane(self, scene: Scene) -> FlowHandle:
         """Add a pane."""
         handle = self._component.add_scene(scene, reset_camera=False)
         handle.still = self._still
         if self._tile_ready is not None:
             handle.load_in_background(self._tile_ready)
-        return Pane(handle, self)
+        return handle
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
         """Draw with the tiles that are ready, as :meth:`FlowHandle.load_in_background` does."""
         self._tile_ready = notify
         for pane in self.panes:
-            pane.handle.load_in_background(notify)
+            pane.load_in_background(notify)
 
     @property
     def busy(self) -> bool:
         """Whether tiles of a large surface are still being made."""
-        return any(pane.handle.busy for pane in self.panes)
+        return any(pane.busy for pane in self.panes)
 
     def close(self) -> None:
         """Free the graphics card."""
         self._stop_following()
         for pane in self.panes:
-            pane.handle.remove(render=False)
+            pane.remove(render=False)
         self.window.plotter.close()
 
     def copy(self) -> Viewport:
@@ -190,7 +169,7 @@ class Viewport:
         scenes: list[Scene] = []
         try:
             for pane, flow in zip(self.panes, flows, strict=False):
-                scene = pane.handle.scene
+                scene = pane.scene
                 scenes.append(_fitting(scene, partial(scene.showing, flow), changes))
                 _ = scenes[-1].textures  # tracing may fail
         except BaseException:
@@ -198,7 +177,7 @@ class Viewport:
                 scene.close()
             raise
         for pane, scene in zip(self.panes, scenes, strict=True):
-            pane.handle.show_scene(scene)
+            pane.show_scene(scene)
         same = keep_range and np.array_equal(times, field.times)
         self.set_time(time if same else float(field.times[0]))
         self.home()
@@ -217,10 +196,10 @@ class Viewport:
         self._stop_following()
         self._stop_following = lambda: None
         for pane in self.panes[1:]:
-            pane.handle.remove(render=False)
+            pane.remove(render=False)
         self.panes, self._beside = panes, changes
         if len(panes) > 1:
-            left, right = (pane.handle for pane in panes)
+            left, right = panes
             self._stop_following = follow(lambda: left.scene, lambda: right.scene, self._beside)
             self.clock = self.handle.clock
         self.resize(*self._size)
@@ -239,13 +218,13 @@ class Viewport:
         """Let the grains of a field that varies stand still, as while no time goes by."""
         self._still = still
         for pane in self.panes:
-            pane.handle.still = still
+            pane.still = still
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""
         self.handle.time = time
         for pane in self.panes[1:]:
-            pane.handle.time = self.time_beside
+            pane.time = self.time_beside
 
     @property
     def time_beside(self) -> float:
@@ -270,7 +249,7 @@ class Viewport:
     @property
     def reads_late(self) -> bool:
         """Whether a flow has lazy steps, whose reading may take long."""
-        return any(isinstance(p.handle.scene.field.velocity, LazySteps) for p in self.panes)
+        return any(isinstance(p.scene.field.velocity, LazySteps) for p in self.panes)
 
     def trace(self, time: float | None = None) -> None:
         """Read and trace the steps for a time, by default the one shown, in any thread.
@@ -280,7 +259,7 @@ class Viewport:
         """
         time = self.handle.time if time is None else time
         for pane in self.panes:
-            scene = pane.handle.scene
+            scene = pane.scene
             times, name = scene.field.times, scene.appearance.scalar_name
             before, after, _ = steps_around(times, float(np.clip(time, times[0], times[-1])))
             for step in {before, after}:
@@ -297,7 +276,7 @@ class Viewport:
     @clock.setter
     def clock(self, seconds: float) -> None:
         for pane in self.panes:
-            pane.handle.clock = seconds
+            pane.clock = seconds
 
     # --- camera ------------------------------------------------------------------------------
 
@@ -354,8 +333,7 @@ class Viewport:
         A flat surface has a point everywhere in its plane.
         """
         start, direction = self.camera.ray(x, y, self.aspect)
-        handle = self.panes[pane].handle
-        surface = handle.scene.whole.surface
+        surface = self.panes[pane].scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             # The drawn mesh has only the triangles of the last part.
@@ -372,9 +350,16 @@ class Viewport:
         distance = float((surface.center - start) @ normal) / slope
         return start + distance * direction if distance > 0 else None
 
-    def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
-        """Draw the first pane; :meth:`OffscreenWindow.draw` has the parameters."""
-        return self.panes[0].draw(width, height, part)
+    def draw(
+        self, width: int, height: int, part: Rect | None = None, *, pane: FlowHandle | None = None
+    ) -> Bytes:
+        """Draw a pane, by default the first; :meth:`OffscreenWindow.draw` has the parameters."""
+        pane = pane or self.handle
+        for other in self.panes:
+            other.actor.SetVisibility(other is pane and other.visible)
+        whole = self.window.size[1]
+        pane.draw_for(whole if part is None else part[3], whole)
+        return self.window.draw(width, height, part)
 
 
 _meshes: WeakCache[pv.PolyData] = WeakCache()

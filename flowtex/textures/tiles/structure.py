@@ -70,7 +70,9 @@ class Structure:
                 field, points = self._field.at_step(step), self._all_points(step)
                 lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
                 _keep(self._lines, step, (saddles, lines))
-            ordered = CriticalPoints({id(line.saddle): line.saddle for line in lines}.values())
+            ordered = CriticalPoints(
+                list({id(line.saddle): line.saddle for line in lines}.values())
+            )
             kept = {id(saddle) for saddle in ordered.strongest(saddles)}
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("opengl")
 def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat: FlowApp) -> None:
     flat.state.set(compare="Colour by: height")
     flat.controllers.appearance.take_comparison()
-    first, second = (pane.handle.scene for pane in flat.viewport.panes)
+    first, second = (pane.scene for pane in flat.viewport.panes)
     assert (first.scalar_name, second.scalar_name) == ("speed", "height")
     flat.area.clim, flat.area.cmap = (0.0, 1.0), "magma"
     assert second.appearance.cmap == "magma" and second.scalar_limits == (0.0, 3.0)
@@ -30,11 +30,11 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     now = viewport.handle.time
     series.state.set(compare="Another time")
     appearance.take_comparison()
-    assert [pane.handle.time for pane in viewport.panes] == [now, 0.0]
+    assert [pane.time for pane in viewport.panes] == [now, 0.0]
     series.state.set(time_beside=1.5)
     appearance.take_time_beside()
     viewport.set_time(2.0)
-    assert [pane.handle.time for pane in viewport.panes] == [2.0, 1.5]
+    assert [pane.time for pane in viewport.panes] == [2.0, 1.5]
     assert appearance.describe()["time_beside"] == 1.5
     series.state.set(time_beside="late")
     appearance.take_time_beside()
@@ -83,7 +83,7 @@ def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
 def test_a_second_pane_has_the_colours_of_the_first(flat: FlowApp) -> None:
     flat.viewport.compare({"lod": False})
     flat.area.cmap = "magma"
-    assert flat.viewport.panes[1].handle.cmap == "magma"
+    assert flat.viewport.panes[1].cmap == "magma"
     flat.viewport.compare(None)
     flat.area.cmap = "viridis"
 

@@ -61,7 +61,7 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         assert FILE in app.state.get("comparisons")
         app.area.cmap, app.area.settings.contrast = "magma", 2.0
         await beside(app)
-        first, second = (pane.handle for pane in app.viewport.panes)
+        first, second = app.viewport.panes
         assert (app.state.get("file_beside"), second.field.shape) == ("two", (14, 20))
         assert second.settings.contrast == 2.0 and second.cmap == "magma"
         assert second.scene.scalar_limits == pytest.approx((3, 6))
@@ -86,7 +86,7 @@ async def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
     async with playing(app):
         await beside(app)
         app.area.element.take_colours({"log_scale": True})
-        first, second = (pane.handle for pane in app.viewport.panes)
+        first, second = app.viewport.panes
         assert first.log_scale is True and second.log_scale is False
         assert app.state.get("problem") == ""
 
@@ -104,7 +104,7 @@ async def test_the_time_is_that_of_the_first_or_the_last() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
     async with playing(app):
         await beside(app)
-        second = app.viewport.panes[1].handle
+        second = app.viewport.panes[1]
         app.area.element.take_time(0.25)
         assert second.time == 0.25
         app.area.element.take_time(3.0)
@@ -124,7 +124,7 @@ async def test_dates_are_those_of_the_first() -> None:
     app = page(one=early, two=late)
     async with playing(app):
         await beside(app)
-        second = app.viewport.panes[1].handle
+        second = app.viewport.panes[1]
         app.area.element.take_time(2.5 * 86400)
         assert second.time == 0.5 * 86400
         app.area.element.take_time(86400.0)
@@ -149,7 +149,7 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
     app = page(tmp_path)
 
     def height() -> float:
-        return float(app.viewport.panes[1].handle.field.points[0, 0, 2])
+        return float(app.viewport.panes[1].field.points[0, 0, 2])
 
     async with playing(app):
         shown = app.controllers.beside
@@ -207,7 +207,7 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
         held.set()
         await until(lambda: app.controllers.beside.name)
         assert app.controllers.beside.name == "three"
-        assert len(app.viewport.panes[1].handle.field.times) == 3
+        assert len(app.viewport.panes[1].field.times) == 3
         app.state.send(file_beside="two")
         app.state.send(compare="nothing")
         opening = app.controllers.beside._opening

@@ -211,7 +211,7 @@ def test_the_python_lines_draw_the_same_picture(
         "camera": scene.camera.to_dict(),
         "settings": dict(scene.handle.settings),
     }
-    drawn = np.hstack([pane.draw(160, 120) for pane in scene.panes]).astype(int)
+    drawn = np.hstack([scene.draw(160, 120, pane=pane) for pane in scene.panes]).astype(int)
     scene.close()
     lines = to_python(from_link(to_link(state)), size=(count * 160, 120), picture="same.png")
     # The scalar bar is what a window has and a page draws by itself.

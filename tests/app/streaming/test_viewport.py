@@ -28,7 +28,7 @@ def on_triangles() -> FlowField:
 
 
 def state(view: Viewport) -> tuple[Any, ...]:
-    scenes = [pane.handle.scene for pane in view.panes]
+    scenes = [pane.scene for pane in view.panes]
     drawn = sorted(view.window.plotter.renderer.actors)
     return view.panes[:], scenes, dict(view.differences), view.camera, view.clock, drawn
 
@@ -46,13 +46,13 @@ def test_a_flow_that_is_refused_leaves_the_comparison(act: str) -> None:
             view.compare({"field": on_triangles()} if act == "compare" else {"time": "noon"})
     assert state(view) == before
     view.settings.samples = 7  # the second one follows still
-    assert [pane.handle.settings.samples for pane in view.panes] == [7, 7]
+    assert [pane.settings.samples for pane in view.panes] == [7, 7]
     view.show(on_grid(name="another"), keep_view=True)
-    assert [pane.handle.field.name for pane in view.panes] == ["another"] * 2
-    assert [pane.handle.clock for pane in view.panes] == [0.5] * 2
-    assert view.panes[1].handle.settings.contrast == 0.0
+    assert [pane.field.name for pane in view.panes] == ["another"] * 2
+    assert [pane.clock for pane in view.panes] == [0.5] * 2
+    assert view.panes[1].settings.contrast == 0.0
     view.settings.samples = 5
-    assert view.panes[1].handle.settings.samples == 5
+    assert view.panes[1].settings.samples == 5
     view.compare(None)
     assert len(view.panes) == 1
     view.close()
