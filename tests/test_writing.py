@@ -28,7 +28,7 @@ OF_MODULES = {"os.open", "os.replace", "shutil.copy", "shutil.move"}
 
 #: What these write is a file of the piece, ...
 WHOLE = {
-    "app/controllers/export_jobs.py: Image.fromarray(picture).save",
+    "app/controllers/sharing.py: Image.fromarray(picture).save",
     "cli/write.py: Image.fromarray(picture).save",
     "plotting/offscreen/encoders.py: av.open",
     "plotting/offscreen/encoders.py: next(pictures).save",

@@ -15,8 +15,7 @@ from flowtex.field import FieldError
 from flowtex.pyramid import build, open_store
 from flowtex.pyramid.checks import sealed
 from flowtex.scene.options import Options
-from flowtex.web.export import export, page_text
-from flowtex.web.linked import StoreLink
+from flowtex.web.export import StoreLink, export, page_text
 from flowtex.web.view import web_views
 
 pytest.importorskip("zarr")

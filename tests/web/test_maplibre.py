@@ -445,7 +445,7 @@ def test_colours_are_those_of_pictures_that_come_later(shown: Shown) -> None:
 def test_a_page_with_a_map_is_written_whole(
     browser: Browser, server: RangeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.web.linked.MAPLIBRE", "./maplibre")
+    monkeypatch.setattr("flowtex.web.export.MAPLIBRE", "./maplibre")
     page, own = server.folder / "own.html", str(server.folder / "flow.zarr")
     made = flowtex.export(own, page, store="./flow.zarr", basemap=STYLE, title="<Eddies>", **LOOK)
     assert made.nbytes == page.stat().st_size

@@ -1,22 +1,54 @@
-"""Exports of a page: pictures, movies, a link to the state, and lines of Python."""
+"""Exports of a page: pictures, movies, a link to the state, and lines of Python.
+
+A job draws a copy of the viewport a tile at a time, and lets the event loop continue between two
+tiles. Tracing and writing files is done in a thread::
+
+    job = PictureJob(viewport, path, (8000, 6000))
+    task = asyncio.create_task(job.run())  # job.progress, job.cancel()
+    await task  # the path, or Stopped
+
+After a job that was cancelled or that failed there is no file.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from flowtex._util.progress import Stopped
+import numpy as np
+
+from flowtex._util.array_types import Bytes
+from flowtex._util.colours import rgb
+from flowtex._util.progress import Stopped, check, stoppable
+from flowtex._util.whole_file import whole_file
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data, FileBeside
-from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number
+from flowtex.app.streaming.stream import LINE_GREY, TILE_PX
+from flowtex.app.streaming.viewport import GAP_PX, Viewport
 from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.plotting.offscreen.encoders import (
+    DEFAULT_QUALITY,
+    MovieError,
+    MovieWriter,
+    check_movie,
+    default_fps,
+)
+from flowtex.plotting.offscreen.movie import frame_times
+from flowtex.scene.annotations import Layout, annotate
+from flowtex.settings import Settings, named_values
+from flowtex.textures.images import averaged
+
+T = TypeVar("T")
 
 #: Formats of files to save.
 FORMATS = ("PNG", "MP4", "GIF")
@@ -30,6 +62,11 @@ LABELS = {
     "out_seconds": "the length in seconds",
     "out_fps": "the pictures per second",
 }
+
+#: Pixels of a picture, and of a movie, and its longest side, at most.
+MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
+#: Pixels that may be drawn, along a side, for one of the result, and how fine a picture may be.
+MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
 
 _log = logging.getLogger(__name__)
 
@@ -187,3 +224,262 @@ class Sharing(Controller):
         if self._task is not None:
             self._task.cancel()
         self.downloads.close()
+
+
+class ExportError(FieldError):
+    """A picture or a movie cannot be made; the text gives the reason and the remedy."""
+
+
+class TiledPicture:
+    """Draws pictures of any size, a tile at a time through a window as large as a tile.
+
+    The arguments are those of a :class:`Job`.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        size: tuple[int, int],
+        density: float,
+        supersampling: int,
+        *,
+        annotations: bool = False,
+    ) -> None:
+        self.size, self._viewport, self._supersampling = size, viewport, supersampling
+        self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
+        viewport.window.longest_side = TILE_PX
+        for pane in viewport.panes:
+            pane.density = density * supersampling
+        self._rows = slice(0, size[1])  # those with a flow
+        if annotations:
+            layouts = self.annotate(np.zeros((size[1], size[0], 3), np.uint8))
+            above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+            self._rows = slice(above, size[1] - below)
+
+    def draw(self) -> Iterator[tuple[Bytes, float]]:
+        """Yield the picture so far, always the same array, and its share, after each tile."""
+        width, height = self.size[0], self._rows.stop - self._rows.start
+        ground = np.rint(255 * np.array(rgb(self._viewport.background)))
+        canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
+        rows = canvas[self._rows]
+        rows[:] = LINE_GREY
+        panes, times = self._viewport.panes, self._supersampling
+        wide = (width - (len(panes) - 1) * self._gap) // len(panes)
+        done, side = 0, TILE_PX // times
+        for n, pane in enumerate(panes):
+            first = n * (wide + self._gap)
+            pane_width = wide if n < len(panes) - 1 else width - first
+            self._viewport.window.size = pane_width * times, height * times
+            for top, left in product(range(0, height, side), range(0, pane_width, side)):
+                across, down = min(side, pane_width - left), min(side, height - top)
+                part = (times * left, times * top, times * across, times * down)
+                pixels = self._viewport.draw(part[2], part[3], part, pane=pane)
+                place = slice(top, top + down), slice(first + left, first + left + across)
+                rows[place] = averaged(pixels, times)
+                done += across * down
+                yield canvas, done / (width * height)
+
+    def annotate(self, picture: Bytes) -> list[Layout]:
+        """Write legend, scale bar, time and name on each view of a picture, in place."""
+        viewport, count, layouts = self._viewport, len(self._viewport.panes), []
+        for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
+            scene = pane.scene
+            values = dict(scene.settings)
+            written = annotate(
+                view,
+                scene,
+                viewport.camera,
+                flow_height=self._rows.stop - self._rows.start,
+                background=viewport.background,
+                label=named_values({n: values[n] for n in viewport.differences if n in values}),
+                legend=scene.settings.noise != "image",
+            )
+            layouts.append(written)
+        return layouts
+
+
+class Job:
+    """Base of exports, which draw and write while a page continues, without changing its view.
+
+    ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
+    and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
+    many pixels, for high-resolution screens and print. Raises an ExportError or a MovieError for
+    invalid arguments.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        path: Path,
+        size: tuple[int, int],
+        *,
+        supersampling: int = 1,
+        density: float = 1.0,
+        annotations: bool = False,
+    ) -> None:
+        _check(size, supersampling, density)
+        #: The file, how much is done, 0 to 1, and whether it has ended, in whatever way.
+        self.path, self.progress, self.done = Path(path), 0.0, False
+        self._viewport, self._size = viewport, size
+        self._supersampling, self._density = supersampling, density
+        self._annotations = annotations
+        self.cancelled = False  #: Whether it was cancelled before it was done.
+        self._pool = ThreadPoolExecutor(1, "flowtex-export")
+
+    def cancel(self) -> None:
+        """Cancel the job; :meth:`run` ends with ``Stopped`` and no file is left."""
+        self.cancelled = not self.done
+
+    async def run(self) -> Path:
+        """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
+        viewport = self._viewport.copy()
+        try:
+            await self._make(viewport)
+        finally:
+            self.done = True
+            viewport.close()
+            self._pool.shutdown(wait=False)
+        self.progress = 1.0
+        return self.path
+
+    async def _make(self, viewport: Viewport) -> None:
+        raise NotImplementedError
+
+    def _tiled(self, viewport: Viewport) -> TiledPicture:
+        options = (self._size, self._density, self._supersampling)
+        return TiledPicture(viewport, *options, annotations=self._annotations)
+
+    async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
+        """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
+        picture: Bytes | None = None
+        for canvas, drawn in tiled.draw():
+            picture, self.progress = canvas, before + share * drawn
+            # Other tasks of the event loop have their turn.
+            await asyncio.sleep(0)
+            if self.cancelled:
+                raise Stopped
+        if picture is None:
+            msg = "the size is empty; expected at least one pixel"
+            raise ExportError(msg)
+        if self._annotations:
+            tiled.annotate(picture)
+        return picture
+
+    async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Call a function in the job's thread, where tracing can be stopped."""
+
+        def stopping() -> T:
+            with stoppable(lambda: self.cancelled or self.done):
+                return work(*arguments)
+
+        return await asyncio.get_running_loop().run_in_executor(self._pool, stopping)
+
+
+class PictureJob(Job):
+    """A picture as PNG, of any size: :class:`Job` has the parameters."""
+
+    async def _make(self, viewport: Viewport) -> None:
+        await self._in_thread(viewport.trace)
+        picture = await self._draw(self._tiled(viewport), 0.0, 0.9)
+        await self._in_thread(self._write, picture)
+
+    def _write(self, picture: Bytes) -> None:
+        from PIL import Image
+
+        with whole_file(self.path) as file:
+            Image.fromarray(picture).save(file, "PNG")
+            check()
+
+
+class MovieJob(Job):
+    """A movie: a seamless loop of a steady flow, or all times of one that varies.
+
+    The suffix of the file is the format; an MP4 gets even sides. Seconds, fps and quality are those
+    of :func:`flowtex.movie`, further options those of :class:`Job`.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        path: Path,
+        size: tuple[int, int],
+        *,
+        seconds: float | None = None,
+        fps: float | None = None,
+        quality: int = DEFAULT_QUALITY,
+        **options: Any,
+    ) -> None:
+        if Path(path).suffix.lower() == ".mp4":
+            size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
+        super().__init__(viewport, path, size, **options)
+        if size[0] * size[1] > MOST_MOVIE_PIXELS:
+            label = f"the movie would be {size[0]} x {size[1]}"
+            msg = f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
+            raise MovieError(msg)
+        fps = default_fps(path) if fps is None else fps
+        check_movie(path, size, fps, quality)
+        self._quality = quality
+        settings = _moving(viewport.handle.settings, viewport.field)
+        self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
+        #: Why the movie hardly moves; empty where it does.
+        pixel = viewport.handle.pixel * viewport.size[1] / size[1]
+        self.notice = self.frames.notice(settings, pixel * self._density)
+
+    async def _make(self, viewport: Viewport) -> None:
+        viewport.set_still(still=False)
+        if viewport.field.steady:
+            motion = _moving(viewport.handle.settings, viewport.field).motion
+            for pane in viewport.panes:
+                pane.settings.update(
+                    motion=motion, period=self.frames.seconds, speed=self.frames.speed
+                )
+        count, tiled = len(self.frames), self._tiled(viewport)
+        writer = MovieWriter(self.path, self._size, self.frames.fps, self._quality)
+        try:
+            writing: asyncio.Future[None] | None = None
+            for n in range(count):
+                if viewport.field.steady:
+                    viewport.clock = self.frames.clocks[n]
+                else:
+                    time = self.frames.times[n]
+                    await self._in_thread(viewport.trace, time)
+                    viewport.set_time(time)
+                picture = await self._draw(tiled, 0.95 * n / count, 0.95 / count)
+                if writing is not None:
+                    await writing
+                # The next frame is drawn while this one is writing.
+                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
+                # Its error is read even if an error ends the drawing.
+                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
+            if writing is not None:
+                await writing
+            await self._in_thread(writer.finish, lambda: self.cancelled)
+        finally:
+            # In the thread, after its present work.
+            self.done = True
+            await asyncio.wrap_future(self._pool.submit(writer.abandon))
+
+
+def _moving(settings: Settings, field: FlowField) -> Settings:
+    """Return settings with which a steady flow streams."""
+    moving = settings.copy()
+    if field.steady and moving.motion == "off":
+        moving.motion = "speed"
+    return moving
+
+
+def _check(size: tuple[int, int], supersampling: int, density: float) -> None:
+    width, height = size
+    label = f"the picture would be {width} x {height}"
+    msg = ""
+    if not (1 <= width <= LONGEST_SIDE_PX and 1 <= height <= LONGEST_SIDE_PX):
+        msg = f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side"
+    elif width * height > MOST_PIXELS:
+        msg = f"{label}; expected at most {MOST_PIXELS:,} pixels: choose a smaller size"
+    elif supersampling not in range(1, MOST_SUPERSAMPLING + 1):
+        msg = f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}"
+    elif not 1 / MOST_DENSITY <= density <= MOST_DENSITY:
+        span = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
+        msg = f"density is {density!r}; expected {span}"
+    if msg:
+        raise ExportError(msg)

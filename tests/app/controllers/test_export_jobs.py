@@ -18,7 +18,7 @@ from waiting import wait_until
 import flowtex
 from flowtex import FieldError
 from flowtex._util.progress import Stopped
-from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.controllers.sharing import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.plotting.offscreen.encoders import MovieError
 
@@ -92,7 +92,7 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
 def test_a_saved_picture_is_that_of_a_script(
     tmp_path: Path, times: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.app.controllers.export_jobs.TILE_PX", 160)
+    monkeypatch.setattr("flowtex.app.controllers.sharing.TILE_PX", 160)
     field = flowtex.examples.double_gyre_field(shape=(21, 41))
     marked: dict[str, Any] = {"samples": 5, "critical_points": True, "separatrices": True}
     view = Viewport(field, **marked)

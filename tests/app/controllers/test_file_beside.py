@@ -19,9 +19,9 @@ from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, Library
-from flowtex.app.controllers.export_jobs import PictureJob
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.serialization import from_link, to_link
+from flowtex.app.controllers.sharing import PictureJob
 from flowtex.sources.mesh_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
