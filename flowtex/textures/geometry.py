@@ -209,9 +209,14 @@ class DrawnSurface:
         return None
 
     @property
+    def drawn(self) -> tuple[slice, slice | Indices]:
+        """Index of the nodes that are drawn in arrays over those of the field, (J, I)."""
+        raise NotImplementedError
+
+    @property
     def points(self) -> Floats:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
-        raise NotImplementedError
+        return self.field.surface.points[self.drawn]
 
     def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
         """Return values at the vertices of a mesh, (V, ...), from drawn ones, (J, I, ...)."""
@@ -331,11 +336,6 @@ class SurfaceGeometry(DrawnSurface):
     def size(self) -> tuple[int, int]:
         """Rows and columns (H, W) of texels."""
         return self.rows.size, self.columns.size
-
-    @property
-    def points(self) -> Floats:
-        """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
-        return self.field.surface.points[self.drawn]
 
     @property
     def surface(self) -> GridSurface:

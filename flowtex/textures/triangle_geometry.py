@@ -78,15 +78,7 @@ class TriangleGeometry(DrawnSurface):
         """Index of the nodes that are drawn in arrays over those of the field, (1, N)."""
         return slice(0, 1), self.nodes
 
-    @property
-    def texels(self) -> tuple[slice, slice | Indices]:
-        """The nodes of the field that lie in the textures: those that are drawn."""
-        return self.drawn
-
-    @property
-    def points(self) -> Floats:
-        """The nodes that are drawn, (1, n, 3), in the mesh's own coordinates."""
-        return self.field.surface.points[self.drawn]
+    texels = drawn  #: The nodes of the field that lie in the textures: those that are drawn.
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -286,27 +286,22 @@ def contents_of(
 
 def page_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a page piece by piece."""
-    before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(contents)
-    yield string.Template(before).substitute(values)
-    for n, info, text in contents.parts:
-        part = html.escape(json.dumps(info))
-        yield f'<script type="text/plain" data-view="{n}" data-part="{part}">{text}</script>\n'
-    yield string.Template(after).substitute(values)
+    parts = (
+        f'<script type="text/plain" data-view="{n}" data-part="{html.escape(json.dumps(info))}">'
+        f"{text}</script>\n"
+        for n, info, text in contents.parts
+    )
+    yield from _filled("page.html", parts, _values(contents))
 
 
 def module_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a module piece by piece."""
-    before, after = asset("scene.mjs").read_text("utf-8").split("$parts\n")
     values = {
         "script": client_script(with_store=contents.link is not None),
         "headers": _headers_text(contents.headers),
         "store": "" if contents.link is None else ", flowtexStore.open",
     }
-    yield string.Template(before).substitute(values)
-    for packed in contents.parts:
-        yield json_text(packed) + ",\n"
-    yield string.Template(after).substitute(values)
+    yield from _filled("scene.mjs", (json_text(part) + ",\n" for part in contents.parts), values)
 
 
 def scene_pieces(contents: Contents) -> Iterator[str]:
@@ -319,7 +314,6 @@ def scene_pieces(contents: Contents) -> Iterator[str]:
 
 def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Iterator[str]:
     """Yield the text of the page of a web map in pieces."""
-    before, after = asset("map.html").read_text("utf-8").split("$scene\n")
     layer = asset("maplibre.js").read_text("utf-8")
     values = {
         "version": __version__,
@@ -328,8 +322,14 @@ def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Itera
         "script": layer.replace("</script", r"<\/script").replace("<!--", r"<\!--"),
         "style": json.dumps(basemap, allow_nan=False).replace("<", r"\u003c"),
     }
+    yield from _filled("map.html", scene_pieces(contents), values)
+
+
+def _filled(name: str, parts: Iterator[str], values: Mapping[str, str]) -> Iterator[str]:
+    """Yield the text of a template with these parts, where it has a line for them."""
+    before, after = re.split(r"\$(?:parts|scene)\n", asset(name).read_text("utf-8"))
     yield string.Template(before).substitute(values)
-    yield from scene_pieces(contents)
+    yield from parts
     yield string.Template(after).substitute(values)
 
 

@@ -197,10 +197,6 @@ class Downloads:
         self._routes = routes
         self._files: dict[str, Path] = {}
 
-    def __len__(self) -> int:
-        """Count the files that can be fetched."""
-        return len(self._files)
-
     def reserve(self, name: str) -> Path:
         """Return the path of a new file of this name, in its own folder."""
         return self._folder.new_folder() / plain_name(name)

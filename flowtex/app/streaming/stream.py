@@ -16,7 +16,7 @@ import io
 import logging
 import math
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
@@ -157,7 +157,14 @@ class FrameStream:
         del origin
         if self._closed:
             return
-        new = view_pixels(mapping(size))
+        sides, (least, most) = mapping(size), SIDES_PX
+        ratio = clipped(sides.get("p"), 1.0, *PIXEL_RATIOS)
+        width, height = (
+            min(max(clipped(sides.get(side), least, least, most) * ratio, least), most)
+            for side in ("w", "h")
+        )
+        shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
+        new = round(width * shrink), round(height * shrink)
         if new != self._viewport.size:
             at_home = self.fits and self._viewport.at_home
             self._viewport.resize(*new)
@@ -302,17 +309,6 @@ def encode(pixels: Bytes, quality: int) -> bytes:
     subsampling = 0 if quality >= REST_QUALITY else 2
     Image.fromarray(pixels).save(buffer, "JPEG", quality=quality, subsampling=subsampling)
     return buffer.getvalue()
-
-
-def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
-    """Return the size in pixels of a view of CSS pixels ``w``, ``h`` times ``p``."""
-    ratio = clipped(size.get("p"), 1.0, *PIXEL_RATIOS)
-    width, height = (
-        min(max(clipped(size.get(side), SIDES_PX[0], *SIDES_PX) * ratio, SIDES_PX[0]), SIDES_PX[1])
-        for side in ("w", "h")
-    )
-    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
-    return round(width * shrink), round(height * shrink)
 
 
 def _tiles(width: int, height: int) -> list[Rect]:

@@ -57,7 +57,8 @@ class Viewport:
         self.window = OffscreenWindow(640, 400)
         #: The colour behind the surface.
         self.background: Any = self.window.plotter.background_color
-        self._size = self.window.size
+        #: Width and height of the whole view, in pixels.
+        self.size = self.window.size
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], None] = lambda: None
@@ -68,7 +69,7 @@ class Viewport:
         self.panes: list[FlowHandle] = [self._pane(Scene.from_options(field, first))]
         # Only draw() renders: a texture requests a picture at each change.
         self.window.plotter.suppress_rendering = True
-        self.resize(*self._size)
+        self.resize(*self.size)
         self.home(zoom=zoom, focus=focus)
 
     @property
@@ -97,14 +98,9 @@ class Viewport:
         return self.handle.scene.whole.surface.frame is not None
 
     @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of the whole view, in pixels."""
-        return self._size
-
-    @property
     def pane_size(self) -> tuple[int, int]:
         """Width and height of one pane, in pixels."""
-        width, height = self._size
+        width, height = self.size
         return (width if len(self.panes) == 1 else max((width - GAP_PX) // 2, 1)), height
 
     @property
@@ -202,7 +198,7 @@ class Viewport:
             left, right = panes
             self._stop_following = follow(lambda: left.scene, lambda: right.scene, self._beside)
             self.clock = self.handle.clock
-        self.resize(*self._size)
+        self.resize(*self.size)
 
     # --- colours -----------------------------------------------------------------------------
 
@@ -297,7 +293,7 @@ class Viewport:
 
     def resize(self, width: int, height: int) -> None:
         """Change the size of the whole view."""
-        self._size = (width, height)
+        self.size = (width, height)
         self.window.size = self.pane_size
 
     def home(self, **look: Any) -> None:
