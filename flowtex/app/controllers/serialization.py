@@ -151,13 +151,8 @@ def _name(text: str) -> str:
     return text
 
 
-def _comparison(text: str) -> str:
-    if text.startswith(COLOUR_BY):
-        return _name(text)
-    return str(_one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE).read(text))
-
-
 NAME = Form(read=_name)
+_SPLIT = _one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE)
 #: How each name is read and written, in the order of a link.
 _FORMS: dict[str, Form] = {
     "file": NAME,
@@ -171,7 +166,7 @@ _FORMS: dict[str, Form] = {
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),
-    "split": Form(read=_comparison),
+    "split": Form(read=lambda text: (NAME if text.startswith(COLOUR_BY) else _SPLIT).read(text)),
     "time_beside": NUMBER,
     "beside_file": NAME,
     "camera": Form(

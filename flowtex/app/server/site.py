@@ -59,12 +59,6 @@ IDLE_MINUTES = 15.0
 #: Most bytes of a request of the door.
 REQUEST_BYTES = 4096
 WRONG = "This page opens only with the complete address that flowtex printed, including the secret."
-FULL = (
-    "The limit is {pages} at a time, and all are in use. One becomes free soon after somebody "
-    "closes a page."
-)
-ENDS = "The server is shutting down. Start it again to open this page."
-BROKEN = "The page could not be opened: {error}"
 MALFORMED = "This request is not valid for this page."
 _log = logging.getLogger(__name__)
 #: Records of one place in the code that are written in a window, and its seconds.
@@ -170,11 +164,16 @@ class Site:
         except FullError:
             count = self.sessions.limit
             pages = "one page" if count == 1 else f"{count} pages"
-            return _answer(503, words=FULL.format(pages=pages))
+            words = (
+                f"The limit is {pages} at a time, and all are in use. One becomes free soon after "
+                "somebody closes a page."
+            )
+            return _answer(503, words=words)
         except ClosedError:
-            return _answer(503, words=ENDS)
+            words = "The server is shutting down. Start it again to open this page."
+            return _answer(503, words=words)
         except (FieldError, OSError) as error:
-            return _answer(500, words=BROKEN.format(error=error))
+            return _answer(500, words=f"The page could not be opened: {error}")
         except Exception:
             _log.exception("a page could not be opened")
             return _answer(500, words=FAULT)

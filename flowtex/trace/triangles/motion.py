@@ -205,7 +205,11 @@ class SteadyMotion(Motion):
         self.table = _table(self.mesh, flow.components[0, 0], speed)
         #: Rates at which particles approach a line in each triangle, and move along it, (2, T);
         #: equal ones mean no line.
-        self.pulls = _pulls(direction * self.table[:, 2:6].T)
+        law = direction * self.table[:, 2:6].T
+        middle = (law[0] + law[3]) / 2
+        apart = np.sqrt(np.maximum(middle**2 - law[0] * law[3] + law[1] * law[2], 0.0))
+        near, along = middle - apart, middle + apart  # eigenvalues
+        self.pulls = np.where(-near > STIFF * np.abs(along), [near, along], 0.0)
         self._has_line = self.pulls[0] != self.pulls[1]
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
@@ -236,14 +240,6 @@ class SteadyMotion(Motion):
         on = dot(metric[:, at], off, off) < (OFF_LINE * near) ** 2
         at, slow, along = at[on], slow[:, on], along[on]
         first[:, at], second[:, at], third[:, at] = slow, along * slow, along**2 * slow
-
-
-def _pulls(law: Floats) -> Floats:
-    """Return eigenvalues (2, T) of laws (4, T), the negative first, if it is far greater."""
-    middle = (law[0] + law[3]) / 2
-    apart = np.sqrt(np.maximum(middle**2 - law[0] * law[3] + law[1] * law[2], 0.0))
-    near, along = middle - apart, middle + apart
-    return np.where(-near > STIFF * np.abs(along), [near, along], 0.0)
 
 
 def speed_floor(speed: Floats) -> float:
