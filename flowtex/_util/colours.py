@@ -100,20 +100,14 @@ def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = Fal
     (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError, which suggests similar
     names.
     """
-    table = _table(cmap, count or ENTRIES)
-    return table[::-1].copy() if flip else table
-
-
-def _table(cmap: Any | None, count: int) -> Bytes:
-    if isinstance(cmap, np.ndarray):
-        return _resampled(cmap, count)
-    values = getattr(cmap, "values", None)
-    if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
-        return _resampled(np.asarray(values), count)
-    name = cmap or DEFAULT_CMAP
-    if isinstance(name, str) and name in CMAPS:  # each tile needs it
-        return _cached_table(name, count).copy()
-    return _named_table(name, count)
+    values = cmap if isinstance(cmap, np.ndarray) else getattr(cmap, "values", None)
+    if isinstance(values, np.ndarray):  # also that of a LookupTable of PyVista's
+        table = _resampled(np.asarray(values), count or ENTRIES)
+    else:
+        name = cmap or DEFAULT_CMAP
+        is_usual = isinstance(name, str) and name in CMAPS  # each tile needs it
+        table = (_cached_table if is_usual else _named_table)(name, count or ENTRIES)
+    return (table[::-1] if flip else table).copy()
 
 
 def colour_map(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Any:
@@ -162,15 +156,6 @@ def is_diverging(cmap: Any) -> bool:
     return name.rpartition(".")[2].removesuffix("_r") in DIVERGING
 
 
-def colour_shares(values: AnyArray, low: float, high: float, *, log_scale: bool = False) -> Floats:
-    """Return places of values on the colour map, from 0 to 1; NaN stays."""
-    numbers = np.asarray(values, dtype=float)
-    if log_scale:
-        numbers = np.log(np.maximum(numbers, low))
-        low, high = np.log([low, high])
-    return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))
-
-
 def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
     """Return the ends of a legend: one that is 0 up to rounding is 0."""
     least = 0.0 if log_scale else ZERO_SHARE * max(abs(low), abs(high))
@@ -209,9 +194,12 @@ class ColourScale:
 
     def places(self, values: Any) -> Floats:
         """Return the places of values on a bar, from 0 to 1; NaN stays."""
-        if self.edges is None:
-            return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
-        return np.asarray(np.interp(values, self.edges, np.linspace(0, 1, len(self.edges))))
+        if self.edges is not None:
+            return np.asarray(np.interp(values, self.edges, np.linspace(0, 1, len(self.edges))))
+        scaled = np.log if self.log_scale else np.asarray
+        low, high = scaled([self.low, self.high])
+        numbers = scaled(np.maximum(np.asarray(values, dtype=float), self.low))
+        return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))
 
     def colours(self, values: Any) -> Floats:
         """Return the colours of values, (..., 3), from 0 to 1."""
@@ -252,8 +240,11 @@ class ColourScale:
         return texels.astype(np.float32)
 
     @cached_property
-    def ticks(self) -> tuple[float, ...]:
-        """Values beside a bar where there is a norm: the ticks of matplotlib, if there is room."""
+    def marks(self) -> tuple[tuple[float, float, str], ...]:
+        """Values beside a bar where there is a norm, their places on it, and their texts.
+
+        They are the ticks of matplotlib, if there is room.
+        """
         if self.norm is None:
             return ()
         from matplotlib.cm import ScalarMappable
@@ -267,7 +258,8 @@ class ColourScale:
         for value, place in zip(values.tolist(), self.places(values), strict=True):
             if not kept or place - self.places(kept[-1]) >= TICK_GAP:
                 kept.append(value)
-        return tuple(kept) if len(kept) > 1 else (self.low, self.high)
+        kept = kept if len(kept) > 1 else [self.low, self.high]
+        return tuple(zip(kept, self.places(kept).tolist(), distinct_texts(kept), strict=True))
 
 
 def distinct_texts(values: Any) -> list[str]:
@@ -319,12 +311,7 @@ def with_limits(norm: Any, low: float, high: float) -> Any:
     return norm
 
 
-def norm_limits(norm: Any, low: float, high: float) -> tuple[float, float]:
-    """Return the limits of a norm for a range, or the range without a norm."""
-    limited = None if norm is None else with_limits(norm, low, high)
-    return (low, high) if limited is None else (float(limited.vmin), float(limited.vmax))
-
-
+@np.errstate(all="ignore")
 def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
     """Return the colours of a norm that has limits; raise a FieldError where it has no table.
 
@@ -334,14 +321,9 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
     low, high = float(norm.vmin), float(norm.vmax)
 
     def places(values: Floats) -> Floats:
-        with np.errstate(all="ignore"):
-            found = norm(values)
+        found = norm(values)
         whole = np.asarray(found).dtype.kind in "iu"  # numbers of colours
         return np.ma.filled(np.ma.asarray(found, dtype=float), np.nan) / (cmap.N if whole else 1)
-
-    def colours(values: Floats) -> Floats:
-        with np.errstate(all="ignore"):
-            return np.asarray(cmap(norm(values)))
 
     known = places(np.linspace(low, high, NORM_ENTRIES + 1))
     is_increasing = np.isfinite(known).all() and (np.diff(known) >= -ROUNDING).all()
@@ -365,10 +347,8 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
             reached = places(middle) >= shares
             lower, edges = np.where(reached, lower, middle), np.where(reached, middle, edges)
         edges[0], edges[-1] = low, high
-    table = (255 * colours((edges[:-1] + edges[1:]) / 2)).astype(np.uint8)
-    span = high - low
-    with np.errstate(all="ignore"):
-        outside = np.ma.filled(norm(np.array([low - span, high + span])), -1)
+    table = (255 * np.asarray(cmap(norm((edges[:-1] + edges[1:]) / 2)))).astype(np.uint8)
+    outside = np.ma.filled(norm(np.array([2 * low - high, 2 * high - low])), -1)
     ends = [tuple(colour[:3].tolist()) for colour in np.asarray(cmap(outside))]
     given = {name: value for name, value in beyond.items() if value is not None}
     return ColourScale(

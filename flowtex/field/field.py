@@ -272,7 +272,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         texts = length_unit, time_unit, velocity_unit
         t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=2)
         words |= {"name": name, "vectors": vectors, "projection": projection}
-        words["long_names"] = dict(long_names or {})
+        words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
         on_globe = projection is not None and projection.is_globe
         parts = points, filled.velocity, t, valid, periodic, filled.scalars, cell_scalars or {}
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
@@ -285,7 +285,6 @@ class FlowField(FieldConstructors, FieldQuantities):
             scalars=nodes.scalars,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
-            on_cells=tuple(cell_scalars or ()),
             **words,
         )
         flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
@@ -364,19 +363,17 @@ class FlowField(FieldConstructors, FieldQuantities):
         texts = length_unit, time_unit, velocity_unit
         t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=1)
         words |= {"name": name, "vectors": vectors, "projection": projection}
-        words["long_names"] = dict(long_names or {})
+        words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
         parts = points, triangles, filled.velocity, t, valid, filled.scalars, cell_scalars or {}
         arrays = triangle_nodes(*parts)
-        count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
             velocity=scaled_steps(arrays.velocity, scale),
-            times=np.arange(count, dtype=float) if t is None else t.copy(),
+            times=np.arange(len(arrays.velocity), dtype=float) if t is None else t.copy(),
             valid=arrays.valid,
             periodic=(False, False),
             scalars=arrays.scalars,
             triangles=arrays.triangles,
-            on_cells=tuple(cell_scalars or ()),
             **words,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
-from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkRenderingCore import vtkAbstractMapper, vtkProperty
+from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty
 
 from flowtex._util.array_types import Bytes, Indices
 from flowtex._util.notices import notify
@@ -226,7 +225,7 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
     labels: list[Label] = []
     left_out: list[str] = []
     room = MOST_VERTICES
-    renderer = shown._plotter.renderers[shown._place]
+    renderer = shown._renderer
     for name, actor in _actors(plotter, shown):
         try:
             if actor not in renderer.actors.values():
@@ -312,24 +311,11 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
 
 def _colours(mesh: pv.DataSet, mapper: Any) -> Bytes | None:
     """Return the colours (N, 4) of scalars at points or cells; ``None`` without scalars."""
-    if not mapper.GetScalarVisibility():
-        return None
-    of_cells = reference(0)
-    scalars = vtkAbstractMapper.GetAbstractScalars(
-        mesh,
-        mapper.GetScalarMode(),
-        mapper.GetArrayAccessMode(),
-        mapper.GetArrayId(),
-        mapper.GetArrayName(),
-        of_cells,  # type: ignore[arg-type]
-    )
-    if scalars is None:
-        return None
-    table = mapper.GetLookupTable()
-    if not mapper.GetUseLookupTableScalarRange():
-        table.SetRange(mapper.GetScalarRange())
-    mapped = table.MapScalars(scalars, mapper.GetColorMode(), mapper.GetArrayComponent())
-    return pv.convert_array(mapped)
+    plain = vtkDataSetMapper()
+    plain.ShallowCopy(mapper)
+    plain.InterpolateScalarsBeforeMappingOff()  # else it maps to a texture
+    mapped = plain.MapScalars(mesh, 1.0)
+    return None if mapped is None else pv.convert_array(mapped)
 
 
 def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -30,14 +30,6 @@ _count = itertools.count(1)
 COLOURS = ("n_colors", "flip_scalars", "nan_color", "below_color", "above_color")
 #: Observers of a frame run by falling priority: this one before those that draw it.
 FIRST = 1.0
-
-
-class Source(NamedTuple):
-    """What a flow was read from, how, and the state in which that was."""
-
-    mesh: Any
-    reading: FieldOptions
-    state: tuple[int, ...]
 
 
 def _state(mesh: Any) -> tuple[int, ...]:
@@ -101,7 +93,7 @@ class FlowHandle(AppearanceAttributes):
             **actor_options,
         )
         mapper = use_flow_mapper(self.actor, mesh)
-        self._place, self._renderer = plotter.renderers.active_index, plotter.renderer
+        self._renderer = plotter.renderer
         self.bar = FlowBar(plotter, mapper, scalar_bar_args or {})
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
@@ -113,7 +105,9 @@ class FlowHandle(AppearanceAttributes):
         self._show_appearance()
         self._shown_time = scene.time
         self._end = scene.observe(self._changed)
-        self._source: Source | None = None
+        #: What the flow was read from, and how, and the state in which that was.
+        self._source: tuple[Any, FieldOptions] | None = None
+        self._state: tuple[int, ...] = ()
         drawn: list[tuple[Any, str, Callable[[], None], float]] = [
             (plotter.renderer, "StartEvent", self._before_frame, FIRST),
             (plotter.renderer.GetViewProps(), "ModifiedEvent", self._check_actor, 0.0),
@@ -235,15 +229,15 @@ class FlowHandle(AppearanceAttributes):
 
     def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
         """Read a PyVista mesh again before a frame if it has been changed in place."""
-        self._source = Source(mesh, reading, _state(mesh))
+        self._source, self._state = (mesh, reading), _state(mesh)
 
     def read_changes(self) -> None:
         """Draw the mesh again if it has changed; a warning says why it cannot be drawn."""
-        if self._source is None or self._source.state == (state := _state(self._source.mesh)):
+        if self._source is None or self._state == (state := _state(self._source[0])):
             return
-        self._source = source = self._source._replace(state=state)
+        (mesh, reading), self._state = self._source, state
         try:
-            field = share_field(source.reading.field(source.mesh))
+            field = share_field(reading.field(mesh))
             if field is not self.scene.field:
                 self.show_scene(self.scene.showing(field), render=False)
         except FieldError as error:
@@ -316,8 +310,11 @@ class FlowHandle(AppearanceAttributes):
 
     def _changed(self, affects: Change) -> None:
         self._structure.show(self.scene)
-        if affects == "uniform":
-            self._show_moment()
+        if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
+            if not self.field.steady and self._shown_time != self.scene.time:
+                self._shown_time = self.scene.time
+                self._surface.set_moment(*self.scene.moment)
+                self._surface.write_scalars()
         elif affects == "appearance":
             self._show_appearance()
         else:
@@ -325,14 +322,6 @@ class FlowHandle(AppearanceAttributes):
             if self._map is not None:
                 self._map.show()
         self._draw()
-
-    def _show_moment(self) -> None:
-        """Follow the time: textures at the steps around it, and the colours."""
-        if self.field.steady or self._shown_time == self.scene.time:
-            return
-        self._shown_time = self.scene.time
-        self._surface.set_moment(*self.scene.moment)
-        self._surface.write_scalars()
 
     def _show_appearance(self, *anew: str) -> None:
         """Follow the appearance where it, or a name in ``anew``, changes; the actor's stays."""

@@ -98,11 +98,10 @@ def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> La
     """Write on a picture, (H, W, 3) uint8, in place; :func:`layout` has the parameters."""
     height, width = picture.shape[:2]
     result = layout(scene, (width, height), camera, **options)
+    canvas = Image.fromarray(np.ascontiguousarray(picture))
     for plate in result.plates:
-        left, top, right, bottom = plate.box
-        below, above = picture[top:bottom, left:right], np.asarray(plate.image, dtype=float)
-        share = above[..., 3:] / 255
-        below[:] = np.rint(below * (1 - share) + above[..., :3] * share)
+        canvas.paste(plate.image, plate.box, plate.image)
+    picture[:] = np.asarray(canvas)
     return result
 
 
@@ -235,7 +234,10 @@ class _Writer:
             return
         if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
             return
-        scale = map_scale(scene.field, camera.focal_point)
+        scale, projection = 1.0, scene.field.projection  # lengths of the map for one of the Earth
+        if projection is not None:
+            found = projection.scale(np.asarray(camera.focal_point))
+            scale = found if 0 < found < math.inf else 1.0  # outside the map
         unit_px = scale * self._flow_height / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
         unit, across = _printable(scene.field.length_unit), round(length * unit_px)
@@ -260,11 +262,10 @@ class _Writer:
             return
         table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
         marks = _value_marks(scene.colour_scale, *scene.legend_limits)
-        image = self._legend(title, table, marks, scene.beyond)
-        if image.width <= LEGEND_WIDTH * self._size[0]:
-            yield image
-        yield self._legend(title, table, marks[::2], scene.beyond)
-        yield self._legend(title, table, marks[:: max(len(marks) - 1, 1)], scene.beyond)
+        for n, every in enumerate((1, 2, max(len(marks) - 1, 1))):
+            image = self._legend(title, table, marks[::every], scene.beyond)
+            if n or image.width <= LEGEND_WIDTH * self._size[0]:
+                yield image
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield legends of critical points and lines, in columns."""
@@ -397,8 +398,8 @@ def round_values(low: float, high: float, *, log_scale: bool, steps: Sequence[fl
 
 def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[float, str]]:
     """Return three or more round values in a range, or its ends, and their shares of it."""
-    if ticks := scale.ticks:
-        return list(zip(map(float, scale.places(ticks)), distinct_texts(ticks), strict=True))
+    if scale.marks:
+        return [(place, text) for _, place, text in scale.marks]
     values = round_values(low, high, log_scale=scale.log_scale, steps=(1, 2, 2.5, 5, 10))
     scaled = np.log10 if scale.log_scale else np.asarray
     ends = scaled([low, high])
@@ -438,17 +439,6 @@ def length_text(length: float, unit: str) -> str:
         length, unit = length / METRES_PER_KM, "km"
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
     return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
-
-
-def map_scale(field: FlowField, position: ArrayLike) -> float:
-    """Return lengths of the map for one of the Earth, at a place of a field with a projection.
-
-    It is 1 for another field, and outside the map.
-    """
-    if field.projection is None:
-        return 1.0
-    scale = field.projection.scale(np.asarray(position, dtype=float))
-    return scale if scale > 0 and math.isfinite(scale) else 1.0
 
 
 def round_length(greatest: float) -> float:

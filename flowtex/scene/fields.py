@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+import numpy as np
+
 from flowtex._util.cache import WeakCache, digest
 from flowtex.field import FlowField
 from flowtex.field.derived import DERIVED
@@ -10,6 +14,8 @@ from flowtex.field.steps import LazySteps
 from flowtex.textures.tiles.shared import has_pyramid
 
 _fields: WeakCache[FlowField] = WeakCache()
+#: Attributes that are compared as texts, or not at all.
+APART = {"formula", "start", "section", "reading"}
 
 
 def with_scalars(field: FlowField, name: str | None) -> FlowField:
@@ -30,19 +36,14 @@ def share_field(field: FlowField) -> FlowField:
     """
     if has_pyramid(field):
         return field
-    texts = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
-    text = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (*texts, str(text), field.periodic, field.sign_free, str(field.start), field.projection)
-    units = (field.vectors, field.velocity_unit, *field.units.items())
-    positions = () if field.has_position is None else (field.has_position,)
-    joined = () if field.triangles is None else (field.triangles,)
-    inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
-    inputs += (*field.scalars.values(), *field.parts.values())
-    # Lazy steps are identified by their object, which a field keeps alive.
-    lazy_ids = tuple(id(a) for a in inputs if isinstance(a, LazySteps))
-    arrays = (a for a in inputs if not isinstance(a, LazySteps))
-    kind = (field.has_position is None, field.triangles is None)
-    volume = tuple((k, len(v), float(v.sum())) for k, v in field.volume_values.items())
-    names = (*field.scalars, field.on_cells, field.uncertainty, volume)
-    key = digest(*arrays, words=(words, units, kind, lazy_ids, *names))
-    return _fields.get(key, lambda: field)
+    formula = field.formula and (field.formula.texts, field.formula.parameters)
+    words: list[object] = [str(formula), str(field.start)]
+    arrays = []
+    for name in sorted(FlowField.__dataclass_fields__.keys() - APART):
+        value = getattr(field, name)
+        for key, part in value.items() if isinstance(value, Mapping) else [(name, value)]:
+            is_array = isinstance(part, np.ndarray)
+            arrays += [part] if is_array else []
+            # Lazy steps are identified by their object, which a field keeps alive.
+            words += [name, key, id(part) if isinstance(part, LazySteps) else is_array or part]
+    return _fields.get(digest(*arrays, words=words), lambda: field)

@@ -542,7 +542,7 @@ class Options:
         values = {**defaults, **self.settings}
         if field is not None and field.projection is not None:
             values.setdefault("fade", True)
-        for name in ("coastlines", "graticule"):
+        for name in EARTH_LINES:
             if field is not None and field.projection is None and getattr(self.appearance, name):
                 notify(f"{name} is True, but the field is not on the Earth; none is drawn")
         lines = self.settings.get("lines", "auto")
@@ -580,7 +580,9 @@ class Options:
                 if not near and (close := closest(name, known)):
                     near = f"did you mean {' or '.join(map(repr, close))}?"
                 axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
-                if is_dataset(mesh) and "sel" in known and name in _axes_of(mesh):
+                several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
+                has_axis = any(name in getattr(one, "dims", ()) for one in several)
+                if has_axis and is_dataset(mesh) and "sel" in known:
                     near = axis
                 of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
                 near = near or f"help(flowtex.render) has all of them{of_file}"
@@ -589,12 +591,6 @@ class Options:
         if is_array:  # which is read with the mesh, and is no argument of its own
             object.__setattr__(parts["field"], ARRAY, array)
         return cls(**parts, settings=values)
-
-
-def _axes_of(data: Any) -> set[str]:
-    """Return the names of the dimensions of datasets."""
-    several = data if isinstance(data, (list, tuple)) else [data]
-    return {str(dim) for one in several for dim in getattr(one, "dims", ())}
 
 
 _KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}

@@ -20,9 +20,9 @@ from flowtex._util.colours import (
     ZERO_SHARE,
     ColourScale,
     is_diverging,
-    norm_limits,
     rounded_ends,
     scale_of,
+    with_limits,
 )
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
@@ -334,7 +334,10 @@ class Scene:
             low, high = self.usual_range(name)
         if (low < 0 < high or name in SIGNED) and is_diverging(appearance.cmap):
             low, high = -max(-low, high), max(-low, high)
-        return norm_limits(appearance.norm, low, high)
+        if appearance.norm is not None:
+            norm = with_limits(appearance.norm, low, high)
+            low, high = float(norm.vmin), float(norm.vmax)
+        return low, high
 
     def fit_range(self) -> None:
         """Colour by the range of the data from now on, unless the appearance has limits."""
@@ -380,13 +383,10 @@ class Scene:
         """
         key = (name, robust, self.pyramid is None)
         if key not in self._ranges:
-            self._ranges[key] = self._range_of(name, robust=robust)
+            stored = {} if self.pyramid is None else self.pyramid.ranges
+            ends = stored.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+            self._ranges[key] = widened(ends, self.field, name)
         return self._ranges[key]
-
-    def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
-        stored = {} if self.pyramid is None else self.pyramid.ranges
-        ends = stored.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
-        return widened(ends, self.field, name)
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes, or of the volume that they cut, at all times."""
@@ -568,8 +568,8 @@ def _shared_textures(
     # Textures keep their store alive, so its id is unique while they live.
     key: tuple[object, ...] = (id(store),)
     if settings.noise != "procedural":
-        key += (settings.noise, settings.resolution, settings.noise_correction)
-        key += (settings.seed, settings.tiles)
+        names = "noise", "resolution", "noise_correction", "seed", "tiles"
+        key += tuple(getattr(settings, name) for name in names)
         key += () if image is None or settings.noise != "image" else (digest(image),)
     if pyramid is not None:
         return _textures.get(key, lambda: pyramid.root_textures(store))

@@ -179,10 +179,10 @@ def write_page(
 
     ``store`` and ``basemap`` are those of :func:`export`, the options those of :func:`contents_of`.
     """
-    path, link = checked_target(path), None if store is None else StoreLink.of(store)
+    path = checked_target(path)
     if basemap is not None:
         check_basemap(basemap, path, views)
-    contents = _contents(views, link, **options)
+    contents = _contents(views, store, **options)
     suffix = path.suffix.lower()
     pieces = module_pieces if suffix in MODULES else page_pieces
     if basemap is not None:
@@ -196,11 +196,11 @@ def write_page(
 
 def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
     """Return views as the text of a page; the arguments are those of :func:`write_page`."""
+    return "".join(page_pieces(_contents(views, store, **options)))
+
+
+def _contents(views: Sequence[WebView], store: str | None, **options: Any) -> Contents:
     link = None if store is None else StoreLink.of(store)
-    return "".join(page_pieces(_contents(views, link, **options)))
-
-
-def _contents(views: Sequence[WebView], link: StoreLink | None, **options: Any) -> Contents:
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
     return contents_of(views, scenes, link, **options)
 
@@ -334,7 +334,8 @@ def _filled(name: str, parts: Iterator[str], values: Mapping[str, str]) -> Itera
 
 
 def _headers_text(headers: Sequence[Header]) -> str:
-    return json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])])
+    first, *others = headers  # of which equal items are stored once
+    return json_text([first, *({n: v for n, v in h.items() if v != first[n]} for h in others)])
 
 
 def _values(contents: Contents) -> dict[str, str]:
@@ -363,11 +364,6 @@ def _values(contents: Contents) -> dict[str, str]:
         "headers": zipped(_headers_text(headers).encode()),
         "script": script,
     }
-
-
-def different(header: Header, first: Header) -> Header:
-    """Return the items of a header that differ from the first, to store equal ones once."""
-    return {name: value for name, value in header.items() if value != first[name]}
 
 
 def _policy(script: str, link: StoreLink | None) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.colours import rgb
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import Camera, CameraValues
@@ -70,7 +70,22 @@ def draw_flow(
     """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
     from PIL import Image
 
-    drawn, picture = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
+    before, after, between = steps_around(
+        scene.times, float(scene.times[0] if time is None else time)
+    )
+    steps = (scene.source(before), scene.source(after))
+    picture = render(
+        scene.textures,
+        _few_samples(view.scene.settings),
+        camera,
+        (max(size[0] // coarser, 1), max(size[1] // coarser, 1)),
+        view=ViewState(between=between, still=True),
+        steps=steps,
+    )
+    ground = scene.colours.background or WHITE
+    drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
+    behind = 255.0 * np.asarray(ground)
+    drawn = np.rint(behind + scene.colours.opacity * (drawn - behind)).astype(np.uint8)
     image = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
     _draw_lines(image, scene, camera)
     return image, picture
@@ -105,32 +120,6 @@ def _few_samples(settings: Settings) -> Settings:
     widest = max(settings.spacing, WIDEST_SPACING * settings.grain)
     settings.update(samples=samples, spacing=min(spacing, widest))
     return settings
-
-
-def _drawn(
-    view: WebView,
-    scene: ClientData,
-    size: tuple[int, int],
-    camera: Camera,
-    time: float | None,
-) -> tuple[Bytes, Picture]:
-    before, after, between = steps_around(
-        scene.times, float(scene.times[0] if time is None else time)
-    )
-    steps = (scene.source(before), scene.source(after))
-    picture = render(
-        scene.textures,
-        _few_samples(view.scene.settings),
-        camera,
-        (max(size[0], 1), max(size[1], 1)),
-        view=ViewState(between=between, still=True),
-        steps=steps,
-    )
-    ground = scene.colours.background or WHITE
-    drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
-    opacity = scene.colours.opacity
-    behind = 255.0 * np.asarray(ground)
-    return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8), picture
 
 
 def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None:

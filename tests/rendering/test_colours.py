@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import Floats
-from flowtex._util.colours import colour_shares, colour_table, is_diverging
+from flowtex._util.colours import ColourScale, colour_table, is_diverging
 from flowtex.rendering.cpu.shade import mean_colours, shade
 from flowtex.settings import Settings
 
@@ -75,9 +75,9 @@ def test_an_image_keeps_the_colours_of_the_map() -> None:
 
 def test_places_on_a_map() -> None:
     numbers = [-1, 0, 1, 10, 100, 1000, np.nan]
-    shares = colour_shares(np.array(numbers), 1, 100, log_scale=True)
+    shares = ColourScale(low=1, high=100, log_scale=True).places(np.array(numbers))
     np.testing.assert_allclose(shares, [0, 0, 0, 0.5, 1, 1, np.nan])
-    assert list(colour_shares(np.array([0.0, 1.0, 9.0]), 0, 2)) == [0, 0.5, 1]
+    assert list(ColourScale(low=0, high=2).places(np.array([0.0, 1.0, 9.0]))) == [0, 0.5, 1]
 
 
 def test_maps_with_a_middle_are_known() -> None:

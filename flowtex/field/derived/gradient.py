@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy
@@ -58,7 +57,9 @@ def node_gradient(
     valid = valid if known is None else valid & known
     if isinstance(surface, TriangleSurface):
         return _triangle_gradient(surface, points, valid)
-    return _GridGradient(surface, points, valid).node_gradient
+    # On the sphere one turn leads to the same place.
+    offset = surface.offset if points is surface.points else np.zeros((2, 3))
+    return _grid_gradient(points, valid, surface.periodic, offset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,74 +96,62 @@ class NodeGradient:
         return np.asarray([[_dot(d, part) for part in change] for d in (one, two)])
 
 
-class _GridGradient:
-    """Differences between the nodes of a structured surface."""
+def _grid_gradient(
+    points: Floats, valid: Bools, periodic: tuple[bool, bool], offset: Floats
+) -> NodeGradient:
+    """Return differences between the nodes of a structured surface; axes are turned by offsets."""
+    poles = tuple(_poles(points, valid))
+    points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
 
-    def __init__(self, surface: Surface, points: Floats, valid: Bools) -> None:
-        self._valid, self._periodic = valid, surface.periodic
-        # On the sphere one turn leads to the same place.
-        self._offset = surface.offset if points is surface.points else np.zeros((2, 3))
-        self._poles = tuple(_poles(points, valid))
-        self._points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
-        self._gaps = [self._gap(axis) for axis in (0, 1)]
+    def difference(nodal: Floats, axis: int, turns: Floats) -> Floats:
+        turn = turns[axis] if periodic[axis] else None
+        return _difference(nodal, valid, axis, turn)
 
-    @cached_property
-    def node_gradient(self) -> NodeGradient:
-        """The gradient of arrays (C, J, I)."""
-        p_i, p_j = (self._difference(self._points, axis, self._offset[axis]) for axis in (1, 0))
-        for axis, line in self._poles:  # a pole has the directions of the line beside it
-            lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
-            lines[line] = lines[_beside(line)]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            square = _dot(p_i, p_i)
-            length = np.sqrt(square)
-            one = p_i / length
-            skew = _dot(p_j, one)
-            two = p_j - skew * one
-            height = np.sqrt(_dot(two, two))
-            height[~(height**2 > COLLAPSED_AREA * (height**2 + skew**2))] = np.nan
-            two /= height
-            # Cells per unit of length: of i and j along each direction.
-            i_one, j_two = 1 / length, 1 / height
-            i_two = -skew * i_one * j_two
-        if _clockwise(one, two, self._points, self._valid):
-            for array in (two, i_two, j_two):
-                np.negative(array, out=array)
+    p_i, p_j = (difference(points, axis, offset) for axis in (1, 0))
+    for axis, line in poles:  # a pole has the directions of the line beside it
+        lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
+        lines[line] = lines[_beside(line)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        length = np.sqrt(_dot(p_i, p_i))
+        one = p_i / length
+        skew = _dot(p_j, one)
+        two = p_j - skew * one
+        height = np.sqrt(_dot(two, two))
+        height[~(height**2 > COLLAPSED_AREA * (height**2 + skew**2))] = np.nan
+        two /= height
+        # Cells per unit of length: of i and j along each direction.
+        i_one, j_two = 1 / length, 1 / height
+        i_two = -skew * i_one * j_two
+    if _clockwise(one, two, points, valid):
+        for array in (two, i_two, j_two):
+            np.negative(array, out=array)
 
-        def derivative(nodal: Floats) -> Floats:
-            by_i, by_j = (self._difference(nodal, axis) for axis in (1, 0))
-            by_j *= j_two
-            by_j += by_i * i_two
-            by_i *= i_one
-            return np.stack([by_i, by_j])
+    def derivative(nodal: Floats) -> Floats:
+        by_i, by_j = (difference(nodal, axis, np.zeros((2, len(nodal)))) for axis in (1, 0))
+        by_j *= j_two
+        by_j += by_i * i_two
+        by_i *= i_one
+        return np.stack([by_i, by_j])
 
-        return NodeGradient(np.stack([one, two]), derivative, self._poles)
+    return NodeGradient(np.stack([one, two]), derivative, poles)
 
-    def _gap(self, axis: int) -> tuple[Indices, Indices]:
-        """Return the nodes (line, place) without two neighbours along an axis, lines first."""
-        valid = self._valid.T if axis else self._valid
-        central = np.zeros(valid.shape, dtype=bool)
-        central[1:-1] = valid[2:] & valid[:-2] & valid[1:-1]
-        if self._periodic[axis]:
-            central[[0, -1]] = valid[1] & valid[-2] & valid[0]
-        line, place = np.nonzero(~central)
-        return line, place
 
-    def _difference(self, nodal: Floats, axis: int, offset: Floats | None = None) -> Floats:
-        """Return the difference per cell along an axis, of second order also beside gaps."""
-        result = np.zeros_like(nodal)  # the ends of an open axis are halved before they are set
-        data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
-        np.subtract(data[:, 2:], data[:, :-2], out=out[:, 1:-1])
-        turn = np.zeros(len(data)) if offset is None else offset
-        if self._periodic[axis]:
-            out[:, 0] = out[:, -1] = data[:, 1] + turn[:, None] - data[:, -2]
-        result *= 0.5
-        line, place = self._gaps[axis]
-        if len(line):
-            valid = self._valid.T if axis else self._valid
-            around = turn if self._periodic[axis] else None
-            out[:, line, place] = _one_sided(data, valid, line, place, around)
-        return result
+def _difference(nodal: Floats, valid: Bools, axis: int, turn: Floats | None) -> Floats:
+    """Return the difference per cell along an axis, of second order also beside gaps."""
+    result = np.zeros_like(nodal)  # the ends of an open axis are halved before they are set
+    data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
+    valid = valid.T if axis else valid
+    is_central = np.zeros(valid.shape, dtype=bool)
+    is_central[1:-1] = valid[2:] & valid[:-2] & valid[1:-1]
+    np.subtract(data[:, 2:], data[:, :-2], out=out[:, 1:-1])
+    if turn is not None:
+        out[:, 0] = out[:, -1] = data[:, 1] + turn[:, None] - data[:, -2]
+        is_central[[0, -1]] = valid[1] & valid[-2] & valid[0]
+    result *= 0.5
+    line, place = np.nonzero(~is_central)
+    if len(line):
+        out[:, line, place] = _one_sided(data, valid, line, place, turn)
+    return result
 
 
 def _one_sided(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from flowtex.errors import FieldError
@@ -76,9 +77,7 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
         bounds = (min(x), min(y), max(x), max(y))
         return hv.RGB(pixels[::-1], bounds=bounds, label=field.name)
 
-    def text(time: float) -> str:
-        return time_text(field, float(time))
-
+    text = partial(time_text, field)
     time = hv.Dimension("time", values=field.times.tolist(), value_format=text)
     kdims = [time] if len(field.times) > 1 else []
     return hv.DynamicMap(draw, kdims=kdims, streams=[RangeXY(), PlotSize()])

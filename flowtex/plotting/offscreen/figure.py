@@ -20,7 +20,6 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
-from flowtex.field.arrays import SectionAxes
 from flowtex.plotting.offscreen.earth_axes import (
     AxesUnit,
     is_geo,
@@ -283,10 +282,8 @@ class FlowImage(AxesImage):
         """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
         if self._scene.scalar_name is None:
             return
-        look, time = replace(self._options.appearance, cmap=cmap), self.time
-        self._options = replace(self._options, appearance=look)
-        self._scene = Scene.from_options(self._scene.field, self._options)
-        self._scene.time = time
+        look = replace(self._options.appearance, cmap=cmap)
+        self._show(self._scene.field, replace(self._options, appearance=look))
         super().set_cmap(self._bar_colours())
 
     def _follow_scales(self, scales: AxesScales | None) -> None:
@@ -299,13 +296,18 @@ class FlowImage(AxesImage):
                 "are of the Earth; expected linear axes, or those of cartopy"
             )
             raise FieldError(msg)
-        flow, time = self._flow, self._scene.time
+        flow = self._flow
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
         self._scales = scales
-        self._scene = Scene.from_options(flow, self._options)
-        self._scene.time = time
+        self._show(flow, self._options)
         self._frame = _frame(self._scene.whole.surface)
+
+    def _show(self, flow: FlowField, options: Options) -> None:
+        """Draw a field with options from now on, at the same time."""
+        time, self._options = self._scene.time, options
+        self._scene = Scene.from_options(flow, options)
+        self._scene.time = time
 
     @property
     def flow(self) -> FlowField:
@@ -343,22 +345,17 @@ class FlowImage(AxesImage):
         """Set title, aspect and ticks of the axes."""
         ax: Any = self.axes
         self._update_title()
-        if (section := self._flow.section) is not None:
-            self._frame_section(section)
+        if (section := self._flow.section) is not None:  # with its top above
+            ax.set_aspect("auto")
+            if section.downward and not ax.yaxis_inverted():
+                ax.invert_yaxis()
+            ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
         if is_geo(ax) or self._scales is not None or section is not None:
             return
         across, up = self._unit.scale
         ax.set_aspect(up / across)
         if self._projection is not None:
             label_degrees(ax, self._projection, self._unit)
-
-    def _frame_section(self, section: SectionAxes) -> None:
-        """Stretch the axes of a vertical section, with its top above, and name them."""
-        ax = self.axes
-        ax.set_aspect("auto")
-        if section.downward and not ax.yaxis_inverted():
-            ax.invert_yaxis()
-        ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
 
     def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""
@@ -479,16 +476,6 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
     return ax.name, ax.get_xscale(), ax.get_yscale()
 
 
-def _is_read_on_a_map(mesh: Any) -> bool:
-    """Whether something is data of the Earth: datasets, their files, or a store."""
-    several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
-    if not several or not all(isinstance(one, (str, Path)) for one in several):
-        return is_dataset(mesh)
-    from flowtex.pyramid.source import has_parts
-
-    return bool(dataset_paths(mesh)) or has_parts(mesh)
-
-
 def _in_projection(mesh: Any, options: Options, name: str) -> Options:
     """Return options with which data are drawn in a projection, and lines if requested."""
     if options.field.projection is not None or options.field.globe is not None:
@@ -499,9 +486,14 @@ def _in_projection(mesh: Any, options: Options, name: str) -> Options:
         raise FieldError(msg)
     look = options.appearance
     look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
-    if not _is_read_on_a_map(mesh):
-        return replace(options, appearance=look)
-    return replace(options, field=replace(options.field, projection=name), appearance=look)
+    several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
+    on_map = is_dataset(mesh)
+    if several and all(isinstance(one, (str, Path)) for one in several):  # files, or a store
+        from flowtex.pyramid.source import has_parts
+
+        on_map = bool(dataset_paths(mesh)) or has_parts(mesh)
+    field = replace(options.field, projection=name) if on_map else options.field
+    return replace(options, field=field, appearance=look)
 
 
 def _frame(surface: Surface) -> Floats:

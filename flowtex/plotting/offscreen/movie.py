@@ -115,14 +115,10 @@ def frame_times(
     return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed, speed=0.0)
 
 
-def run_seconds(times: int) -> float:
-    """Return the seconds for one run through the times of a field, in a movie and on a page."""
-    return min(max(STEP_S * (times - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
-
-
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
     if seconds is None:
-        return settings.period if field.steady else run_seconds(len(field.times))
+        run = min(max(STEP_S * (len(field.times) - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
+        return settings.period if field.steady else run
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf
     expected = f"a number from {low:g} to {high:g}"
@@ -302,11 +298,7 @@ def _prepare(
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     values = dict(options.settings)
     if field.steady:
-        values |= {
-            "motion": settings.motion,
-            "period": shown.seconds,
-            "speed": shown.speed,
-        }
+        values |= {"motion": settings.motion, "period": shown.seconds, "speed": shown.speed}
     options = replace(options, field=FieldOptions(), settings=values)
 
     def draw() -> Generator[Bytes, None, None]:

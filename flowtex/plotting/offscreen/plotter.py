@@ -203,7 +203,8 @@ def add_scenes(
             plotter.subplot(0, column)
         handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
         if changes is not None and labels:
-            _label(plotter, difference_text(scene, changes))
+            label = plotter.add_text(difference_text(scene, changes), font_size=9, color="black")
+            label.prop.background_color, label.prop.background_opacity = "white", 0.8
     if changes is not None:
         plotter.link_views()
         plotter.subplot(0, 0)
@@ -233,12 +234,6 @@ def point_camera(
                 "points"
             )
             raise CameraError(msg) from error
-
-
-def _label(plotter: Any, text: str) -> None:
-    """Write a label on one of two views."""
-    label = plotter.add_text(text, font_size=9, color="black")
-    label.prop.background_color, label.prop.background_opacity = "white", 0.8
 
 
 def _check_size(size: tuple[int, int], supersampling: int) -> None:

@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats, Floats32, Indices
-from flowtex._util.colours import ColourScale, distinct_texts
+from flowtex._util.colours import ColourScale
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -143,8 +143,8 @@ def lookup_table(scale: ColourScale) -> pv.LookupTable:
         middles = scale.low + (np.arange(count) + 0.5) / count * (scale.high - scale.low)
         values = np.column_stack([255 * scale.colours(middles), np.full(count, 255)])
         table = NormTable(values=np.rint(values).astype(np.uint8))
-        table.texels, ticks = scale.texels, scale.ticks
-        table.marks = dict(zip(scale.places(ticks), distinct_texts(ticks), strict=True))
+        table.texels = scale.texels
+        table.marks = {place: text for _, place, text in scale.marks}
     table.log_scale, table.scalar_range = scale.log_scale, (scale.low, scale.high)
     table.below_range_color, table.above_range_color = scale.below, scale.above
     table.nan_color = scale.nan

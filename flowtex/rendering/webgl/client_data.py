@@ -19,14 +19,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
-from flowtex._util.colours import (
-    CMAPS,
-    ENTRIES,
-    ColourScale,
-    colour_table,
-    distinct_texts,
-    is_diverging,
-)
+from flowtex._util.colours import CMAPS, ENTRIES, ColourScale, colour_table, is_diverging
 from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
@@ -54,24 +47,9 @@ from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Shaders of the client, by the name under which the header has their text.
-SHADERS = {
-    "vertex": "webgl2/vertex.glsl",
-    "fragment": "webgl2/fragment.glsl",
-    "pick": "webgl2/pick.glsl",
-    "lineVertex": "webgl2/line_vertex.glsl",
-    "lineFragment": "webgl2/line_fragment.glsl",
-    "groundVertex": "webgl2/ground_vertex.glsl",
-    "groundFragment": "webgl2/ground_fragment.glsl",
-    "bodyVertex": "webgl2/body_vertex.glsl",
-    "bodyFragment": "webgl2/body_fragment.glsl",
-    "arrowVertex": "webgl2/arrow_vertex.glsl",
-    "arrowFragment": "webgl2/arrow_fragment.glsl",
-    "fullVertex": "webgl2/full_vertex.glsl",
-    "probe": "webgl2/probe.glsl",
-}
-#: Those of a client that traces.
-TRACE_SHADERS = {"trace": "webgl2/trace.glsl", "layers": "webgl2/layers.glsl"}
+#: Shaders of the client, pairs of a vertex and a fragment shader, and those of one that traces.
+SHADERS = ("vertex", "fragment", "pick", "full_vertex", "probe")
+SHADER_PAIRS, TRACE_SHADERS = ("line", "ground", "body", "arrow"), ("trace", "layers")
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5
@@ -214,6 +192,7 @@ class ClientData:
         """Return the part of the header that changes only with the textures or the colours."""
         textures, colours = self.textures, self.colours
         variant = sorted(variants(textures, unsteady=self.steps > 1))
+        names = ("name", "unit", "number", "cmap", "auto", "bar", "flat", "entries", "flip")
         return {
             "format": FORMAT,
             "name": textures.geometry.field.name,
@@ -224,22 +203,12 @@ class ClientData:
             "lengthUnit": self.field.length_unit,
             "speed": self._speed(),
             "scalars": {
-                **{
-                    n: getattr(colours, n)
-                    for n in ("name", "unit", "number", "cmap", "auto", "bar", "flat")
-                },
-                "entries": colours.entries,
-                "flip": colours.flip,
+                **{name: getattr(colours, name) for name in names},
                 "label": colours.label or colours.name or "",
                 "low": float(colours.scale.low),
                 "high": float(colours.scale.high),
                 "log": colours.scale.log_scale,
-                "ticks": [
-                    {"value": value, "text": text}
-                    for value, text in zip(
-                        colours.scale.ticks, distinct_texts(colours.scale.ticks), strict=True
-                    )
-                ],
+                "ticks": [{"value": v, "text": text} for v, _, text in colours.scale.marks],
                 "beyond": [
                     None if colour is None else plain_list(colour)
                     for colour in (colours.scale.below, colours.scale.above, colours.scale.nan)
@@ -522,10 +491,11 @@ def _maps() -> Bytes:
 
 @cache
 def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
-    names = SHADERS | TRACE_SHADERS if traces else SHADERS
-    texts = {key: shader_text(name, variant) for key, name in names.items()}
-    # Comments are a third of them.
-    return {key: _COMMENTS.sub("", text) for key, text in texts.items()}
+    pairs = (f"{name}_{part}" for name in SHADER_PAIRS for part in SHADERS[:2])
+    names = (*SHADERS, *pairs, *(TRACE_SHADERS if traces else ()))
+    texts = ((name, shader_text(f"webgl2/{name}.glsl", variant)) for name in names)
+    # Comments are a third of them, and the names of the client are lineVertex, ...
+    return {re.sub("_.", lambda m: m[0][1].upper(), n): _COMMENTS.sub("", t) for n, t in texts}
 
 
 def _table() -> list[Header]:
