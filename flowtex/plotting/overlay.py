@@ -33,10 +33,8 @@ from flowtex.rendering.map_overlay import (
     land_cells,
     map_lines,
 )
-from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk import FlowSurface
-from flowtex.rendering.vtk.layer import weak_callback
-from flowtex.rendering.vtk.mesh import FlowMapper
+from flowtex.rendering.vtk.layer import insert_text, plain_actor, weak_callback
 from flowtex.rendering.webgl.marks import (
     DOT_PX,
     KIND_MARKS,
@@ -78,21 +76,7 @@ LINES_NEARER = 1e-2
 ABOVE_SHARE = 0.2
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
 LAST = -1.0
-OWNER = "flowtex overlay"
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
-Replacements = tuple[tuple[str, str, tuple[str, ...]], ...]
-#: Shader, the mark of VTK after which our text is inserted, and our files, of land and of lines.
-REPLACEMENTS: Replacements = (("vertex", "//VTK::PositionVC::Impl", ("vtk/map_vertex_impl.glsl",)),)
-LINE_REPLACEMENTS: Replacements = (
-    ("vertex", "//VTK::PositionVC::Dec", ("vtk/line_vertex_dec.glsl",)),
-    (
-        "vertex",
-        "//VTK::PositionVC::Impl",
-        ("vtk/map_vertex_impl.glsl", "vtk/line_vertex_impl.glsl"),
-    ),
-    ("fragment", "//VTK::PositionVC::Dec", ("vtk/line_fragment_dec.glsl",)),
-    ("fragment", "//VTK::Light::Impl", ("vtk/line_fragment_impl.glsl",)),
-)
 #: Point arrays of a line's mesh, by the names of the shader's attributes.
 OTHER, SIDE = "flowtexOther", "flowtexSide"
 
@@ -107,7 +91,7 @@ class Overlay:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
-        callback: Any = weak_callback(self._before_frame)
+        callback = weak_callback(self._before_frame)
         self._observed = renderer.AddObserver("StartEvent", callback, LAST)
 
     def close(self) -> None:
@@ -128,7 +112,7 @@ class Overlay:
         """Add lines of a width in pixels; those with ``above`` hide the ones below it."""
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
         variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})
-        actor = self._add(forms[-1][1], nearer, LINE_REPLACEMENTS, variant)
+        actor = self._add(forms[-1][1], nearer, "line_", variant)
         self._parts[-1] = Part(actor, nearer, width, forms)
         for name in (OTHER, SIDE):
             actor.mapper.MapDataArrayToVertexAttribute(name, name, POINTS, -1)
@@ -143,19 +127,12 @@ class Overlay:
         self,
         mesh: pv.PolyData,
         nearer: float,
-        replacements: Replacements = REPLACEMENTS,
+        prefix: str = "map_",
         variant: frozenset[str] = frozenset(),
     ) -> pv.Actor:
-        mapper = FlowMapper(mesh)
-        mapper.scalar_visibility = False
-        mapper.SetVBOShiftScaleMethod(0)  # which would not apply to the other ends
-        actor = pv.Actor(mapper=mapper)
-        actor.PickableOff()
-        actor.UseBoundsOff()
+        actor = plain_actor(mesh)
         actor.SetUserMatrix(self._actor.GetMatrix())
-        for shader, mark, names in replacements:
-            text = "\n".join((mark, *(shader_text(name, variant) for name in names)))
-            actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
+        insert_text(actor, "flowtex overlay", prefix, variant)
         self._parts.append(Part(actor, nearer))
         if (renderer := self._renderer()) is not None:
             renderer.AddActor(actor)

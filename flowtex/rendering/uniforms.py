@@ -80,7 +80,7 @@ class ViewState:
 def variants(
     textures: TextureSet,
     *,
-    unsteady: bool,
+    unsteady: bool | None = None,
     moving: bool = False,
     near: bool = False,
     sparse: bool = False,
@@ -101,7 +101,7 @@ def variants(
         "FLOWTEX_SIGNFREE": flow.sign_free,
         "FLOWTEX_TRIANGLES": flow.triangles is not None,
         "FLOWTEX_UNCERTAIN": flow.uncertainty,
-        "FLOWTEX_UNSTEADY": unsteady,
+        "FLOWTEX_UNSTEADY": textures.store.steps > 1 if unsteady is None else unsteady,
     }
     return frozenset(name for name, holds in conditions.items() if holds)
 
@@ -123,23 +123,15 @@ def client_constants() -> dict[str, Any]:
             **seed_limits(),
         },
         "farCells": FAR_CELLS,
-        "shading": _shading(),
-    }
-
-
-def _shading() -> dict[str, list[float]]:
-    """Return the numbers by which a client computes the mean colours of a picture."""
-    matrices = {
-        "toCones": const.TO_CONES,
-        "toLab": const.TO_LAB,
-        "fromLab": const.FROM_LAB,
-        "fromCones": const.FROM_CONES,
-    }
-    return {
-        **{name: matrix.ravel().tolist() for name, matrix in matrices.items()},
-        "base": [const.BASE_DARK, const.BASE_LIGHT],
-        "tone": [const.TONE_RANGE, const.TONE_SLOPE],
-        "values": const.MEAN_VALUES.tolist(),
+        "shading": {
+            "toCones": const.TO_CONES.ravel().tolist(),
+            "toLab": const.TO_LAB.ravel().tolist(),
+            "fromLab": const.FROM_LAB.ravel().tolist(),
+            "fromCones": const.FROM_CONES.ravel().tolist(),
+            "base": [const.BASE_DARK, const.BASE_LIGHT],
+            "tone": [const.TONE_RANGE, const.TONE_SLOPE],
+            "values": const.MEAN_VALUES.tolist(),
+        },
     }
 
 

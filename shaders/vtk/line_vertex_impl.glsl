@@ -1,3 +1,4 @@
+//#include vtk/map_vertex_impl.glsl
   vec4 flowtexThere = MCDCMatrix * vec4(flowtexOther, 1.0);
   // What is behind the eye has no place: such a piece ends just before it.
   float flowtexFront = 1e-3 * max(gl_Position.w, flowtexThere.w);

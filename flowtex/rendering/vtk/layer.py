@@ -23,12 +23,12 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkRenderingCore import vtkCamera, vtkMapper
+from vtkmodules.vtkRenderingCore import vtkMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
 from flowtex.rendering.mesh_levels import MeshLevels, TriangleBlocks, mesh_levels_of
-from flowtex.rendering.shaders import shader_text
+from flowtex.rendering.shaders import shader_folder, shader_text
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
@@ -44,6 +44,7 @@ from flowtex.rendering.uniforms import (
 )
 from flowtex.rendering.vtk.mesh import (
     ATTRIBUTES,
+    FlowMapper,
     MappedColours,
     set_position,
     set_triangles,
@@ -109,9 +110,7 @@ class GPUTexture:
 
     def _send(self, window: vtkOpenGLRenderWindow) -> vtkTextureObject:
         texels = self._texels
-        if texels is None:
-            msg = "the texture was released and cannot be sent again"
-            raise RuntimeError(msg)
+        assert texels is not None
         target = vtkTextureObject()
         target.SetContext(window)
         target.SetGenerateMipmap(self._levels != 0)
@@ -137,15 +136,8 @@ class GPUTexture:
 #: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
 
-#: Shader, the mark of VTK before which our text is inserted, and our file.
-REPLACEMENTS = (
-    ("vertex", "//VTK::PositionVC::Dec", "vtk/vertex_dec.glsl"),
-    ("vertex", "//VTK::PositionVC::Impl", "vtk/vertex_impl.glsl"),
-    ("geometry", "//VTK::PositionVC::Dec", "vtk/geometry_dec.glsl"),
-    ("geometry", "//VTK::PositionVC::Impl", "vtk/geometry_impl.glsl"),
-    ("fragment", "//VTK::PositionVC::Dec", "vtk/fragment_dec.glsl"),
-    ("fragment", "//VTK::Light::Impl", "vtk/fragment_impl.glsl"),
-)
+#: Shaders, and our parts of them.
+STAGES = [(s, p) for s in ("vertex", "geometry", "fragment") for p in ("dec", "impl")]
 
 
 class FlowLayer:
@@ -165,7 +157,7 @@ class FlowLayer:
         layers: Callable[[int], Halves] | None = None,
         mesh_levels: MeshLevels | TriangleBlocks | None = None,
     ) -> None:
-        self._actor = actor
+        self.actor = actor
         self._mapper: Any = actor.mapper
         self._renderer = weakref.ref(renderer)
         self._textures = textures
@@ -173,7 +165,7 @@ class FlowLayer:
         self._prefetch = LayerPrefetch(textures)
         self._layers = layers
         self._steps = (0, 0)
-        self._height = 1.0
+        self.height = 1.0  #: Height of the view at the focal point, in the mesh's units.
         self._drawn = False
         self._variant: frozenset[str] | None = None
         self._mesh_levels = mesh_levels
@@ -187,7 +179,8 @@ class FlowLayer:
         self._observed = observe_draws(self._mapper, self.before_draw)
 
     @property
-    def _mesh(self) -> pv.PolyData:
+    def mesh(self) -> pv.PolyData:
+        """The mesh of the actor."""
         mesh: pv.PolyData = self._mapper.dataset
         return mesh
 
@@ -240,7 +233,7 @@ class FlowLayer:
         """Restore the actor and free the graphics card's memory."""
         self._mapper.RemoveObserver(self._observed)
         self._prefetch.close()
-        self._actor.clear_shader_replacements(_feature_name=OWNER)
+        self.actor.clear_shader_replacements(_feature_name=OWNER)
         for attribute in ATTRIBUTES:
             self._mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
@@ -252,22 +245,16 @@ class FlowLayer:
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
-        unsteady = self._textures.store.steps > 1
         moving = is_moving(self._textures, self._settings, self.view)
         near = is_near(self._textures, self._settings, self.view)
         sparse = is_sparse(self._textures, self._settings)
-        variant = variants(
-            self._textures, unsteady=unsteady, moving=moving, near=near, sparse=sparse
-        )
+        variant = variants(self._textures, moving=moving, near=near, sparse=sparse)
         if corrects_places(self._textures):
             variant |= {"FLOWTEX_PLACED"}
         if variant == self._variant:
             return
         self._variant = variant
-        self._actor.clear_shader_replacements(_feature_name=OWNER)
-        for shader, mark, name in REPLACEMENTS:
-            text = f"{shader_text(name, variant)}\n{mark}\n"
-            self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
+        insert_text(self.actor, OWNER, "", variant, before=True)
 
     def before_draw(self, program: vtkShaderProgram | None) -> None:
         """Write uniforms and texture units to the program that is about to draw."""
@@ -288,7 +275,7 @@ class FlowLayer:
         values["u_mapped"] = self._colours is not None
         values["u_flat"] = self._colours is not None and self._colours.on_cells
         values["u_plain"] = coloured and self._colours is not None
-        values["u_plainColour"] = tuple(self._actor.prop.color.float_rgb)
+        values["u_plainColour"] = tuple(self.actor.prop.color.float_rgb)
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 write_uniform(program, name, value)
@@ -342,16 +329,17 @@ class FlowLayer:
         eye = (
             np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
         )
-        placed: Floats = np.asarray(pv.array_from_vtkmatrix(self._actor.GetMatrix()))
+        placed: Floats = np.asarray(pv.array_from_vtkmatrix(self.actor.GetMatrix()))
         points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
-        self._height = _window_height(camera) / scale
-        self.view.pixel = self._height / renderer.GetSize()[1]
+        height = 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2))
+        self.height = float(2 * camera.GetParallelScale() if parallel else height) / scale
+        self.view.pixel = self.height / renderer.GetSize()[1]
         self._choose_slices()
         self._write_text()
-        self._move_anchor(self._height)
+        self._move_anchor()
 
     def _choose_slices(self) -> None:
         """Draw with the lags and mip levels that the first view needs, later perhaps with all."""
@@ -368,25 +356,16 @@ class FlowLayer:
             # A separate thread traces while this one continues with meshes and shaders.
             self._prefetch.prepare(self._steps[0], self.view.lags)
 
-    def _move_anchor(self, height: float) -> None:
+    def _move_anchor(self) -> None:
         """Move the origin of positions near the focus where precision needs it."""
         geometry = self._textures.geometry
         focus = geometry.local(self.view.focus)
-        if np.abs(focus - self.view.anchor).max() <= ANCHOR_RANGE * height:
+        if np.abs(focus - self.view.anchor).max() <= ANCHOR_RANGE * self.height:
             return
-        near_middle = np.abs(focus).max() <= ANCHOR_RANGE * height
+        near_middle = np.abs(focus).max() <= ANCHOR_RANGE * self.height
         self.view.anchor = np.zeros(3) if near_middle else focus
         position = geometry.position_from(self.view.anchor)
-        set_position(self._mesh, geometry.at_vertices(position))
-
-    def eye_and_half_height(self, camera: vtkCamera) -> tuple[Floats | None, float]:
-        """Return the eye in the mesh's own coordinates, and half the height of what is seen.
-
-        Where rays are parallel there is no eye; else the height is that for a distance of one.
-        """
-        if camera.GetParallelProjection():
-            return None, 0.5 * self._height
-        return self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
+        set_position(self.mesh, geometry.at_vertices(position))
 
     def choose_levels(self, renderer: Any, view: TileView) -> Ints:
         """Return the coarsest levels of the mesh that the view allows, (block rows, columns).
@@ -394,9 +373,8 @@ class FlowLayer:
         Blocks that are out of view have -1.
         """
         self._follow_colours()
-        prop = self._actor.prop
-        eye, half = self.eye_and_half_height(renderer.GetActiveCamera())
-        levels = self.mesh_levels.levels(eye, half, renderer.GetSize()[1])
+        prop = self.actor.prop
+        levels = self.mesh_levels.levels(view.eye, view.half_height, renderer.GetSize()[1])
         if prop.show_edges or prop.style != "Surface":
             levels = np.zeros_like(levels)
         return np.where(view.sees(self.mesh_levels.blocks), levels, -1)
@@ -408,7 +386,7 @@ class FlowLayer:
             # The bounds of the mesh do not change.
             outermost = self._textures.geometry.outermost
             triangles = np.concatenate([triangles, np.repeat(outermost[:, None], 3, axis=1)])
-        set_triangles(self._mesh, triangles)
+        set_triangles(self.mesh, triangles)
 
     def follow(self, mapper: vtkMapper) -> None:
         """Take the colours of another mapper, by the same point array."""
@@ -425,7 +403,7 @@ class FlowLayer:
 
     def _follow_colours(self) -> None:
         """Use the colours of the mapper, which users may have changed."""
-        colours = MappedColours.of(self._mapper, self._mesh, self.flat_array)
+        colours = MappedColours.of(self._mapper, self.mesh, self.flat_array)
         before, self._colours = self._colours, colours
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")
@@ -467,35 +445,47 @@ def _is_more(needed: int | None, present: int | None) -> bool:
     return present is not None and (needed is None or needed > present)
 
 
-def _window_height(camera: vtkCamera) -> float:
-    """Return the height of the view at the focal point."""
-    if camera.GetParallelProjection():
-        return float(2 * camera.GetParallelScale())
-    return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
+def insert_text(
+    actor: pv.Actor, owner: str, prefix: str, variant: frozenset[str], *, before: bool = False
+) -> None:
+    """Insert those of our files that begin with a prefix after the marks of VTK, or before them."""
+    actor.clear_shader_replacements(_feature_name=owner)
+    for stage, part in STAGES:
+        name = f"vtk/{prefix}{stage}_{part}.glsl"
+        if (shader_folder() / name).is_file():
+            is_last = (stage, part) == ("fragment", "impl")
+            mark = "//VTK::Light::Impl" if is_last else f"//VTK::PositionVC::{part.title()}"
+            text = shader_text(name, variant)
+            text = f"{text}\n{mark}\n" if before else f"{mark}\n{text}"
+            actor.add_shader_replacement(stage, mark, text, _feature_name=owner)
 
 
-def weak_callback(method: Callable[[], None]) -> Callable[[vtkObject, str], None]:
+def plain_actor(mesh: pv.PolyData) -> pv.Actor:
+    """Return an actor beside the flow, which cannot be picked and does not affect the bounds."""
+    mapper = FlowMapper(mesh)
+    mapper.scalar_visibility = False
+    mapper.SetVBOShiftScaleMethod(0)  # our shaders take positions as they are
+    actor = pv.Actor(mapper=mapper)
+    actor.PickableOff()
+    actor.UseBoundsOff()
+    return actor
+
+
+def weak_callback(method: Callable[..., None]) -> Any:
     """Return a callback for VTK that does not keep the method's object alive."""
     reference = weakref.WeakMethod(method)
 
-    def call(caller: vtkObject, event: str) -> None:
-        del caller, event
+    def call(_caller: vtkObject, _event: str, *data: Any) -> None:
         if (bound := reference()) is not None:
-            bound()
+            bound(*data)
 
     return call
 
 
-def observe_draws(mapper: Any, method: Callable[[vtkShaderProgram], None]) -> int:
+def observe_draws(mapper: Any, method: Callable[[vtkShaderProgram | None], None]) -> int:
     """Call a method with the program before each draw, without keeping its object alive."""
-    reference = weakref.WeakMethod(method)
-
-    def call(caller: vtkObject, event: str, program: vtkShaderProgram | None = None) -> None:
-        del caller, event
-        if (bound := reference()) is not None and program is not None:
-            bound(program)
-
-    call.CallDataType = VTK_OBJECT  # type: ignore[attr-defined]
+    call = weak_callback(method)
+    call.CallDataType = VTK_OBJECT
     return int(mapper.AddObserver("UpdateShaderEvent", call))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,6 @@ from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
 from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_levels_of
-from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import (
     TileView,
     cell_pixels,
@@ -44,7 +43,9 @@ from flowtex.rendering.uniforms import (
 from flowtex.rendering.vtk.layer import (
     FlowLayer,
     corrects_places,
+    insert_text,
     observe_draws,
+    plain_actor,
     weak_callback,
     write_uniform,
 )
@@ -57,24 +58,8 @@ from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
 
 #: Time after which a window is drawn again while tiles are on their way.
 LOOK_INTERVAL_MS = 250
-OWNER = "flowtex arrows"
-#: Shader, the mark of VTK after which our text is inserted, and our file.
-REPLACEMENTS = (
-    ("vertex", "//VTK::PositionVC::Dec", "vtk/arrow_vertex_dec.glsl"),
-    ("vertex", "//VTK::PositionVC::Impl", "vtk/arrow_vertex_impl.glsl"),
-    ("fragment", "//VTK::PositionVC::Dec", "vtk/arrow_fragment_dec.glsl"),
-    ("fragment", "//VTK::Light::Impl", "vtk/arrow_fragment_impl.glsl"),
-)
 #: Attribute of the vertices of a ribbon: piece and side.
 RIBBON = "flowtexRibbon"
-
-
-@dataclass(eq=False)
-class _TileActor:
-    tile: Tile
-    actor: pv.Actor
-    mesh: pv.PolyData
-    layer: FlowLayer
 
 
 class FlowSurface:
@@ -98,7 +83,7 @@ class FlowSurface:
         self._scalars: tuple[str, Callable[[FlowField], Floats], bool] | None = None
         self._drawn: tuple[Any, ...] = ()
         self._arrows = SurfaceArrows(renderer, settings)
-        self._tiles: dict[TileKey, _TileActor] = {}
+        self._tiles: dict[TileKey, FlowLayer] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer, and that
         #: of the picture that it is a part of.
@@ -127,7 +112,7 @@ class FlowSurface:
     @property
     def meshes(self) -> list[pv.PolyData]:
         """Meshes that the last frame has drawn: the surface's own mesh, and those of tiles."""
-        shown = [drawn.mesh for drawn in self._tiles.values() if drawn.actor.GetNumberOfConsumers()]
+        shown = [tile.mesh for tile in self._tiles.values() if tile.actor.GetNumberOfConsumers()]
         return [self._actor.mapper.dataset, *shown]
 
     @property
@@ -166,7 +151,7 @@ class FlowSurface:
     def set_moment(self, before: int, after: int, between: float) -> None:
         """Show the time between two destination times of the slices."""
         self._moment = (before, after, between)
-        self._base.set_moment(before, after, between)
+        self._base.set_moment(*self._moment)
 
     def set_scalars(
         self, name: str, values: Callable[[FlowField], Floats], *, on_cells: bool = False
@@ -177,9 +162,8 @@ class FlowSurface:
 
     def write_scalars(self) -> None:
         """Write the values again after they have changed."""
-        self._write_scalars(self._base, self._actor.mapper.dataset)
-        for drawn in self._tiles.values():
-            self._write_scalars(drawn.layer, drawn.mesh)
+        for layer in (self._base, *self._tiles.values()):
+            self._write_scalars(layer)
 
     def close(self) -> None:
         """Remove everything from the renderer, and free the graphics card's memory."""
@@ -193,12 +177,12 @@ class FlowSurface:
             self._loader.close()
         self._base.close()
 
-    def _write_scalars(self, layer: FlowLayer, mesh: pv.PolyData) -> None:
+    def _write_scalars(self, layer: FlowLayer) -> None:
         if self._scalars is not None:
             name, values, on_cells = self._scalars
             geometry = layer.textures.geometry
             drawn = geometry.drawn_values(values(geometry.field), on_cells=on_cells)
-            mesh.point_data[name] = geometry.at_vertices(drawn, on_cells=on_cells)
+            layer.mesh.point_data[name] = geometry.at_vertices(drawn, on_cells=on_cells)
             layer.flat_array = name if on_cells else None
 
     def _before_frame(self) -> None:
@@ -212,17 +196,13 @@ class FlowSurface:
         view = self._tile_view(renderer)
         shown = self._choose(view)
         layers: dict[TileKey | None, FlowLayer] = {None: self._base}
-        layers |= {key: self._tiles[key].layer for key in shown if key in self._tiles}
+        layers |= {key: self._tiles[key] for key in shown if key in self._tiles}
         self._show(list(layers))
         for key, layer in layers.items():
             if key is None:
                 continue
-            layer.view = replace(
-                self._base.view,
-                anchor=layer.view.anchor,
-                lags=layer.view.lags,
-                levels=layer.view.levels,
-            )
+            own = {name: getattr(layer.view, name) for name in ("anchor", "lags", "levels")}
+            layer.view = replace(self._base.view, **own)
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
@@ -252,7 +232,7 @@ class FlowSurface:
             prop.culling = self._culling = culling
 
     def _after_frame(self) -> None:
-        for layer in (self._base, *(drawn.layer for drawn in self._tiles.values())):
+        for layer in (self._base, *self._tiles.values()):
             layer.after_frame()
 
     def _choose(self, view: TileView) -> dict[TileKey | None, list[TileKey]]:
@@ -306,10 +286,11 @@ class FlowSurface:
 
     def _tile_view(self, renderer: pv.Renderer) -> TileView:
         """Return the view for which tiles are chosen, in the mesh's coordinates."""
-        eye, half = self._base.eye_and_half_height(renderer.GetActiveCamera())
-        width, height = renderer.GetSize()
-        planes = [0.0] * 24
-        renderer.GetActiveCamera().GetFrustumPlanes(width / max(height, 1), planes)
+        camera, (width, height), planes = renderer.GetActiveCamera(), renderer.GetSize(), [0.0] * 24
+        eye, half = None, 0.5 * self._base.height
+        if not camera.GetParallelProjection():
+            eye, half = self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
+        camera.GetFrustumPlanes(width / max(height, 1), planes)
         sides = np.reshape(planes, (6, 4))[:4] @ self._place  # without near and far
         pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
@@ -325,7 +306,7 @@ class FlowSurface:
         if tile is None:
             return False
         if key not in self._tiles and tile.textures is not None:
-            self._tiles[key] = self._actor_of(tile, tile.textures)
+            self._tiles[key] = self._layer_of(tile, tile.textures)
         return True
 
     def _loader_of(self, pyramid: Pyramid) -> TileLoader:
@@ -347,38 +328,38 @@ class FlowSurface:
 
         return TileLoader(pyramid, prepare=prepare, notify=notify)
 
-    def _actor_of(self, tile: Tile, textures: TextureSet) -> _TileActor:
+    def _layer_of(self, tile: Tile, textures: TextureSet) -> FlowLayer:
         """Make the actor of a tile, with the properties of the surface's own one."""
-        renderer = self._renderer()
         mesh, mesh_levels = tile.prepared
         actor = pv.Actor(mapper=FlowMapper(mesh))
         actor.SetProperty(self._actor.prop)
         actor.SetUserMatrix(self._actor.GetMatrix())
-        layer = FlowLayer(actor, renderer, textures, self._settings, tile.take, mesh_levels)
-        self._write_scalars(layer, mesh)
+        settings, take = self._settings, tile.take
+        layer = FlowLayer(actor, self._renderer(), textures, settings, take, mesh_levels)
+        self._write_scalars(layer)
         textures.geometry.field.forget()
-        return _TileActor(tile, actor, mesh, layer)
+        return layer
 
     def _show(self, keys: list[TileKey | None]) -> None:
         """Show exactly these tiles in the renderer."""
         renderer, base = self._renderer(), self._actor
         if renderer is None:
             return
-        for key, drawn in self._tiles.items():
-            shown = renderer.HasViewProp(drawn.actor)
-            if (key in keys) != bool(shown):
-                (renderer.AddActor if key in keys else renderer.RemoveActor)(drawn.actor)
-            if key in keys:
-                drawn.layer.follow(base.mapper)
-                drawn.actor.SetPickable(base.GetPickable())
+        for key, layer in self._tiles.items():
+            if key not in keys:
+                renderer.RemoveActor(layer.actor)
+                continue
+            renderer.AddActor(layer.actor)
+            layer.follow(base.mapper)
+            layer.actor.SetPickable(base.GetPickable())
 
     def _drop(self, keys: list[TileKey]) -> None:
         renderer = self._renderer()
         for key in keys:
-            drawn = self._tiles.pop(key)
+            layer = self._tiles.pop(key)
             if renderer is not None:
-                renderer.RemoveActor(drawn.actor)
-            drawn.layer.close()
+                renderer.RemoveActor(layer.actor)
+            layer.close()
 
     def _set_triangles(
         self,
@@ -491,12 +472,8 @@ class _Arrows:
         self._data: dict[str, Floats] = {}
         self._anchor: Floats | None = None
         self._variant: frozenset[str] | None = None
-        self.actor = pv.Actor(mapper=FlowMapper(pv.PolyData()))
-        self.actor.mapper.scalar_visibility = False
-        self.actor.mapper.SetVBOShiftScaleMethod(0)  # the shader takes positions as they are
+        self.actor = plain_actor(pv.PolyData())
         self.actor.prop.lighting = False
-        self.actor.PickableOff()
-        self.actor.UseBoundsOff()
         self.actor.ForceTranslucentOn()  # after the flow
         observe_draws(self.actor.mapper, self._before_draw)
 
@@ -525,35 +502,27 @@ class _Arrows:
         faces: Any = (np.arange(len(position))[:, None, None] * count + strip).reshape(-1, 4)
         mesh = pv.PolyData.from_regular_faces(np.repeat(position - anchor, count, axis=0), faces)
         mapper, points = self.actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
-        repeated = {name: np.repeat(self._data[name], count, axis=0) for name in self._read}
+        planar = self.layer.textures.geometry.planar
+        unread = ("flowtexPosition", "flowtexNormal") if planar else ("flowtexPosition",)
+        read = self._data.items()
+        repeated = {name: np.repeat(a, count, axis=0) for name, a in read if name not in unread}
         for name, values in {**repeated, RIBBON: np.tile(ribbon, (len(position), 1))}.items():
             mesh.point_data[name] = values.astype(np.float32)
             mapper.MapDataArrayToVertexAttribute(name, name, points, -1)
         return mesh
-
-    @property
-    def _read(self) -> list[str]:
-        """Names of the attributes that the shader reads beside positions."""
-        unread = {"flowtexPosition"}
-        if self.layer.textures.geometry.planar:
-            unread.add("flowtexNormal")
-        return [name for name in self._data if name not in unread]
 
     def _write_text(self) -> None:
         textures = self.layer.textures
         near = is_near(textures, self._settings, self.layer.view)
         # In triangles only fragments have the data to follow the velocity in a cell.
         near = near and textures.geometry.corners is None
-        variant = variants(textures, unsteady=textures.store.steps > 1, near=near)
-        if variant == self._variant:
-            return
-        self._variant = variant
-        self.actor.clear_shader_replacements(_feature_name=OWNER)
-        for shader, mark, name in REPLACEMENTS:
-            text = f"{mark}\n{shader_text(name, variant)}"
-            self.actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
+        variant = variants(textures, near=near)
+        if variant != self._variant:
+            self._variant = variant
+            insert_text(self.actor, "flowtex arrows", "arrow_", variant)
 
-    def _before_draw(self, program: vtkShaderProgram) -> None:
+    def _before_draw(self, program: vtkShaderProgram | None) -> None:
         self.layer.before_draw(program)
-        if (renderer := self._renderer()) is not None and program.IsUniformUsed("u_picture"):
+        renderer = self._renderer()
+        if program and renderer is not None and program.IsUniformUsed("u_picture"):
             write_uniform(program, "u_picture", tuple(map(float, renderer.GetSize())))
