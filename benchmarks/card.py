@@ -80,7 +80,7 @@ class Drawing(NamedTuple):
 
 def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") -> Drawing:
     """Return what the client draws of a WebView: flat, steady, coloured, without perspective."""
-    from flowtex.rendering.mesh_levels import MeshLevels, Region, join
+    from flowtex.rendering.mesh_levels import Region, join, mesh_levels_of
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
     from flowtex.textures.tiles.pyramid import TILE_BLOCKS
@@ -100,7 +100,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     look["u_toEye"] = (geometry.frame @ -camera.axes[2]).tolist()
     drawn, regions = [], []
     for key, data, parts, finer in _shown(whole, settings, camera, size):
-        mesh = MeshLevels.of(data.textures)
+        mesh = mesh_levels_of(data.textures)
         levels = mesh.levels(None, half, size[1])
         for child in finer:
             levels[finer_part(pyramid, child, key)] = -1

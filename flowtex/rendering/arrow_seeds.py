@@ -99,11 +99,6 @@ class ArrowSeeds:
             self._last = view, spacing, self._make(view, spacing)
         return self._last[2]
 
-    def vertex_data(self, seeds: Seeds) -> dict[str, Floats]:
-        """Return the vertex attributes of seeds, as :func:`vertex_data` does."""
-        corners = self.corners[seeds.cell]
-        return vertex_data(self._geometry, corners, seeds.place, seeds.radius)
-
     def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
         """Return whether the seeds of the last view are sufficient for another one."""
         points = self._corners_of(view)

@@ -208,30 +208,9 @@ class Camera:
                 parallel=True,
                 parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
             )
-        closest = CAMERA_LIMITS.closest if focus is not None else 1.0
+        # A curved one from a side, so far away that the whole of it just fits.
         side = _side(center) if surface.on_globe else (ASIDE, UP)
-        toward, up = toward or side[0], up or side[1]
-        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up, share)
-
-    @classmethod
-    def _fit_curved(
-        cls,
-        surface: Surface,
-        center: Floats,
-        aspect: float,
-        zoom: float,
-        closest: float,
-        toward: Point,
-        up: Point,
-        share: float,
-    ) -> Self:
-        """Look from a side, so far away that the whole surface just fits.
-
-        With a point on the surface to look at, the camera comes up to ``closest`` times closer,
-        and then its view narrows. The middle of a sphere is not on it, so without a point the
-        view only narrows.
-        """
-        ahead = np.asarray(toward, dtype=float)
+        ahead, up = np.array(toward or side[0], dtype=float), up or side[1]
         ahead /= np.linalg.norm(ahead)
         right = np.cross(np.asarray(up, dtype=float), ahead)
         right /= np.linalg.norm(right)
@@ -241,7 +220,8 @@ class Camera:
         # Near points are seen larger.
         beside = np.maximum(np.abs(x) / aspect, np.abs(y)) / (half * share)
         distance = float(np.max(z + beside))
-        closer = min(zoom, closest)
+        # The middle of a sphere is not on it, so without a point the view only narrows.
+        closer = min(zoom, CAMERA_LIMITS.closest if focus is not None else 1.0)
         return cls(
             position=_point(center + ahead * (distance / closer)),
             focal_point=_point(center),

@@ -250,7 +250,10 @@ def diagnose() -> list[Check]:
     ['Python', 'OpenGL', 'Display', 'Shaders']
     """
     python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
-    return [python, _opengl(), _display(), _shaders(), *_packages()]
+    found = "none: pictures and the browser work, windows do not open"
+    if has_display():
+        found = os.environ.get("DISPLAY") or "the system's"
+    return [python, _opengl(), Check("Display", "ok", found), _shaders(), *_packages()]
 
 
 def _opengl() -> Check:
@@ -264,12 +267,6 @@ def _opengl() -> Check:
         f"{report.version}; {report.renderer} ({report.vendor}), {kind}; {report.window_class}; "
         f"textures up to {report.max_texture_size}, {report.texture_units} at once",
     )
-
-
-def _display() -> Check:
-    if has_display():
-        return Check("Display", "ok", os.environ.get("DISPLAY") or "the system's")
-    return Check("Display", "ok", "none: pictures and the browser work, windows do not open")
 
 
 def _shaders() -> Check:

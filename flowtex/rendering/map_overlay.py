@@ -84,9 +84,7 @@ def globe_radius(field: FlowField) -> float | None:
     It is ``None`` for a map, and where the field covers all of the Earth.
     """
     surface = field.surface
-    if not surface.on_globe:
-        return None
-    if surface.is_closed:
+    if not surface.on_globe or surface.is_closed:
         return None
     # A cell is deepest below the sphere through its corners at the middle of those.
     longest = _cells(field)[1].max(initial=0.0)

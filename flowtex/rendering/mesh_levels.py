@@ -79,19 +79,6 @@ class MeshLevels:
         #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
 
-    @classmethod
-    def of(cls, textures: TextureSet, *, placed: bool = False) -> MeshLevels:
-        """Return the levels of a texture set's surface.
-
-        ``placed`` says that fragments correct their place between the nodes.
-        """
-        geometry = textures.grid
-        # A noise that lies on the nodes moves with them.
-        shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
-        if placed:
-            shares = (PLACED_SHARE, HEIGHT_SHARE)
-        return cls(geometry.points, geometry.cells, geometry.periodic, *shares)
-
     @property
     def records(self) -> Floats:
         """Errors and places of blocks, by which a client chooses levels."""
@@ -165,12 +152,12 @@ class MeshLevels:
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
 
-    def _errors(self, values: Floats, directions: Floats | None = None) -> Floats:
+    def _errors(self, values: Floats, directions: Floats) -> Floats:
         """Return the greatest error of the values (J, I, C) in each block at each level, (L, ., .).
 
         A level leaves out every second line of the one before. Its error is at most that of the
-        one before plus the deviation of the omitted lines from their neighbours. With directions,
-        errors along the normals have the greatest weight, and the outline is separate.
+        one before plus the deviation of the omitted lines from their neighbours. Errors along the
+        normals have the greatest weight, and the outline is separate.
         """
         count = BLOCK_CELLS.bit_length()
         errors = np.zeros((2, count, len(self._rows.first), len(self._columns.first)))
@@ -181,27 +168,23 @@ class MeshLevels:
                 # Only lines that are left out have an error.
                 omitted = slice(1, len(lines[axis]) - 1, 2)
                 index = (slice(None), *(slice(None),) * axis, omitted)
-                at_omitted = None if directions is None else directions[index]
                 deviation = _deviation(values, lines[axis], axis)
-                size = self._size(deviation, at_omitted, border=1 - axis)
+                size = self._size(deviation, directions[index], border=1 - axis)
                 parts = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
                 errors[:, level] += self._greatest(size, *parts)
                 last = len(lines[axis]) - 1
                 kept = np.append(np.arange(0, last, 2), last)
                 values, lines[axis] = values.take(kept, axis), lines[axis][kept]
-                directions = None if directions is None else directions.take(kept, axis + 1)
+                directions = directions.take(kept, axis + 1)
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
-            at_omitted = None if directions is None else directions[:, :-1, :-1]
-            size = self._size(twist / 4, at_omitted)
+            size = self._size(twist / 4, directions[:, :-1, :-1])
             errors[:, level] += self._greatest(size, lines[0][:-1], lines[1][:-1])
         return np.asarray(errors.max(axis=0))
 
-    def _size(
-        self, error: Floats, directions: Floats | None, *, border: int | None = None
-    ) -> Floats:
+    def _size(self, error: Floats, directions: Floats, *, border: int | None = None) -> Floats:
         """Return the weighted sizes of errors (J, I, C) and of the outline, (2 or 1, J, I)."""
         size = norm(error)
-        if directions is None or not size.size:
+        if not size.size:
             return size[None]
         weighted = np.zeros((2, *size.shape))
         height = self._height * np.abs(dot(error, directions[0]))
@@ -308,15 +291,14 @@ def join(
         _put(nodes, part, np.full_like(part.levels, part.step))
     finest = nodes.copy()
     for axis in (0, 1):
-        padded = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="edge")
-        if periodic[axis]:
-            padded = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="wrap")
+        width = [(int(a == axis),) * 2 for a in (0, 1)]
+        padded = np.pad(nodes, width, mode="wrap" if periodic[axis] else "edge")
         for offset in (0, 2):
             beside = np.take(padded, range(offset, offset + blocks[axis]), axis=axis)
             finest = np.minimum(finest, beside)
     strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
     for part in parts:
-        limit = _over(finest, part, np.minimum) + BLOCK_CELLS.bit_length() - 1 - part.step
+        limit = _least(finest, part) + BLOCK_CELLS.bit_length() - 1 - part.step
         np.minimum(part.levels, limit, out=part.levels)
         _put(strides, part, part.levels + part.step)
     # Lines between blocks, (2, rows + 1, columns + 1): below them, and left of them.
@@ -371,13 +353,13 @@ def _put(blocks: Ints, part: Region, values: Ints) -> None:
     np.copyto(covered, spread[:rows, :columns], where=drawn[:rows, :columns])
 
 
-def _over(blocks: Ints, part: Region, reduce: np.ufunc) -> Ints:
-    """Reduce values of the finest blocks over each block of a part."""
+def _least(blocks: Ints, part: Region) -> Ints:
+    """Return the least value of the finest blocks over each block of a part."""
     size, (rows, columns) = 1 << part.step, part.levels.shape
     j = np.arange(part.row, min(part.row + rows * size, len(blocks)))
     i = np.arange(part.column, min(part.column + columns * size, blocks.shape[1]))
-    row_values = reduce.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
-    result: Ints = reduce.reduceat(row_values, np.arange(0, len(i), size), axis=1)
+    row_values = np.minimum.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
+    result: Ints = np.minimum.reduceat(row_values, np.arange(0, len(i), size), axis=1)
     return result
 
 
@@ -421,6 +403,11 @@ def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels 
 
     ``placed`` says that fragments correct their place between the nodes.
     """
-    if isinstance(textures.geometry, TriangleGeometry):
-        return TriangleBlocks(textures.geometry)
-    return MeshLevels.of(textures, placed=placed)
+    geometry = textures.geometry
+    if isinstance(geometry, TriangleGeometry):
+        return TriangleBlocks(geometry)
+    # A noise that lies on the nodes moves with them.
+    shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
+    if placed:
+        shares = (PLACED_SHARE, HEIGHT_SHARE)
+    return MeshLevels(geometry.points, geometry.cells, geometry.periodic, *shares)

@@ -16,26 +16,6 @@ from pathlib import Path, PurePosixPath
 _PACKAGE = Path(__file__).resolve().parents[1]
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
-#: Names that the files ask for with ``#ifdef``.
-VARIANTS = (
-    "FLOWTEX_CELLS",
-    "FLOWTEX_MOVING",
-    "FLOWTEX_OPAQUE",
-    "FLOWTEX_PAPER",
-    "FLOWTEX_PICTURE",
-    "FLOWTEX_PLACED",
-    "FLOWTEX_PLANAR",
-    "FLOWTEX_SIGNFREE",
-    "FLOWTEX_SPARSE",
-    "FLOWTEX_TRIANGLES",
-    "FLOWTEX_UNCERTAIN",
-    "FLOWTEX_UNSTEADY",
-)
-
-
-class GLSLError(ValueError):
-    """Shader text cannot be put together."""
-
 
 def shader_folder(package: Path = _PACKAGE) -> Path:
     """Return the folder that holds the shaders of a package.
@@ -83,30 +63,18 @@ def shader_source(name: str) -> str:
 
 
 def shader_text(name: str, variants: Iterable[str] = ()) -> str:
-    """Return a shader with its includes, and names out of :data:`VARIANTS` defined before it.
+    """Return a shader with its includes, and the names of variants defined before it.
 
-    Raises a GLSLError when a variant is unknown, or files include one another in a circle; a
-    FileNotFoundError when the file does not exist.
+    Raises a FileNotFoundError when the file does not exist.
     """
-    unknown = sorted(set(variants) - set(VARIANTS))
-    if unknown:
-        msg = f"unknown variant {', '.join(unknown)}; expected {', '.join(VARIANTS)}"
-        raise GLSLError(msg)
     defines = "".join(
         f"#ifndef {variant}\n#define {variant}\n#endif\n" for variant in sorted(set(variants))
     )
-    return defines + _expand(name, set(), ())
+    return defines + _expand(name, set())
 
 
-def _expand(name: str, seen: set[str], open_files: tuple[str, ...]) -> str:
-    if name in open_files:
-        msg = f"shader files include one another: {' -> '.join((*open_files, name))}"
-        raise GLSLError(msg)
+def _expand(name: str, seen: set[str]) -> str:
     if name in seen:
         return ""
     seen.add(name)
-
-    def insert(match: re.Match[str]) -> str:
-        return _expand(match.group(1), seen, (*open_files, name))
-
-    return _INCLUDE.sub(insert, shader_source(name))
+    return _INCLUDE.sub(lambda match: _expand(match.group(1), seen), shader_source(name))

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Ints
+from flowtex._util.array_types import Floats
 from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.constants import FAR_CELLS, KERNELS, UNCERTAIN_LAYER
@@ -143,7 +143,6 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     geometry = textures.geometry
     # A power of two, so that it is exact.
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
-    even = _origin_cell(geometry.local(view.focus), finest)
     sides, kernel = _direction(textures, settings)
     moving, sparse = is_moving(textures, settings, view), is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
@@ -176,7 +175,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "near": is_near(textures, settings, view),
         "sparse": sparse,
         **_motion(textures, settings, view),
-        **_noise_origin(even, finest, view.anchor),
+        **_noise_origin(geometry.local(view.focus), finest, view.anchor),
         "u_noiseFinest": finest,
         "u_texel": geometry.extent / settings.resolution,
         "u_apart": arrow_distance(settings) * view.density,
@@ -322,10 +321,15 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
     }
 
 
-def _noise_origin(even: Ints, finest: float, anchor: Floats) -> Values:
-    """Return the noise's origin in space and in the finest cells of both families of lattices."""
+def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
+    """Return the noise's origin in space and in the finest cells of both families of lattices.
+
+    It is a lattice point near the focus that a float holds exactly.
+    """
+    coarse, limit = 2**CLEAR_DOUBLINGS, 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
+    even = np.clip(np.rint(focus / finest / coarse), -limit, limit) * coarse + 0.0
     odd = even / np.sqrt(2.0)
-    odd_cell = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
+    odd_cell = np.floor(odd / coarse) * coarse
     return {
         "u_noiseOrigin": tuple(float(c) for c in even * finest - anchor),
         "u_noiseOriginEven": tuple(float(c) for c in even),
@@ -349,11 +353,3 @@ def _paper(paper: PaperTextures, settings: Settings, density: float) -> Values:
         "u_pictureGrey": paper.noise.ndim == 2,
         "u_tiles": float(tiles),
     }
-
-
-def _origin_cell(focus: Floats, finest: float) -> Ints:
-    """Return a lattice point near the focus, in finest cells, that a float holds exactly."""
-    coarse = 2**CLEAR_DOUBLINGS
-    limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
-    cell = np.clip(np.rint(focus / finest / coarse), -limit, limit)
-    return np.asarray(cell * coarse, dtype=np.int64)

@@ -203,23 +203,18 @@ class Feed:
 
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
-        field = self._view.field
+        field, nodes = self._view.field, math.prod(self._view.shape)
         # The coarse form of triangles is the root of their tiles, which is sent first in any case.
         is_whole = self._view.scene.pyramid is None
-        if field.triangles is not None or (is_whole and self._nodes <= LARGE_NODES):
+        if field.triangles is not None or (is_whole and nodes * len(field.times) <= LARGE_NODES):
             return self._view.data()
-        if is_whole and math.prod(self._view.shape) <= LARGE_NODES:
+        if is_whole and nodes <= LARGE_NODES:
             # Where the client traces, no more times are sent than the paths lead through.
             data = self._view.data()
             steps = len(data.moment(self._moment()))
-            if data.traced and steps * math.prod(self._view.shape) <= VERY_LARGE_NODES:
+            if data.traced and steps * nodes <= VERY_LARGE_NODES:
                 return data
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
-
-    @property
-    def _nodes(self) -> int:
-        """Nodes of the whole, at all times together."""
-        return math.prod(self._view.shape) * len(self._view.field.times)
 
     def _refine(self) -> None:
         """Replace a coarse scene by the whole one."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
 import flowtex
 from flowtex.rendering import shaders
+
+WORD = re.compile(r"FLOWTEX_[A-Z]+").findall
 
 
 def test_an_include_is_put_in_once() -> None:
@@ -25,21 +25,12 @@ def test_variants_are_defined_first_and_in_order() -> None:
     )
 
 
-def test_an_unknown_variant_is_refused() -> None:
-    with pytest.raises(
-        shaders.GLSLError,
-        match=r"^unknown variant FLOWTEX_PAPRE; expected FLOWTEX_CELLS, FLOWTEX_MOVING, ",
-    ):
-        shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
-
-
-def test_a_circle_of_includes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    files = {"a.glsl": "//#include b.glsl\n", "b.glsl": "//#include a.glsl\n"}
-    monkeypatch.setattr(shaders, "shader_source", files.__getitem__)
-    with pytest.raises(
-        shaders.GLSLError, match=r"^shader files include one another: a.glsl -> b.glsl -> a.glsl$"
-    ):
-        shaders.shader_text("a.glsl")
+def test_files_ask_for_every_variant() -> None:
+    texts = [path.read_text() for path in Path(flowtex.__file__).parent.rglob("*.py")]
+    named = {name for text in texts for name in re.findall(r'"(FLOWTEX_[A-Z]+)"', text)}
+    sources = map(shaders.shader_source, shaders.shader_names())
+    asked = {n for s in sources for line in re.findall(r"#(?:if|elif).*", s) for n in WORD(line)}
+    assert {"FLOWTEX_PAPER", "FLOWTEX_OPAQUE", "FLOWTEX_PLACED"} <= named <= asked
 
 
 def test_no_line_of_shader_text_stands_in_python() -> None:

@@ -18,11 +18,10 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.mipmaps import Mips
-from flowtex.rendering.cpu.pixel import LoadedTextures, Window
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Appearance
-from flowtex.scene.probe import Probe, locate, probe
+from flowtex.scene.probe import LoadedTextures, Probe, Window, locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 

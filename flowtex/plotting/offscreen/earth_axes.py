@@ -83,7 +83,7 @@ def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
     for number, axis in enumerate((ax.xaxis, ax.yaxis)):
         if unit == AxesUnit():
             border = _Border(ax, projection, number)
-            axis.set_major_locator(_BorderLocator(border))
+            axis.set_major_locator(border)
             axis.set_major_formatter(FuncFormatter(border.text))
         else:
             axis.set_major_locator(_DegreeLocator(nbins="auto", steps=DEGREE_STEPS))
@@ -115,7 +115,7 @@ def _step(degrees: float, most: float) -> float:
     return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
 
 
-class _Border:
+class _Border(Locator):
     """Crossings of meridians with the lower border of axes (0), or parallels with the left (1)."""
 
     def __init__(self, ax: Axes, projection: Projection, number: int) -> None:
@@ -124,9 +124,17 @@ class _Border:
 
     def crossings(self) -> tuple[Floats, Floats, DegreeText]:
         """Return the places along the border, their degrees, and the function for their text."""
-        axis = (self._ax.xaxis, self._ax.yaxis)[self._number]
-        most = _room(axis)
+        most = _room((self._ax.xaxis, self._ax.yaxis)[self._number])
         return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
+
+    def __call__(self) -> list[float]:
+        """Return the places along the border."""
+        return [float(place) for place in self.crossings()[0]]
+
+    def tick_values(self, vmin: float, vmax: float) -> list[float]:
+        """Return the ticks of the axes as they are."""
+        del vmin, vmax
+        return self()
 
     def text(self, x: float, position: int | None = None) -> str:
         """Return the degrees at the nearest crossing."""
@@ -180,16 +188,3 @@ class _DegreeLocator(MaxNLocator):
         if step < 2 * TICKS[-1]:
             return super().tick_values(vmin, vmax)
         return np.arange(math.floor(low / step), math.ceil(high / step) + 1) * step
-
-
-class _BorderLocator(Locator):
-    def __init__(self, border: _Border) -> None:
-        self._border = border
-
-    def __call__(self) -> list[float]:
-        return [float(place) for place in self._border.crossings()[0]]
-
-    def tick_values(self, vmin: float, vmax: float) -> list[float]:
-        """Return the ticks of the axes as they are."""
-        del vmin, vmax
-        return self()

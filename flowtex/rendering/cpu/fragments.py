@@ -18,7 +18,7 @@ from flowtex.rendering.constants import (
     LEVELS_AROUND,
     PI,
 )
-from flowtex.rendering.cpu.path import Places, TrianglePlaces, coordinates_by
+from flowtex.rendering.cpu.path import Places, TrianglePlaces
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.uniforms import Values
 from flowtex.textures.texture_set import TextureSet
@@ -62,11 +62,14 @@ class Fragments:
             return Varying(*coverage.mix(nodal.reshape(-1, nodal.shape[-1])))
 
         if isinstance(geometry, TriangleGeometry):
+            corners = coverage.corners
+            # As the vertices of triangles have them, which no two triangles share.
+            normals = normals_at_corners(geometry.points[0][corners], geometry.normal[0][corners])
             return cls(
                 varying(geometry.position),
                 Varying(*(a[:, 1:] for a in (coverage.weights, coverage.dx, coverage.dy))),
-                normal=None if geometry.planar else _normals(geometry, coverage),
-                nodes=coverage.corners,
+                normal=None if geometry.planar else Varying(*coverage.mix_corners(normals)),
+                nodes=corners,
             )
         return cls(
             varying(geometry.position),
@@ -87,8 +90,12 @@ class Fragments:
     @property
     def by(self) -> Floats:
         """Change of the coordinates by a vector in the surface's frame, (N, 2, 3)."""
-        at, position = self.coordinate, self.position
-        return coordinates_by(position.dx, position.dy, at.dx, at.dy)
+        at, dx, dy = self.coordinate, self.position.dx, self.position.dy
+        normal = np.cross(dx, dy)
+        square = np.einsum("nc,nc->n", normal, normal)[:, None]
+        across = normal / np.maximum(square, np.finfo(float).tiny)
+        first, second = np.cross(dy, across), np.cross(across, dx)
+        return np.asarray(at.dx[:, :, None] * first[:, None] + at.dy[:, :, None] * second[:, None])
 
     def __len__(self) -> int:
         """Count the fragments."""
@@ -101,17 +108,6 @@ class Fragments:
             noise, normal = (None if v is None else v[part] for v in (self.noise, self.normal))
             nodes = None if self.nodes is None else self.nodes[part]
             yield part, Fragments(self.position[part], self.coordinate[part], noise, normal, nodes)
-
-
-def _normals(geometry: TriangleGeometry, coverage: Coverage) -> Varying:
-    """Interpolate normals as the vertices of triangles have them, which no two triangles share."""
-    corners = coverage.corners
-    normals = normals_at_corners(geometry.points[0][corners], geometry.normal[0][corners])
-    value, dx, dy = (
-        np.einsum("nk,nkc->nc", share, normals)
-        for share in (coverage.weights, coverage.dx, coverage.dy)
-    )
-    return Varying(value, dx, dy)
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:

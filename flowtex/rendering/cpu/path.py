@@ -173,15 +173,3 @@ def moved(places: Places, by: Floats) -> Places:
         return np.asarray(places + by)
     shares = places.shares + np.concatenate([-by.sum(axis=1, keepdims=True), by], axis=1)
     return TrianglePlaces(shares, places.nodes, places.by)
-
-
-def coordinates_by(dx: Floats, dy: Floats, by_x: Floats, by_y: Floats) -> Floats:
-    """Return the change of coordinates by a vector, (N, 2, 3), from derivatives on the screen.
-
-    They are those of positions, (N, 3), and of the coordinates, (N, 2).
-    """
-    normal = np.cross(dx, dy)
-    square = np.einsum("nc,nc->n", normal, normal)[:, None]
-    across = normal / np.maximum(square, np.finfo(float).tiny)
-    first, second = np.cross(dy, across), np.cross(across, dx)
-    return np.asarray(by_x[:, :, None] * first[:, None] + by_y[:, :, None] * second[:, None])

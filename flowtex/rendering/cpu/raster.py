@@ -49,11 +49,12 @@ class Coverage:
 
     def mix(self, data: NDArray[np.floating]) -> tuple[Floats, Floats, Floats]:
         """Interpolate data of points, (P, C), to the pixels: values and derivatives, (N, C)."""
-        corner_values = data.astype(float)[self.corners]
-        value, dx, dy = (
-            np.einsum("nk,nkc->nc", share, corner_values)
-            for share in (self.weights, self.dx, self.dy)
-        )
+        return self.mix_corners(data.astype(float)[self.corners])
+
+    def mix_corners(self, values: Floats) -> tuple[Floats, Floats, Floats]:
+        """Interpolate values of the corners, (N, 3, C), as :meth:`mix` does."""
+        shares = (self.weights, self.dx, self.dy)
+        value, dx, dy = (np.einsum("nk,nkc->nc", share, values) for share in shares)
         return value, dx, dy
 
 
@@ -99,7 +100,15 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
         owner[pixel[first]] = triangle[first]
     pixel = np.flatnonzero(owner >= 0)
     owner = owner[pixel]
-    return _coverage(pixel, triangles[owner], edges[owner], width, numbers[owner])
+    inverse = edges[owner]
+    shares = _at_pixels(inverse, *np.divmod(pixel, width))
+    total = shares.sum(axis=-1, keepdims=True)
+    weights = shares / total
+    dx, dy = (
+        (inverse[..., k] - weights * inverse[..., k].sum(axis=-1, keepdims=True)) / total
+        for k in range(2)
+    )
+    return Coverage(pixel, triangles[owner], weights, dx, dy, numbers[owner])
 
 
 def _prepare(
@@ -185,18 +194,3 @@ def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
     """Return the edges' values at the middle of pixels, (N, 3)."""
     x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])
-
-
-def _coverage(
-    pixel: Indices, corners: Indices, edges: Floats, width: int, cell: Indices
-) -> Coverage:
-    """Return the shares of the corners with their derivatives."""
-    row, column = np.divmod(pixel, width)
-    shares = _at_pixels(edges, row, column)
-    total = shares.sum(axis=-1, keepdims=True)
-    weights = shares / total
-    dx, dy = (
-        (edges[..., k] - weights * edges[..., k].sum(axis=-1, keepdims=True)) / total
-        for k in range(2)
-    )
-    return Coverage(pixel, corners, weights, dx, dy, cell)

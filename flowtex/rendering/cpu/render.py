@@ -124,16 +124,13 @@ def view_state(
     return replace(view, focus=focus, eye=camera.eye, time=time)
 
 
-def slice_mips(textures: TextureSet, step: int) -> Mips:
-    """Return the slice texture of one destination time, with its mip levels."""
-    return Mips(textures.layers(step), levels=textures.geometry.levels)
-
-
 def slices_at(
     textures: TextureSet,
     steps: tuple[int, int],
     values: Values,
-    mips: Callable[[TextureSet, int], Mips] = slice_mips,
+    mips: Callable[[TextureSet, int], Mips] = lambda textures, step: Mips(
+        textures.layers(step), levels=textures.geometry.levels
+    ),
 ) -> Slices:
     """Return the slice texture between two destination times; ``mips`` may cache them."""
     before, uncertain = mips(textures, steps[0]), bool(textures.geometry.field.uncertainty)

@@ -129,7 +129,10 @@ class Summing:
             self._parting = np.clip(2.0 * sine, 0.0, 1.0)
             sine = np.maximum(np.abs(sine), const.LEAST_SPEED)
             count *= np.minimum(const.TOGETHER * cosine / sine, 1.0)
-        sums = self._first(len(base))
+        # The sample at the fragments themselves.
+        middle = np.maximum(weight(1.0, 0.0, self._parting, values), const.LEAST_WEIGHT)
+        none = np.zeros((len(base), 3))
+        sums = Sums(middle[:, None] * lookup.lookup(none, none[:, 0]), middle**2, none[:, 0].copy())
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, count)
         value = lookup.blend(sums)
@@ -185,23 +188,13 @@ class Summing:
         speed = np.linalg.norm(base[:, :3], axis=-1)
         scale = np.ones(len(base)) if self._paper else base[:, 3] * self._values["u_unit"]
         spacing = self._lookup.spacing * speed if self._paper else self._lookup.spacing
-        for sign, before in self._sides():
+        sides = ((-1.0, 0), (1.0, len(self._lags)))  # and the layers before their first slices
+        for sign, before in sides[: self._values["u_sides"]]:
             next_ = self._slices.layer(coordinate, before + 1, level)
             ends = (base[:, :3], next_[:, :3])
             path = Path(self._slices, coordinate, level, ends, before, self._lags)
             reach = np.where(speed > const.LEAST_SPEED, next_[:, 3], -np.inf)
             yield Side(sign, path, spacing, reach, scale)
-
-    def _sides(self) -> tuple[tuple[float, int], ...]:
-        """Sides of the paths: their sign, and the layer before their first slice."""
-        sides = ((-1.0, 0), (1.0, len(self._lags)))
-        return sides[: self._values["u_sides"]]
-
-    def _first(self, count: int) -> Sums:
-        """Start with the sample at the fragments themselves."""
-        middle = np.maximum(weight(1.0, 0.0, self._parting, self._values), const.LEAST_WEIGHT)
-        values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
-        return Sums(middle[:, None] * values, middle**2, np.zeros(count))
 
     @property
     def _count(self) -> int:

@@ -460,7 +460,8 @@ class SurfaceArrows:
             inside, corners, place = in_tile(pyramid, key, geometry, root_place)
             result[key] = vertex_data(geometry, corners, place, seeds.radius[inside])
             seeds = seeds[~inside]
-        result[None] = self._seeds.vertex_data(seeds)
+        geometry, corners = layers[None].textures.geometry, self._seeds.corners[seeds.cell]
+        result[None] = vertex_data(geometry, corners, seeds.place, seeds.radius)
         return {key: data for key, data in result.items() if len(data["flowtexRadius"])}
 
 

@@ -12,6 +12,7 @@ A client that cannot trace gets the slices, packed once for all views of the sam
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,6 @@ from flowtex._util.cache import ByteCache, WeakCache
 from flowtex._util.vectors import norm
 from flowtex.field.formula import Formula
 from flowtex.field.formula.rates import gradient_trees
-from flowtex.field.grids.poles import Poles
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -158,7 +158,7 @@ def trace_header(textures: TextureSet) -> Header:
     """Return the numbers of tracing and of laying out the texels."""
     geometry = textures.grid
     surface, store = geometry.field.surface, textures.store
-    poles = surface.poles
+    poles, at_poles = surface.poles, dict[str, Any]()
     timed, last = store.parameter == "time", float(store.lags[-1])
     rest = (STILL_CELLS / last if store.streamlines else 0.0) if timed else RESTING_CELLS
     rows, columns = geometry.rows, geometry.columns
@@ -169,6 +169,14 @@ def trace_header(textures: TextureSet) -> Header:
         parts += ["normal"]
     if poles is not None:
         parts += ["rays"]
+        at_poles["poles"] = [
+            {
+                **{"component": pole.component, "line": pole.line, "inward": pole.inward},
+                "near": Charts(poles).near,
+                "plane": plain_list(pole.size * pole.plane @ geometry.frame.T),
+            }
+            for pole in poles
+        ]
     return {
         "parts": parts,
         # Of all nodes, and the one that the texel before the first would hold.
@@ -187,25 +195,8 @@ def trace_header(textures: TextureSet) -> Header:
         "pathlines": not store.streamlines,
         "rest": rest,
         **({"uncertain": True} if geometry.field.uncertainty else {}),
-        **({} if poles is None else _poles(poles, geometry.frame)),
+        **at_poles,
         **({} if timed or np.isinf(store.long_enough) else {"longest": store.long_enough}),
-    }
-
-
-def _poles(poles: Poles, frame: Floats) -> Header:
-    """Return the header of the poles, in addition to the part "rays"."""
-    near = Charts(poles).near
-    return {
-        "poles": [
-            {
-                "component": pole.component,
-                "line": pole.line,
-                "inward": pole.inward,
-                "near": near,
-                "plane": plain_list(pole.size * pole.plane @ frame.T),
-            }
-            for pole in poles
-        ]
     }
 
 
