@@ -8,7 +8,7 @@ parallels, and land and the globe below; those of the structure belong to the st
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, NamedTuple
 
@@ -35,18 +35,8 @@ from flowtex.rendering.map_overlay import (
 )
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.layer import insert_text, plain_actor, weak_callback
-from flowtex.rendering.webgl.marks import (
-    DOT_PX,
-    KIND_MARKS,
-    LINE_COLORS,
-    LINE_PX,
-    MIDDLE_COLOR,
-    NULLCLINE_COLORS,
-    RIM_COLOR,
-    RIM_OPACITY,
-)
+from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
-from flowtex.trace.structure.critical_points import CriticalPoints
 
 #: How much farther than the surface land is, as a share of the distance.
 LAND_FARTHER = 2e-4
@@ -209,7 +199,7 @@ class MapOverlay(Overlay):
         super().__init__(actor, renderer, surface)
         self._scene, self._field = scene, scene.whole
         self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
-        self._radius: float | None = None
+        self._radius: float | None
         self.show()
 
     def show(self) -> None:
@@ -217,7 +207,7 @@ class MapOverlay(Overlay):
         if self._field is not self._scene.whole:
             self._field, self._lines = self._scene.whole, {}
         self._clear()
-        appearance = self._scene.appearance
+        self._radius, appearance = None, self._scene.appearance
         if appearance.land is not None:
             self._add_land(appearance.land)
         for option, stroke in STROKES.items():
@@ -257,10 +247,6 @@ class MapOverlay(Overlay):
             actor.prop.color, actor.prop.lighting = color, is_lit
             if is_lit:
                 actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
-
-    def _clear(self) -> None:
-        super()._clear()
-        self._radius = None
 
     def _look(self, camera: vtkCamera) -> None:
         if self._radius is None:
@@ -367,46 +353,8 @@ class StructureOverlay(Overlay):
                 self._found.add_done_callback(lambda _: notify())
             return
         self._shown = self._key
-        if settings.nullclines:
-            self._add_nullclines(scene.structure.nullclines(scene.step, self._window))
-        if settings.separatrices:
-            self._add_paths(scene.structure.paths(scene.step, settings.separatrices))
-        if settings.critical_points:
-            self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
-
-    def _add_nullclines(self, lines: Sequence[Floats]) -> None:
-        outer, inner = LINE_PX
-        drawn = [(inner, color, 1.0, 1) for color in NULLCLINE_COLORS.values()]
-        looks = ((outer, RIM_COLOR, RIM_OPACITY, 0), *drawn)
-        for pieces, (width, color, opacity, above) in zip(
-            (np.concatenate(lines), *lines), looks, strict=True
-        ):
-            if len(pieces):
-                mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
-                self._add_lines(((0.0, mesh),), width, color, opacity, above=above)
-
-    def _add_paths(self, by_name: Mapping[str, Sequence[Floats]]) -> None:
-        outer, inner = LINE_PX
-        all_paths = [path for paths in by_name.values() for path in paths]
-        self._add_pieces(all_paths, outer, RIM_COLOR, RIM_OPACITY, above=0)
-        for above, (name, color) in enumerate(LINE_COLORS.items(), 1):
-            self._add_pieces(by_name[name], inner, color, above=above)
-
-    def _add_points(self, points: CriticalPoints) -> None:
-        outer, inner, middle = DOT_PX
-        all_dots = [point.position[None] for point in points]
-        self._add_pieces(all_dots, outer, RIM_COLOR, RIM_OPACITY, above=5)
-        for kind, mark in KIND_MARKS.items():
-            dots = [point.position[None] for point in points.of_kind(kind)]
-            self._add_pieces(dots, inner, mark.color, above=6)
-            if mark.turns:
-                self._add_pieces(dots, middle, MIDDLE_COLOR, above=7)
-
-    def _add_pieces(
-        self, paths: Sequence[Floats], width: float, color: str, opacity: float = 1.0, *, above: int
-    ) -> None:
-        """Add paths (N, 3) each as lines, or as dots where they have one point."""
-        if paths:
-            start = np.concatenate([path[:-1] if len(path) > 1 else path for path in paths])
-            end = np.concatenate([path[1:] if len(path) > 1 else path for path in paths])
-            self._add_lines(((0.0, piece_mesh(start, end)),), width, color, opacity, above=above)
+        drawn = strokes(scene.structure, settings, scene.step, self._window)
+        for pieces, color, width, above in (stroke for stroke in drawn if len(stroke[0])):
+            forms = ((0.0, piece_mesh(pieces[:, 0], pieces[:, 1])),)
+            opacity = RIM_OPACITY if color == RIM_COLOR else 1.0
+            self._add_lines(forms, width, color, opacity, above=above)

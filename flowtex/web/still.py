@@ -20,16 +20,13 @@ from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import arrow_distance, has_arrows
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import (
-    DOT_PX,
     KIND_MARKS,
     LINE_COLORS,
-    LINE_PX,
-    MIDDLE_COLOR,
     NULLCLINE_COLORS,
     RIM_COLOR,
+    strokes,
 )
 from flowtex.scene.annotations import annotate, difference_text, layout, write_ticks
-from flowtex.scene.scene import Scene
 from flowtex.web import preview
 from flowtex.web.view import WebView
 
@@ -126,32 +123,13 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
                 draw.line([*head, head[0]], ink, more or 1, joint="curve")
             draw.polygon(head, "black")
     wide = float(np.clip(np.sqrt(size[1] / USUAL_HEIGHT_PX), *WIDTH_RANGE))
-    for points, color, thick in _strokes(scene):
-        pixels = preview.pixels_of(points, camera, size)
-        if len(pixels) > 1:
-            draw.line([tuple(p) for p in pixels], color, max(round(wide * thick), 1))
-        else:
-            draw.circle(tuple(pixels[0]), wide * thick / 2, color)
+    for pieces, color, thick, _ in strokes(scene.structure, scene.settings, scene.step):
+        for start, end in preview.pixels_of(pieces, camera, size):
+            if (start == end).all():
+                draw.circle(tuple(start), wide * thick / 2, color)
+            else:
+                draw.line([tuple(start), tuple(end)], color, max(round(wide * thick), 1))
     return image
-
-
-def _strokes(scene: Scene) -> Iterator[tuple[Floats, str, float]]:
-    """Yield lines and dots of the structure: points, colour and width, those below first."""
-    structure, settings, step = scene.structure, scene.settings, scene.step
-    lines: list[tuple[Floats, str]] = []
-    if settings.nullclines:
-        each = zip(structure.nullclines(step), NULLCLINE_COLORS.values(), strict=True)
-        lines += [(piece, color) for pieces, color in each for piece in pieces]
-    if settings.separatrices:
-        paths = structure.paths(step, settings.separatrices)
-        lines += [(path, LINE_COLORS[name]) for name in LINE_COLORS for path in paths[name]]
-    yield from ((points, RIM_COLOR, LINE_PX[0]) for points, _ in lines)
-    yield from ((points, color, LINE_PX[1]) for points, color in lines)
-    count = settings.critical_points
-    for point in structure.points(step)[:count] if count else ():
-        mark = KIND_MARKS[point.kind]
-        colors = (RIM_COLOR, mark.color, MIDDLE_COLOR)[: 3 if mark.turns else 2]
-        yield from ((point.position[None], *look) for look in zip(colors, DOT_PX, strict=False))
 
 
 def _arrow_paths(

@@ -9,6 +9,7 @@ piece, and the number of the component.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.colours import rgb
 from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
 from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.settings import Settings
 from flowtex.textures.geometry import DrawnSurface
 from flowtex.textures.tiles.structure import Structure
 
@@ -66,6 +68,39 @@ RIM_COLOR, RIM_OPACITY, MIDDLE_COLOR = "#101418", 0.85, "#ffffff"
 #: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring; widths of
 #: the rim of a line and of its colour.
 DOT_PX, LINE_PX = (12.0, 9.0, 4.0), (3.6, 2.0)
+
+
+def strokes(
+    structure: Structure, settings: Settings, step: int, window: Floats | None = None
+) -> Iterator[tuple[Floats, str, float, int]]:
+    """Yield pieces (N, 2, 3) of lines, and dots whose ends are one, as the settings request them.
+
+    Each has a colour, a width in pixels, and the number of lines that it hides.
+    """
+    lines: list[tuple[Floats, str, int]] = []
+    if settings.nullclines:
+        found = zip(structure.nullclines(step, window), NULLCLINE_COLORS.values(), strict=True)
+        lines += [(pieces, color, 1) for pieces, color in found]
+    if settings.separatrices:
+        paths = structure.paths(step, settings.separatrices)
+        colors = enumerate(LINE_COLORS.items(), 1)
+        lines += [(_pieces(paths[name]), color, above) for above, (name, color) in colors]
+    if lines:
+        yield np.concatenate([pieces for pieces, *_ in lines]), RIM_COLOR, LINE_PX[0], 0
+    yield from ((pieces, color, LINE_PX[1], above) for pieces, color, above in lines)
+    if settings.critical_points:
+        points = structure.points(step)[: settings.critical_points]
+        yield _pieces([p.position[None] for p in points]), RIM_COLOR, DOT_PX[0], 5
+        for kind, mark in KIND_MARKS.items():
+            dots = _pieces([p.position[None] for p in points.of_kind(kind)])
+            yield dots, mark.color, DOT_PX[1], 6
+            yield dots[: len(dots) * mark.turns], MIDDLE_COLOR, DOT_PX[2], 7
+
+
+def _pieces(paths: Sequence[Floats]) -> Floats:
+    """Cut paths (N, 3) into pieces, and double the only point of a dot."""
+    ends = ((path[:-1], path[1:]) if len(path) > 1 else (path, path) for path in paths)
+    return np.concatenate([np.zeros((0, 2, 3)), *(np.stack(pair, axis=1) for pair in ends)])
 
 
 @dataclass(frozen=True, eq=False)
