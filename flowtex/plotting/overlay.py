@@ -102,8 +102,7 @@ class Overlay:
         """Add lines of a width in pixels; those with ``above`` hide the ones below it."""
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
         variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})
-        actor = self._add(forms[-1][1], nearer, "line_", variant)
-        self._parts[-1] = Part(actor, nearer, width, forms)
+        actor = self._add(forms[-1][1], nearer, "line_", variant, width, forms)
         for name in (OTHER, SIDE):
             actor.mapper.MapDataArrayToVertexAttribute(name, name, POINTS, -1)
         if above is None:
@@ -119,11 +118,12 @@ class Overlay:
         nearer: float,
         prefix: str = "map_",
         variant: frozenset[str] = frozenset(),
+        *shape: Any,
     ) -> pv.Actor:
         actor = plain_actor(mesh)
         actor.SetUserMatrix(self._actor.GetMatrix())
         insert_text(actor, "flowtex overlay", prefix, variant)
-        self._parts.append(Part(actor, nearer))
+        self._parts.append(Part(actor, nearer, *shape))
         if (renderer := self._renderer()) is not None:
             renderer.AddActor(actor)
         return actor
@@ -135,17 +135,12 @@ class Overlay:
                 renderer.RemoveActor(part.actor)
         self._parts = []
 
-    def _look(self, camera: vtkCamera) -> None:
-        """Follow a camera that sees the flow."""
-
     def _before_frame(self) -> None:
         """Follow the flow's actor, the camera, and the size of the picture's pixels."""
         renderer = self._renderer()
         if renderer is None or not self._parts:
             return
         is_visible = bool(self._actor.GetVisibility())
-        if is_visible:
-            self._look(renderer.GetActiveCamera())
         nearer = _depth_of_share(renderer.GetActiveCamera())
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
         height, density = renderer.GetSize()[1], self._surface.view.density
@@ -248,21 +243,20 @@ class MapOverlay(Overlay):
             if is_lit:
                 actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
 
-    def _look(self, camera: vtkCamera) -> None:
-        if self._radius is None:
-            return
-        self._include_globe(camera, self._radius)
-        for part in self._parts:
-            if not part.nearer:
-                part.actor.SetScale(1 - GLOBE_LOWER_PX * self._horizon_pixel() / self._radius)
-
-    def _horizon_pixel(self) -> float:
-        """Return the length of a pixel on the horizon, the farthest visible point of the globe."""
-        view, eye = self._surface.view, self._surface.view.eye
-        if not eye[3]:
-            return view.pixel
-        horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - (self._radius or 0.0) ** 2, 0.0))
-        return view.pixel * float(horizon / np.linalg.norm(eye[:3] - view.focus))
+    def _before_frame(self) -> None:
+        renderer, radius = self._renderer(), self._radius
+        if renderer is not None and radius is not None and self._actor.GetVisibility():
+            self._include_globe(renderer.GetActiveCamera(), radius)
+            # The length of a pixel on the horizon, the farthest visible point of the globe.
+            view, eye = self._surface.view, self._surface.view.eye
+            pixel = view.pixel
+            if eye[3]:
+                horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - radius**2, 0.0))
+                pixel *= float(horizon / np.linalg.norm(eye[:3] - view.focus))
+            for part in self._parts:
+                if not part.nearer:
+                    part.actor.SetScale(1 - GLOBE_LOWER_PX * pixel / radius)
+        super()._before_frame()
 
     def _include_globe(self, camera: vtkCamera, radius: float) -> None:
         """Extend the clipping range to the globe, which has no bounds in VTK."""

@@ -170,14 +170,17 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
     if process.returncode == 0 and lines:
         report = OpenGLReport(**json.loads(lines[-1]))
         return report if report.usable else _unusable(report.failure)
-    errors = re.sub(r"\x1b\[[0-9;]*m", "", process.stderr).strip().splitlines()
+    code = process.returncode
+    if code >= 0:
+        errors = re.sub(r"\x1b\[[0-9;]*m", "", process.stderr).strip().splitlines()
+        detail = f"; its last message: {errors[-1].rstrip('.')}" if errors else ""
+        return _unusable(f"the test process ended with code {code}{detail}")
     # Before a crash VTK prints advice about another library than the one that is missing.
-    detail = (
-        f"; its last message: {errors[-1].rstrip('.')}"
-        if errors and process.returncode >= 0
-        else ""
-    )
-    return _unusable(_ending(process.returncode) + detail)
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:  # a number that this system has no name for
+        name = f"signal {-code}"
+    return _unusable(f"{name} ended the test process, which happens without an OpenGL library")
 
 
 def require_opengl() -> OpenGLReport:
@@ -204,17 +207,6 @@ def require_opengl() -> OpenGLReport:
 def _unusable(failure: str) -> OpenGLReport:
     chosen = os.environ.get(WINDOW_VARIABLE, "")
     return OpenGLReport(usable=False, window_class=chosen, failure=failure, remedy=_remedy())
-
-
-def _ending(code: int) -> str:
-    """Return a sentence on how a process ended."""
-    if code >= 0:
-        return f"the test process ended with code {code}"
-    try:
-        name = signal.Signals(-code).name
-    except ValueError:  # a number that this system has no name for
-        name = f"signal {-code}"
-    return f"{name} ended the test process, which happens without an OpenGL library"
 
 
 def _remedy() -> str:

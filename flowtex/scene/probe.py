@@ -383,11 +383,8 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
     normal = np.cross(b - a, c - a)
     length = float(np.linalg.norm(normal))
     if not length > 0:
-        msg = (
-            f"the triangle at (j, i) = {place.index} has no area; expected a point in another "
-            "triangle"
-        )
-        raise FieldError(msg)
+        msg = f"the triangle at (j, i) = {place.index} has no area; expected a point in another "
+        raise FieldError(msg + "triangle")
     focus = place.weights @ np.stack([a, b, c])
     up = max((b - a, c - a), key=lambda side: float(np.linalg.norm(side)))
     return Camera(

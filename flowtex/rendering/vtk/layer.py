@@ -60,77 +60,46 @@ FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815, 4: 0
 HALF_FLOAT = 0x140B
 
 
-class GPUTexture:
-    """One texture array with its mip levels; an image is an array of one layer.
+def send_texture(
+    window: vtkOpenGLRenderWindow,
+    texels: AnyArray,
+    *,
+    levels: int | None = None,
+    repeat: tuple[bool, bool] = (False, False),
+    single: bool = False,
+) -> vtkTextureObject:
+    """Send a texture array with its mip levels to a window; an image is an array of one layer.
 
-    It belongs to one render window, uses a texture unit while a frame is drawn, and is released
-    with the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of
-    VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels),
-    with 1, 2 or 4 channels, are stored in half precision; 2 to 4 may be in ``single``. There are
-    ``levels`` mip levels besides the finest, by default all; ``repeat`` says whether the texture
-    is periodic along (v, u).
+    ``vtkTexture`` has neither arrays nor half precision, and of VTK's textures from memory the
+    arrays alone get mip levels. The texels (layers, H, W, channels), with 1, 2 or 4 channels, are
+    stored in half precision; 2 to 4 may be in ``single``. There are ``levels`` mip levels besides
+    the finest, by default all; ``repeat`` says whether the texture is periodic along (v, u).
     """
+    with np.errstate(over="ignore"):
+        texels = np.ascontiguousarray(texels, np.float32 if single else np.float16)
+    target = vtkTextureObject()
+    target.SetContext(window)
+    target.SetGenerateMipmap(levels != 0)
+    target.SetMinificationFilter(vtkTextureObject.LinearMipmapLinear)
+    target.SetMagnificationFilter(vtkTextureObject.Linear)
+    target.SetWrapS(vtkTextureObject.Repeat if repeat[1] else vtkTextureObject.ClampToEdge)
+    target.SetWrapT(vtkTextureObject.Repeat if repeat[0] else vtkTextureObject.ClampToEdge)
+    layers, height, width, channels = texels.shape
+    all_levels = max(height, width).bit_length() - 1
+    # Left as it is, VTK's greatest level is 0, and there is no other level.
+    target.SetMaxLevel(all_levels if levels is None else levels)
+    target.SetInternalFormat((SINGLE if single else FORMATS)[channels])
+    if not single:
+        # VTK has no name for half precision; a type that is set has precedence over its names.
+        target.SetDataType(HALF_FLOAT)
+    target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
+    return target
 
-    def __init__(
-        self,
-        texels: AnyArray,
-        *,
-        levels: int | None = None,
-        repeat: tuple[bool, bool] = (False, False),
-        single: bool = False,
-    ) -> None:
-        with np.errstate(over="ignore"):
-            self._texels: AnyArray | None = np.ascontiguousarray(
-                texels, np.float32 if single else np.float16
-            )
-        self._levels = levels
-        self._repeat = repeat
-        self._object: vtkTextureObject | None = None
 
-    def bind(self, window: vtkOpenGLRenderWindow) -> int:
-        """Return the unit of the texture, which is sent first if necessary."""
-        if self._object is None:
-            self._object = self._send(window)
-            self._texels = None
-        if self._object.GetTextureUnit() < 0:
-            self._object.Activate()
-        return int(self._object.GetTextureUnit())
-
-    def unbind(self) -> None:
-        """Release the texture unit."""
-        if self._object is not None and self._object.GetTextureUnit() >= 0:
-            self._object.Deactivate()
-
-    def release(self, window: vtkOpenGLRenderWindow | None) -> None:
-        """Free the memory on the graphics card."""
-        if self._object is not None and window is not None:
-            self.unbind()
-            self._object.ReleaseGraphicsResources(window)
-        self._object = None
-
-    def _send(self, window: vtkOpenGLRenderWindow) -> vtkTextureObject:
-        texels = self._texels
-        assert texels is not None
-        target = vtkTextureObject()
-        target.SetContext(window)
-        target.SetGenerateMipmap(self._levels != 0)
-        target.SetMinificationFilter(vtkTextureObject.LinearMipmapLinear)
-        target.SetMagnificationFilter(vtkTextureObject.Linear)
-        repeat, clamp = vtkTextureObject.Repeat, vtkTextureObject.ClampToEdge
-        target.SetWrapS(repeat if self._repeat[1] else clamp)
-        target.SetWrapT(repeat if self._repeat[0] else clamp)
-        layers, height, width, channels = texels.shape
-        all_levels = max(height, width).bit_length() - 1
-        # Left as it is, VTK's greatest level is 0, and there is no other level.
-        target.SetMaxLevel(all_levels if self._levels is None else self._levels)
-        if texels.dtype == np.float32:
-            target.SetInternalFormat(SINGLE[channels])
-        else:
-            target.SetInternalFormat(FORMATS[channels])
-            # VTK has no name for half precision; a type that is set has precedence over its names.
-            target.SetDataType(HALF_FLOAT)
-        target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
-        return target
+def _unbind(texture: vtkTextureObject) -> None:
+    """Release the texture unit."""
+    if texture.GetTextureUnit() >= 0:
+        texture.Deactivate()
 
 
 #: Name under which PyVista registers the replacements.
@@ -172,8 +141,8 @@ class FlowLayer:
         self._colours: MappedColours | None = None
         #: Name of the point array whose values belong to cells.
         self.flat_array: str | None = None
-        self._gpu: dict[str, GPUTexture] = {}
-        self._retired: list[GPUTexture] = []
+        self._gpu: dict[str, vtkTextureObject] = {}
+        self._retired: list[vtkTextureObject] = []
         self.view = ViewState()
         self._map_attributes()
         self._observed = observe_draws(self._mapper, self.before_draw)
@@ -279,45 +248,45 @@ class FlowLayer:
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 write_uniform(program, name, value)
-        for name, load in self._loaders().items():
+        for name, load in self._loaders(partial(send_texture, window)).items():
             if program.IsUniformUsed(name):
                 if name not in self._gpu:
                     self._gpu[name] = load()
-                program.SetUniformi(name, self._gpu[name].bind(window))
+                if self._gpu[name].GetTextureUnit() < 0:
+                    self._gpu[name].Activate()
+                program.SetUniformi(name, self._gpu[name].GetTextureUnit())
 
     def after_frame(self) -> None:
         """Release the texture units."""
         self._drawn = True
         for texture in self._gpu.values():
-            texture.unbind()
+            _unbind(texture)
 
-    def _loaders(self) -> dict[str, Callable[[], GPUTexture]]:
+    def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
         """Return the function that loads the texture of each sampler of the shader."""
         paper = self._textures.paper
-        loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
+        loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
         if self._textures.store.steps > 1:
-            loaders["u_slicesNext"] = partial(self._slices, 1)
+            loaders["u_slicesNext"] = lambda: send(**self._slices(1))
         colours, geometry = self._colours, self._textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
-        none, single = np.zeros((1, 1, 1, 4)), partial(GPUTexture, levels=0, single=True)
+        none, single = np.zeros((1, 1, 1, 4)), partial(send, levels=0, single=True)
         loaders |= {
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
             "u_nodes": lambda: single(_nodes(self._textures.grid)),
         }
         if paper is not None:
-            loaders["u_noiseImage"] = partial(
-                GPUTexture, paper.noise_texels, repeat=paper.noise_repeat
-            )
-            loaders["u_stepImage"] = partial(GPUTexture, paper.step_texels, repeat=paper.repeat)
+            loaders["u_noiseImage"] = partial(send, paper.noise_texels, repeat=paper.noise_repeat)
+            loaders["u_stepImage"] = partial(send, paper.step_texels, repeat=paper.repeat)
         return loaders
 
-    def _slices(self, number: int) -> GPUTexture:
-        """Return the slices of the first or the second of the two steps."""
+    def _slices(self, number: int) -> dict[str, Any]:
+        """Return the slices of the first or the second of the two steps, as of a texture."""
         step = self._steps[number]
         layers = self._layers(step) if self._layers else self._prefetch.take(step, self.view.lags)
         levels = self._textures.geometry.levels if self.view.levels is None else self.view.levels
-        return GPUTexture(layers, levels=levels)
+        return {"texels": layers, "levels": levels}
 
     def look(self) -> None:
         """Choose the shader, and transform the camera and the anchor to the mesh's coordinates."""
@@ -417,8 +386,9 @@ class FlowLayer:
         self._retired += [t for n in names if (t := self._gpu.pop(n, None)) is not None]
 
     def _free(self, window: vtkOpenGLRenderWindow | None) -> None:
-        for texture in self._retired:
-            texture.release(window)
+        for texture in self._retired if window is not None else ():
+            _unbind(texture)
+            texture.ReleaseGraphicsResources(window)
         self._retired.clear()
 
 
