@@ -162,7 +162,9 @@ class FlowtexAccessor:
         options |= {"clim": "robust"} if robust else {}
         panels: FacetGrid[xr.Dataset] | None = None
         if row is None and col is None:
-            shown = [(_axes(ax, figsize, size, aspect, subplot_kws), self._dataset)]
+            if figsize is None and size is not None:
+                figsize = (size * (aspect or PANEL_ASPECT), size)
+            shown = [(ax or _axes(figsize, subplot_kws or {}), self._dataset)]
         elif ax is None:
             panels = FacetGrid(
                 self._dataset,
@@ -260,23 +262,13 @@ class FlowtexAccessor:
         return flowtex.FlowWidget(self._dataset, **options)
 
 
-def _axes(
-    ax: Axes | None,
-    figsize: tuple[float, float] | None,
-    size: float | None,
-    aspect: float | None,
-    subplot_kws: Mapping[str, Any] | None,
-) -> Axes:
-    """Return the given axes, those of a new figure if its size is given, or the current ones."""
+def _axes(figsize: tuple[float, float] | None, options: Mapping[str, Any]) -> Axes:
+    """Return axes of a new figure if it has a size or they have options, or the current ones."""
     import matplotlib.pyplot as plt
 
-    if ax is not None:
-        return ax
-    if figsize is None and size is not None:
-        figsize = (size * (aspect or PANEL_ASPECT), size)
-    if figsize is not None or subplot_kws:
-        return cast("Axes", plt.figure(figsize=figsize).add_subplot(**(subplot_kws or {})))
-    return plt.gca()
+    if figsize is None and not options:
+        return plt.gca()
+    return cast("Axes", plt.figure(figsize=figsize).add_subplot(**options))
 
 
 def _is_geodetic(transform: Any) -> bool:

@@ -172,5 +172,4 @@ def _kernel_shell() -> Any:
 
 def _cell_number() -> int | None:
     """Return the number of the cell that runs; ``None`` outside IPython."""
-    shell = _shell()
-    return getattr(shell, "execution_count", None)
+    return getattr(_shell(), "execution_count", None)

@@ -101,9 +101,15 @@ class Feed:
 
     def draw(self, size: tuple[int, int], camera: MakeCamera, **look: Any) -> None:
         """Draw a still, once, as soon as there is time; ``pictured`` tells when."""
+
+        def make() -> None:
+            with suppress(Exception):  # an error does no harm
+                self.picture = still.still_png(self._view, size, camera, data=self.scene, **look)
+            self.pictured.set()
+
         if not self._drawing:
             self._drawing = True
-            self._answers.do(lambda: self._draw(size, camera, look), urgency=1)
+            self._answers.do(make, urgency=1)
 
     def ready(self) -> None:
         """Answer a client that has no arrays yet."""
@@ -303,12 +309,6 @@ class Feed:
         infos = [info for info, _ in parts]
         buffers = [part_buffer(array) for _, array in parts]
         self._send({"kind": "parts", "generation": self._generation, "parts": infos}, buffers)
-
-    def _draw(self, size: tuple[int, int], camera: MakeCamera, look: Any) -> None:
-        """Draw the still; an error does no harm."""
-        with suppress(Exception):
-            self.picture = still.still_png(self._view, size, camera, data=self.scene, **look)
-        self.pictured.set()
 
     def _failed(self, error: Exception) -> None:
         """Show the error in the browser instead of the picture, and in the kernel's log."""

@@ -129,7 +129,7 @@ class FlowLayer:
         self.actor = actor
         self._mapper: Any = actor.mapper
         self._renderer = weakref.ref(renderer)
-        self._textures = textures
+        self.textures = textures  #: The texture set that is drawn.
         self._settings = settings
         self._prefetch = LayerPrefetch(textures)
         self._layers = layers
@@ -154,22 +154,17 @@ class FlowLayer:
         return mesh
 
     @property
-    def textures(self) -> TextureSet:
-        """The texture set that is drawn."""
-        return self._textures
-
-    @property
     def mesh_levels(self) -> MeshLevels | TriangleBlocks:
         """The triangles of each level of the mesh."""
         if self._mesh_levels is None:
-            placed = corrects_places(self._textures)
-            self._mesh_levels = mesh_levels_of(self._textures, placed=placed)
+            placed = corrects_places(self.textures)
+            self._mesh_levels = mesh_levels_of(self.textures, placed=placed)
         return self._mesh_levels
 
     def set_textures(self, textures: TextureSet) -> None:
         """Draw another texture set of the same surface from now on."""
-        same = textures.same_paths(self._textures)
-        self._textures = textures
+        same = textures.same_paths(self.textures)
+        self.textures = textures
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
@@ -193,7 +188,7 @@ class FlowLayer:
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
-        first, last = self._textures.store.field.times[[before, after]]
+        first, last = self.textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
         if self._drawn and self.view.time != old_time:
             self._prefetch.prepare(after + 1 if self.view.time > old_time else before - 1)
@@ -210,15 +205,15 @@ class FlowLayer:
 
     def _map_attributes(self) -> None:
         mapper, points = self._mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
-        for attribute, array in vertex_attributes(self._textures).items():
+        for attribute, array in vertex_attributes(self.textures).items():
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
-        moving = is_moving(self._textures, self._settings, self.view)
-        near = is_near(self._textures, self._settings, self.view)
-        sparse = is_sparse(self._textures, self._settings)
-        variant = variants(self._textures, moving=moving, near=near, sparse=sparse)
-        if corrects_places(self._textures):
+        moving = is_moving(self.textures, self._settings, self.view)
+        near = is_near(self.textures, self._settings, self.view)
+        sparse = is_sparse(self.textures, self._settings)
+        variant = variants(self.textures, moving=moving, near=near, sparse=sparse)
+        if corrects_places(self.textures):
             variant |= {"FLOWTEX_PLACED"}
         if variant == self._variant:
             return
@@ -235,11 +230,11 @@ class FlowLayer:
         if (last := _last.get(window)) is not None and (layer := last()) not in (None, self):
             layer.after_frame()
         _last[window] = weakref.ref(self)
-        values = uniforms(self._textures, self._settings, self.view)
-        above, before = self._textures.geometry.padding
+        values = uniforms(self.textures, self._settings, self.view)
+        above, before = self.textures.geometry.padding
         values["u_padding"] = float(before), float(above)
         values["u_anchor"] = tuple(float(c) for c in self.view.anchor)
-        arrows = has_arrows(self._textures, self._settings)
+        arrows = has_arrows(self.textures, self._settings)
         coloured = arrows and self._settings.arrow_color == "scalars"
         values["u_mapped"] = self._colours is not None
         values["u_flat"] = self._colours is not None and self._colours.on_cells
@@ -264,17 +259,17 @@ class FlowLayer:
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
         """Return the function that loads the texture of each sampler of the shader."""
-        paper = self._textures.paper
+        paper = self.textures.paper
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
-        if self._textures.store.steps > 1:
+        if self.textures.store.steps > 1:
             loaders["u_slicesNext"] = lambda: send(**self._slices(1))
-        colours, geometry = self._colours, self._textures.geometry
+        colours, geometry = self._colours, self.textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
         none, single = np.zeros((1, 1, 1, 4)), partial(send, levels=0, single=True)
         loaders |= {
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
-            "u_nodes": lambda: single(_nodes(self._textures.grid)),
+            "u_nodes": lambda: single(_nodes(self.textures.grid)),
         }
         if paper is not None:
             loaders["u_noiseImage"] = partial(send, paper.noise_texels, repeat=paper.noise_repeat)
@@ -285,7 +280,7 @@ class FlowLayer:
         """Return the slices of the first or the second of the two steps, as of a texture."""
         step = self._steps[number]
         layers = self._layers(step) if self._layers else self._prefetch.take(step, self.view.lags)
-        levels = self._textures.geometry.levels if self.view.levels is None else self.view.levels
+        levels = self.textures.geometry.levels if self.view.levels is None else self.view.levels
         return {"texels": layers, "levels": levels}
 
     def look(self) -> None:
@@ -314,8 +309,8 @@ class FlowLayer:
         """Draw with the lags and mip levels that the first view needs, later perhaps with all."""
         lags = levels = None
         if not self._layers:
-            lags = needed_lags(self._textures, self._settings, self.view)
-            levels = needed_levels(self._textures, self._settings, self.view)
+            lags = needed_lags(self.textures, self._settings, self.view)
+            levels = needed_levels(self.textures, self._settings, self.view)
         if "u_slices" not in self._gpu:
             self.view.lags, self.view.levels = lags, levels
         elif _is_more(lags, self.view.lags) or _is_more(levels, self.view.levels):
@@ -327,7 +322,7 @@ class FlowLayer:
 
     def _move_anchor(self) -> None:
         """Move the origin of positions near the focus where precision needs it."""
-        geometry = self._textures.geometry
+        geometry = self.textures.geometry
         focus = geometry.local(self.view.focus)
         if np.abs(focus - self.view.anchor).max() <= ANCHOR_RANGE * self.height:
             return
@@ -353,7 +348,7 @@ class FlowLayer:
         triangles = self.mesh_levels.triangles(levels, borders)
         if (levels < 0).any():
             # The bounds of the mesh do not change.
-            outermost = self._textures.geometry.outermost
+            outermost = self.textures.geometry.outermost
             triangles = np.concatenate([triangles, np.repeat(outermost[:, None], 3, axis=1)])
         set_triangles(self.mesh, triangles)
 

@@ -318,8 +318,8 @@ class FlowSurface:
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which caches the values
             _ = textures.unit, textures.cell, textures.critical_cell  # which are cached as well
-            placed = corrects_places(textures)
-            return surface_mesh(textures), mesh_levels_of(textures, placed=placed)
+            levels = mesh_levels_of(textures, placed=corrects_places(textures))
+            return surface_mesh(textures), levels
 
         def notify() -> None:
             surface = reference()

@@ -105,16 +105,10 @@ class Bodies:
         normals = np.concatenate(
             [np.zeros_like(b.points) if b.normals is None else b.normals for b in self.meshes]
         )
-        ends = np.cumsum([len(body.points) for body in self.meshes])
-        faces, pieces = (
-            np.concatenate(
-                [
-                    n - len(body.points) + getattr(body, kind)
-                    for n, body in zip(ends, self.meshes, strict=True)
-                ]
-            )
-            for kind in ("faces", "pieces")
-        )
+        starts = np.cumsum([0, *(len(body.points) for body in self.meshes)])
+        numbered = list(zip(starts, self.meshes, strict=False))
+        faces = np.concatenate([first + body.faces for first, body in numbered])
+        pieces = np.concatenate([first + body.pieces for first, body in numbered])
         return {
             "bodyPoints": ((points - geometry.center) @ geometry.frame.T).astype("<f4"),
             "bodyNormals": np.rint(NORMAL_MAX * normals @ geometry.frame.T).astype(np.int8),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -35,18 +36,26 @@ LONLAT_PLACES, NEAREST_PLACES_M, FEWEST_PLACES = 65, 5e4, 4
 ONWARD, MOST_ONWARD = (4.0, -6.0, 4.0, -1.0), 3
 
 
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Lines of a field as whole numbers of steps in a box, each point counted from the last."""
+
+    low: Floats
+    size: Floats
+    parts: dict[str, AnyArray]
+
+
 def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
     """Return the part of the header about the Earth; ``None`` for a flow that is elsewhere."""
     field = geometry.field
     if field.projection is None:
         return None
-    is_globe = field.projection.is_globe
-    low, size, _ = _lines_of(geometry, has_land=has_land)
+    is_globe, lines = field.projection.is_globe, _lines_of(geometry, has_land=has_land)
     return {
         "radius": EARTH_RADIUS,
         "below": globe_radius(field) is not None,
-        "low": low.tolist(),
-        "size": size.tolist(),
+        "low": lines.low.tolist(),
+        "size": lines.size.tolist(),
         "map": None if is_globe else map_box(field)[:, :2].ravel().tolist(),
         "usualHeight": USUAL_HEIGHT_PX,
         "widthRange": WIDTH_RANGE,
@@ -64,7 +73,7 @@ def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
         return {}
-    parts: Parts = dict(_lines_of(geometry, has_land=has_land)[2])
+    parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
         land = land_cells(field, tiled=tiled)
@@ -90,8 +99,6 @@ def dates_of(field: FlowField, times: Floats) -> Header:
     return {"start": None, "dates": dates, "step": step}
 
 
-#: A box, its low corner and size, and lines in it as steps from each point to the next.
-_Lines = tuple[Floats, Floats, Parts]
 _lines: WeakCache[_Lines] = WeakCache()
 
 
@@ -107,12 +114,12 @@ def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
         }
         points = np.concatenate([*local.values(), np.zeros((1, 3))])
         low, size = points.min(axis=0), np.ptp(points, axis=0)
-        parts: Parts = {
+        parts = {
             name: _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
             for name, lines in lines_by_option.items()
             if len(lines.points)
         }
-        return low, size, parts
+        return _Lines(low, size, parts)
 
     return _lines.get(has_globe, make, owner=field)
 

@@ -146,18 +146,14 @@ class Marks:
         return np.array(rows, dtype=float).reshape(-1, 4)
 
     def _nullclines(self, step: int) -> Floats:
-        rows = []
-        for component, pieces in enumerate(self.structure.nullclines(step)):
-            points = pieces.reshape(-1, 3)
-            rows.append(np.concatenate([points, np.full((len(points), 1), component)], axis=1))
-        return np.concatenate(rows)
+        found = enumerate(self.structure.nullclines(step))
+        return np.concatenate([np.insert(p.reshape(-1, 3), 3, n, axis=1) for n, p in found])
 
     def _lines(self, step: int) -> Floats:
         rows = [np.empty((0, 4))]
         for n, found in enumerate(self.structure.orbits(step)):
             code = ORBIT + LEAVING * found.stable + SIDE * (n % 2)
-            codes = np.full((len(found.points), 1), code)
-            rows.append(np.concatenate([found.points, codes], axis=1))
+            rows.append(np.insert(found.points, 3, code, axis=1))
         ranks: dict[int, int] = {}
         count: dict[int, int] = {}
         for line in self.structure.lines(step):
@@ -167,6 +163,5 @@ class Marks:
             number += SIDE * (count[number] % 2)
             for path, is_orbit in ((line.unwound, 0), (line.orbit, 1)):
                 if path is not None:
-                    codes = np.full((len(path), 1), number + ORBIT * is_orbit)
-                    rows.append(np.concatenate([path, codes], axis=1))
+                    rows.append(np.insert(path, 3, number + ORBIT * is_orbit, axis=1))
         return np.concatenate(rows)
