@@ -223,14 +223,9 @@ class ArrowSeeds:
 
     def _sides(self, parts: _Parts) -> Floats:
         """Return the vectors across parts along i and j, (2, n, 3)."""
-        ends = ([0.0, 0.5], [1.0, 0.5]), ([0.5, 0.0], [0.5, 1.0])
-        return np.array(
-            [
-                self._positions(parts.cell, parts.low + parts.size * end)
-                - self._positions(parts.cell, parts.low + parts.size * start)
-                for start, end in ends
-            ]
-        )
+        ends = [0.0, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, 1.0]
+        at = [self._positions(parts.cell, parts.low + parts.size * np.array(end)) for end in ends]
+        return np.array([at[1] - at[0], at[3] - at[2]])
 
     def _areas(self, parts: _Parts) -> Floats:
         return norm(np.cross(*self._sides(parts)))

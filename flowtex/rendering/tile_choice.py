@@ -80,15 +80,8 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
         seen, pixels = view.sees(places), view.cell_sizes(places)
         coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
         shown = seen & ~coarse
-        finer = (
-            [
-                child
-                for child in pyramid.children(key)
-                if coarse[finer_part(pyramid, child, key)].any()
-            ]
-            if coarse.any()
-            else []
-        )
+        children = pyramid.children(key) if coarse.any() else []
+        finer = [child for child in children if coarse[finer_part(pyramid, child, key)].any()]
         chosen[key] = Choice(bool(shown.any()), float(pixels[shown].max(initial=0.0)), finer)
         waiting += finer
     return chosen

@@ -94,7 +94,7 @@ class Feed:
 
         Requests arrive only after the cell that shows a widget has ended.
         """
-        self._send_first(urgency=2)
+        self.ready(urgency=2)
         self._answers.do(self._refine)
         if has_threads():
             self._timer.start()
@@ -111,11 +111,8 @@ class Feed:
             self._drawing = True
             self._answers.do(make, urgency=1)
 
-    def ready(self) -> None:
+    def ready(self, urgency: int = 1) -> None:
         """Answer a client that has no arrays yet."""
-        self._send_first(urgency=1)
-
-    def _send_first(self, urgency: int) -> None:
         self._expect(self.scene)
         self._answers.do(lambda: self._send_parts(self._first_parts), urgency=urgency)
 
@@ -131,17 +128,14 @@ class Feed:
             return
         self._requests.add(request)
         source = self._source
-        answer = partial(self._answer, source.scene, request, key)
         future = source.ask(key, steps, lambda: request not in self._requests, kind)
-        future.add_done_callback(answer)
+        future.add_done_callback(partial(self._answer, source.scene, request))
 
     def drop(self, request: str) -> None:
         """Cancel a request that a client no longer needs."""
         self._requests.discard(request)
 
-    def _answer(
-        self, scene: ClientData, request: str, key: TileKey | None, future: Future[Parts]
-    ) -> None:
+    def _answer(self, scene: ClientData, request: str, future: Future[Parts]) -> None:
         """Send the parts made of a scene, or the error."""
         self._requests.discard(request)
         error = future.exception()
@@ -171,7 +165,7 @@ class Feed:
         if self.acknowledged or self._closed:
             return
         if self._live:
-            self._send_first(urgency=1)
+            self.ready()
         if waits:
             self._timer = self._resend_timer(waits)
             self._timer.start()

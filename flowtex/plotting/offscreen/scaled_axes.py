@@ -20,8 +20,6 @@ from flowtex.scene.options import SPEED
 STEP, LEAST_STEP = 1e-6, 1e-12
 #: Scales that matplotlib clips: the logarithm of values that are not positive is -1000.
 CLIPPED, BEYOND = ("log", "logit"), 999.0
-
-
 #: Steps in which y is stretched against x, in powers of two.
 STRETCH_STEP = 0.5
 

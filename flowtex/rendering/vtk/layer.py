@@ -354,16 +354,13 @@ class FlowLayer:
 
     def follow(self, mapper: vtkMapper) -> None:
         """Take the colours of another mapper, by the same point array."""
-        target = self._mapper
-        target.SetScalarVisibility(mapper.GetScalarVisibility())
-        target.SetLookupTable(mapper.GetLookupTable())
-        target.SetScalarRange(*mapper.GetScalarRange())
-        target.SetUseLookupTableScalarRange(mapper.GetUseLookupTableScalarRange())
-        target.SetInterpolateScalarsBeforeMapping(mapper.GetInterpolateScalarsBeforeMapping())
-        target.SetColorMode(mapper.GetColorMode())
-        target.SetScalarMode(mapper.GetScalarMode())
+        for name in (
+            *("ScalarVisibility", "LookupTable", "ScalarRange", "UseLookupTableScalarRange"),
+            *("InterpolateScalarsBeforeMapping", "ColorMode", "ScalarMode"),
+        ):
+            getattr(self._mapper, f"Set{name}")(getattr(mapper, f"Get{name}")())
         if (name := mapper.GetArrayName()) is not None:
-            target.SelectColorArray(name)
+            self._mapper.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
         """Use the colours of the mapper, which users may have changed."""

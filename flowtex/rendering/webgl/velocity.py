@@ -118,12 +118,8 @@ def can_trace(textures: TextureSet) -> bool:
     Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
     """
     field, store = textures.geometry.field, textures.store
-    if (
-        not isinstance(textures.geometry, SurfaceGeometry)
-        or textures.paper is not None
-        or field.sign_free
-        or store.given
-    ):
+    structured = isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
+    if not structured or field.sign_free or store.given:
         return False
     sizes = _sizes(textures) / _size(textures)
     if not (sizes.min() > LEAST_SIZE and sizes.max() < HALF_MAX):
