@@ -193,9 +193,9 @@ PROTOCOLS = {
     "app/server/sessions/local.py: ValueError",
     "app/server/sessions/process.py: ValueError",
     "app/server/site.py: ValueError",
-    "sources/remote/packing.py: ValueError",
+    "sources/remote/reader.py: ValueError",
     "field/steps.py: IndexError",  # of sequences
-    "pyramid/checks.py: ValueError",
+    "pyramid/layout.py: ValueError",
     "pyramid/objects.py: ValueError",  # of a codec of Zarr's
     "rendering/webgl/client_data.py: IndexError",
     "textures/tiles/pyramid.py: KeyError",

@@ -19,7 +19,6 @@ computes them again.
 
 from __future__ import annotations
 
-from flowtex.examples._earth import ocean, weather
 from flowtex.examples._exact import double_gyre_velocity
 from flowtex.examples._flows import (
     NAMES,
@@ -39,6 +38,7 @@ from flowtex.examples._flows import (
     vortex_field,
     vortex_series,
 )
+from flowtex.examples._shipped import ocean, weather
 
 __all__ = [
     "NAMES",

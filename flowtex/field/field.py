@@ -28,7 +28,6 @@ from flowtex.field.gaps import prepared
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
-from flowtex.field.metric import IndexVelocity
 from flowtex.field.steps import (
     LazySteps,
     Steps,
@@ -37,7 +36,7 @@ from flowtex.field.steps import (
     scaled_steps,
     typical_steps,
 )
-from flowtex.field.surface import Surface
+from flowtex.field.surface import IndexVelocity, Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.units import factor, speed_unit

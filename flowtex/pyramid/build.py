@@ -16,7 +16,6 @@ from flowtex._util.cache import digest
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
-from flowtex.pyramid.checks import check_about, is_scalar_name, sealed
 from flowtex.pyramid.layout import (
     DIGESTS,
     FLOW,
@@ -24,8 +23,11 @@ from flowtex.pyramid.layout import (
     VALUES,
     Part,
     about_source,
+    check_about,
     described,
+    is_scalar_name,
     parts_of,
+    sealed,
     tiles_of,
 )
 from flowtex.pyramid.levels import SAMPLES, Levels, create_samples, ranges_of

@@ -19,7 +19,6 @@ from flowtex._util.progress import check
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps, Nodes, typical_steps
-from flowtex.pyramid.checks import About, check_about, part_digest
 from flowtex.pyramid.layout import (
     DIGESTS,
     FILE_CHUNK,
@@ -28,11 +27,14 @@ from flowtex.pyramid.layout import (
     SURFACE,
     TILE_CELLS,
     VALUES,
+    About,
     Arrays,
     Part,
+    check_about,
     create_array,
     described,
     empty_field,
+    part_digest,
     parts_along,
     value_names,
 )

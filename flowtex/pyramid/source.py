@@ -36,7 +36,7 @@ from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.regions import Lines, Regions
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
-from flowtex.sources.inspection.zarr_folder import check_zarr
+from flowtex.sources.inspection.inspect_file import check_zarr
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of

@@ -18,8 +18,7 @@ from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.field.uncertainty import spread_name
-from flowtex.pyramid.checks import About
-from flowtex.pyramid.layout import VELOCITY_BITS
+from flowtex.pyramid.layout import VELOCITY_BITS, About
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words, is_store, place_text
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of

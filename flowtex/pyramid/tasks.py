@@ -18,7 +18,6 @@ from flowtex._util.colours import NO_COLOURS, ColourScale
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.steps import Nodes, typical_steps
-from flowtex.pyramid.checks import About, part_digest
 from flowtex.pyramid.layout import (
     DIGESTS,
     FILE_BYTES,
@@ -26,8 +25,10 @@ from flowtex.pyramid.layout import (
     FLOW,
     SURFACE,
     VALUES,
+    About,
     Arrays,
     Part,
+    part_digest,
     rounded,
     to_write,
     value_names,

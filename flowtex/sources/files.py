@@ -1,4 +1,4 @@
-"""From files to the arrays of a field: of a mesh, or of a dataset.
+"""From files to the arrays of a field: of a mesh, or of a dataset; the state of files.
 
 PyVista's readers open most files; PLOT3D, which does not describe itself, is read by
 :mod:`flowtex.sources.meshes.plot3d`.
@@ -7,10 +7,12 @@ PyVista's readers open most files; PLOT3D, which does not describe itself, is re
 from __future__ import annotations
 
 import math
+import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +23,7 @@ from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.regions import Regions
 from flowtex.sources.datasets.select import two_names
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.meshes import beside, plot3d
+from flowtex.sources.meshes import plot3d
 from flowtex.sources.meshes.parts import time_steps, times_of
 from flowtex.sources.meshes.read import read_meshes
 from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
@@ -29,6 +31,21 @@ from flowtex.sources.reader_errors import errors_of_file
 
 if TYPE_CHECKING:
     import pyvista as pv
+
+#: Path, number on the disk, size and time of change in nanoseconds of each file; zeros if it does
+#: not exist.
+Identity = tuple[tuple[str, int, int, int], ...]
+
+#: Endings of files that list others, the pattern of members, and bytes that are read of a list.
+LISTS, MEMBER, LIST_BYTES = (
+    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp"),
+    re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
+    4_000_000,
+)
+#: Levels of lists that are followed, and most files that are examined.
+LIST_DEPTH, MOST_FILES = 3, 10_000
+#: Endings of files whose data may be in others of the same name.
+WITH_OTHERS = (*plot3d.SURFACE_SUFFIXES, *plot3d.GRID_SUFFIXES, ".q")
 
 
 def open_reader(file: Path) -> Any:
@@ -113,8 +130,8 @@ def open_file(path: str | Path) -> OpenFile:
         mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
         return OpenFile(file, mesh, "Velocity")
     try:
-        if file.suffix.lower() in beside.SUFFIXES:
-            return OpenFile(file, *beside.read_with_vectors(file))
+        if file.suffix.lower() in plot3d.SURFACE_SUFFIXES:
+            return OpenFile(file, *plot3d.read_with_vectors(file))
         return OpenFile(file, open_reader(file), None)
     except ValueError as error:
         if "does not support a file" not in str(error):
@@ -247,3 +264,57 @@ def refuse(choices: Mapping[str, Any], subject: str) -> None:
     if names := [name for name, value in choices.items() if value not in (None, False)]:
         msg = f"{', '.join(names)} applies to {subject}; omit it"
         raise FieldError(msg)
+
+
+def file_identity(paths: Iterable[Path]) -> Identity:
+    """Return the state of files, and of those that are read with them.
+
+    These are members of a list, vectors and solutions beside a mesh, all files in the folder of an
+    EnSight case, and those below an OpenFOAM case or a Zarr store. Missed are changes of the same
+    size within the resolution of the disk's clock, targets of links in CGNS and HDF5 files, and
+    changes among more than :data:`MOST_FILES` files.
+    """
+    files = (file for path in paths for file in _files(path.expanduser().absolute(), 0))
+    return tuple(_state(file) for file in islice(files, MOST_FILES))
+
+
+def members_of(path: Path) -> list[Path]:
+    """Return the files that a series or a collection lists."""
+    if path.suffix.lower() not in LISTS:
+        return []
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            names = MEMBER.findall(file.read(LIST_BYTES))
+    except OSError:
+        return []
+    return [path.parent / name for name in dict.fromkeys(names)]
+
+
+def _files(path: Path, depth: int) -> Iterator[Path]:
+    yield path
+    suffix = path.suffix.lower()
+    if path.is_dir():
+        yield from _below(path)
+    elif suffix == ".foam":
+        yield from _below(path.parent)
+    elif suffix == ".case":
+        yield from sorted(other for other in path.parent.iterdir() if other.is_file())
+    elif suffix in WITH_OTHERS and path.parent.is_dir():
+        yield from sorted(other for other in path.parent.iterdir() if other.stem == path.stem)
+    elif depth < LIST_DEPTH:
+        for member in members_of(path):
+            yield from _files(member, depth + 1)
+
+
+def _below(folder: Path) -> Iterator[Path]:
+    for path, folders, names in os.walk(folder):
+        folders.sort()
+        yield from (Path(path, name) for name in sorted(names))
+
+
+def _state(path: Path) -> tuple[str, int, int, int]:
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return str(path), 0, 0, 0
+    return str(path), state.st_ino, state.st_size, state.st_mtime_ns

@@ -18,8 +18,7 @@ import numpy as np
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.sources.files import open_file
-from flowtex.sources.identity import Identity
+from flowtex.sources.files import Identity, open_file
 from flowtex.sources.meshes.parts import (
     Parts,
     TimeStep,

@@ -1,4 +1,4 @@
-"""Errors of reading a file, as one sentence.
+"""Errors of reading a file, as one sentence: of readers, of cut files and of other programs.
 
 Each error of a reader, and each that VTK logs, becomes one :class:`~flowtex.field.FieldError` that
 starts with the name of the file.
@@ -12,9 +12,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import ParseError
 
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import available_bytes
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 
@@ -25,6 +29,46 @@ if TYPE_CHECKING:
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.
 _VTK_GLOBALS = threading.RLock()
+#: Programs by the suffixes of their files, and by the first bytes.
+SUFFIXES = {".slf": "TELEMAC", ".selafin": "TELEMAC", ".omf": "OVF", ".ovf": "OVF"}
+BEGINNINGS = {b"# OOMMF": "OVF"}
+#: Programs by an attribute of the root of HDF5, and the beginning of its value.
+ATTRIBUTES = {
+    "File Type": ("HEC-RAS", "HEC-RAS"),
+    "openPMD": ("", "openPMD"),
+    "discretisedfield.__version__": ("", "discretisedfield"),
+}
+#: What files contain, and how to draw it.
+REMEDIES = {
+    "TELEMAC": (
+        "a SELAFIN file of TELEMAC; install xarray-selafin, and pass the dataset of "
+        "xarray.open_dataset(path, engine='selafin')"
+    ),
+    "OVF": (
+        "an OVF file of micromagnetics; install discretisedfield, and pass the array of "
+        "discretisedfield.Field.from_file(path).to_xarray()"
+    ),
+    "discretisedfield": (
+        "a field of discretisedfield; install it, and pass the array of "
+        "discretisedfield.Field.from_file(path).to_xarray()"
+    ),
+    "HEC-RAS": (
+        "a file of HEC-RAS, which stores only the velocity normal to each face, not vectors. The "
+        "vector w of a cell follows from its faces, with the unit normals n ('Faces "
+        "NormalUnitVector and Length') and the velocities q ('Face Velocity'), by least squares: "
+        "w = numpy.linalg.lstsq(n, q)[0]. Pass a table with x, y ('Cells Center Coordinate'), u "
+        "and v of the cells"
+    ),
+    "openPMD": (
+        "a file of openPMD; read its arrays with openpmd-api or openpmd-viewer, as in "
+        "OpenPMDTimeSeries(folder).get_field(field='E', coord='x', iteration=n), average "
+        "components that lie half a cell apart, and pass an xarray Dataset of both"
+    ),
+}
+#: Share of the memory for data: a reader and later computations take several times as much.
+MEMORY_SHARE = 0.5
+#: Bytes that always fit: to ask for the available memory takes longer than to read them.
+SMALL = 100_000
 
 
 @contextmanager
@@ -105,3 +149,68 @@ def _first_line(alert: str) -> str:
     # Messages that come without an object start with a line about the source file.
     texts = [line for line in lines if not line.startswith(("ERROR: In ", "Warning: In "))]
     return (texts or lines or [""])[0].removeprefix("(nullptr): ").strip()
+
+
+def check_other(path: Path, head: bytes) -> None:
+    """Raise a FieldError for a file of another program, by its name and its first bytes."""
+    programs = (name for begin, name in BEGINNINGS.items() if head.startswith(begin))
+    if program := next(programs, SUFFIXES.get(path.suffix.lower())):
+        _refuse(program)
+
+
+def check_attributes(attributes: Any) -> None:
+    """Raise a FieldError for HDF5 of another program, by the attributes of its root."""
+    for name, (begin, program) in ATTRIBUTES.items():
+        if name in attributes:
+            value = attributes[name]
+            text = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+            if text.startswith(begin):
+                _refuse(program)
+
+
+def _refuse(program: str) -> None:
+    msg = f"this is {REMEDIES[program]}"
+    raise FieldError(msg)
+
+
+def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
+    """Raise a FieldError if a file has less than it declares."""
+    if found < declared:
+        msg = (
+            f"the file is truncated or damaged: {what} declares {_text(declared)} {unit}, but the "
+            f"file has {max(found, 0):,}, and {_text(declared - max(found, 0))} are missing; "
+            "write or copy it again"
+        )
+        raise FieldError(msg)
+
+
+def check_memory(nbytes: int, what: str) -> None:
+    """Raise a FieldError if data take more than a share of the available memory."""
+    if nbytes < SMALL:
+        return
+    budget = int(available_bytes() * MEMORY_SHARE)
+    if nbytes > budget:
+        msg = (
+            f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
+            "available for data; write a part or a coarser version to a separate file, or read "
+            "it on a machine with more memory"
+        )
+        raise FieldError(msg)
+
+
+def size_text(nbytes: int) -> str:
+    """Return a number of bytes as text, such as ``"1.5 GB"``."""
+    size, units = float(min(nbytes, 10**30)), ["bytes", "kB", "MB", "GB", "TB", "PB"]
+    while size >= 1000 and len(units) > 1:
+        size, units = size / 1000, units[1:]
+    return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"
+
+
+def _text(count: int) -> str:
+    return f"{count:,}" if count < 10**18 else f"some 10^{len(str(count)) - 1}"
+
+
+def values_in(array: Any) -> AnyArray:
+    """Return the values of a variable of xarray's, if they fit into memory as float64."""
+    check_memory(8 * array.size, f"the variable {getattr(array, 'name', None) or 'without a name'}")
+    return np.asarray(array.values)

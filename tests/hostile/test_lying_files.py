@@ -13,7 +13,8 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.inspection import limits, vtk_legacy
+from flowtex.sources import reader_errors
+from flowtex.sources.inspection import vtk_legacy
 from flowtex.sources.inspection.inspect_file import inspect_file
 
 
@@ -148,9 +149,9 @@ def test_what_does_not_fit_into_memory_is_refused(
     grid["velocity"] = np.ones((grid.n_points, 3))
     path = tmp_path / "calm.vti"
     grid.save(path, compression=compressor)
-    monkeypatch.setattr(limits, "available_bytes", lambda: 1_000_000)
+    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 1_000_000)
     FlowField.from_file(path)  # 240 kB, however small the file is
-    monkeypatch.setattr(limits, "available_bytes", lambda: 400_000)
+    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 400_000)
     path.touch()
     assert "the file declares 240 kB, but 200 kB of memory are available" in refused(path)
 
@@ -159,7 +160,7 @@ def test_a_chunk_and_a_variable_have_to_fit_into_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lies.large_chunk(tmp_path / "chunk.nc")
-    monkeypatch.setattr(limits, "available_bytes", lambda: 20_000_000)
+    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 20_000_000)
     assert "one chunk of u declares 32 MB, but 10 MB" in refused(tmp_path / "chunk.nc")
 
 

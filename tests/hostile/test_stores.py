@@ -23,7 +23,7 @@ from strategies import property_test
 from flowtex import FlowField, cli
 from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store, verify
-from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.layout import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.textures.tiles.pyramid import TileKey
 

@@ -21,8 +21,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid import Built, PyramidError, build, is_store, open_store, tasks
-from flowtex.pyramid.checks import sealed
-from flowtex.pyramid.layout import about_source, empty_field
+from flowtex.pyramid.layout import about_source, empty_field, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import FieldSource
 from flowtex.pyramid.stored import StoredPyramid

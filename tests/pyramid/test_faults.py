@@ -22,7 +22,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store
-from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.layout import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.textures.tiles.loader import TileLoader
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey

@@ -18,8 +18,7 @@ from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field.steps import Nodes
 from flowtex.pyramid import build, layout, open_store, verify
-from flowtex.pyramid.checks import sealed
-from flowtex.pyramid.layout import FILE_CHUNK
+from flowtex.pyramid.layout import FILE_CHUNK, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of

@@ -12,7 +12,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
-from flowtex.trace.structure.nullclines import nullclines, view_window
+from flowtex.trace.structure.formula_lines import nullclines, view_window
 
 
 def lengths(pieces: Floats) -> float:

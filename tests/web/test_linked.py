@@ -13,7 +13,7 @@ from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.field import FieldError
 from flowtex.pyramid import build, open_store
-from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.layout import sealed
 from flowtex.scene.options import Options
 from flowtex.web.export import StoreLink, export, page_text
 from flowtex.web.view import web_views

@@ -9,8 +9,7 @@ import scipy
 from packing import LATITUDE, LONGITUDE, save_dataset
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex.examples._earth import DEGREE, TURNING
-from flowtex.examples._shipped import DATA
+from flowtex.examples._shipped import DATA, DEGREE, TURNING
 from flowtex.examples._shipped import OCEAN as FILE
 from flowtex.field.earth import EARTH_RADIUS, Projection, coastlines
 

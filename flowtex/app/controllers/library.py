@@ -28,9 +28,9 @@ from flowtex.scene.scene import drawn_store
 from flowtex.settings import Settings
 from flowtex.sources.dataset_source import DatasetSource
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.identity import Identity, file_identity, members_of
+from flowtex.sources.files import Identity, file_identity, members_of
 from flowtex.sources.mesh_source import FlowSource, Source
-from flowtex.sources.meshes.beside import SUFFIXES as WITHOUT_VECTORS
+from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
 from flowtex.sources.remote import open_remote, prepare_readers

@@ -20,8 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
-from flowtex.field.metric import IndexVelocity
-from flowtex.field.surface import Surface
+from flowtex.field.surface import IndexVelocity, Surface
 from flowtex.field.triangles.topology import SHARP, flipped, neighbours, triangle_normals
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.

@@ -39,8 +39,7 @@ from flowtex.sources.datasets.select import (
 )
 from flowtex.sources.datasets.values import read_step
 from flowtex.sources.datasets.vertical import is_section, read_section
-from flowtex.sources.maps.grid_map import MapNodes, PlaneNodes, on_map
-from flowtex.sources.maps.mesh_map import MeshMap, mesh_on_map
+from flowtex.sources.maps.grid_map import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.opening.series import Datasets, as_datasets
 from flowtex.sources.record import Record
 

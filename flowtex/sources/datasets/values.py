@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
-from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.reader_errors import values_in
 from flowtex.sources.record import Record
 
 if TYPE_CHECKING:

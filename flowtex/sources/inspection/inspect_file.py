@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+import json
+import math
+from collections.abc import Iterator
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection import grib, netcdf, vtk_legacy, vtk_xml
-from flowtex.sources.inspection.others import check_other
-from flowtex.sources.inspection.zarr_folder import DOCUMENTS, check_zarr
+from flowtex.sources.inspection import netcdf, vtk_legacy, vtk_xml
+from flowtex.sources.reader_errors import check_count, check_memory, check_other
 
 #: Bytes that identify most files.
 HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
 #: Most files of a series or of several blocks that are inspected.
 MOST_MEMBERS = 100_000
+#: Documents of one array, and of all of them.
+DOCUMENTS = ("zarr.json", ".zarray", ".zmetadata")
+#: Most bytes of a number.
+NUMBER_BYTES = 8
+GRIB_MAGIC = b"GRIB"
+#: Bytes that are read at once between messages.
+CHUNK_BYTES = 1 << 16
+#: Messages of GRIB 1 that are too long for three bytes count in units of 120.
+LONG_MESSAGE, LONG_UNIT = 0x800000, 120
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
@@ -61,8 +73,8 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         beginning = f"it begins with {head[:8]!r}" if head else "it is empty"
         msg = f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5"
         raise FieldError(msg)
-    if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
-        grib.check_grib(path)
+    if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
+        check_grib(path)
     if suffix == ".vtk":
         vtk_legacy.check_vtk_legacy(path)
     is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
@@ -78,3 +90,104 @@ def _is_hdf5(stream: BinaryIO, size: int) -> bool:
             return True
         at = 2 * at or 512
     return False
+
+
+def check_zarr(folder: Path) -> None:
+    """Raise a FieldError for a line of coordinates, or a chunk, that does not fit into memory."""
+    for name, array in _arrays(folder):
+        with suppress(TypeError, KeyError, IndexError, AttributeError):  # Zarr reports the fault
+            shape, chunk = list(map(int, array["shape"])), _chunk(array)
+            sizes = [math.prod(chunk)] + ([math.prod(shape)] if len(shape) < 2 else [])
+            check_memory(max(sizes) * NUMBER_BYTES, f"the variable {name}")
+
+
+def _arrays(folder: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the metadata of arrays, each of which may occur in several documents."""
+    for kind in DOCUMENTS:
+        for path in folder.rglob(kind):
+            with suppress(ValueError, OSError):
+                document = json.loads(path.read_bytes())
+                name = path.parent.relative_to(folder).as_posix()
+                if isinstance(document, dict):
+                    yield from _array_metadata(name, document)
+
+
+def _array_metadata(name: str, document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    if "shape" in document:
+        yield name, document
+    consolidated = document.get("consolidated_metadata") or document
+    entries = consolidated.get("metadata") if isinstance(consolidated, dict) else None
+    for key, entry in entries.items() if isinstance(entries, dict) else ():
+        if isinstance(entry, dict) and "shape" in entry:
+            yield key.removesuffix("/.zarray"), entry
+
+
+def _chunk(array: dict[str, Any]) -> list[int]:
+    """Return the shape of the part that is unpacked at once."""
+    if "chunks" in array:
+        return list(map(int, array["chunks"]))
+    first = array["codecs"][0]
+    grid = array["chunk_grid"]["configuration"]
+    inner = first["configuration"] if first.get("name") == "sharding_indexed" else grid
+    return list(map(int, inner["chunk_shape"]))
+
+
+def check_grib(path: Path) -> None:
+    """Raise a FieldError for a cut last message, or a grid that does not fit into memory."""
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        at = _next(stream, 0)
+        number = 0
+        while at is not None:
+            number += 1
+            stream.seek(at)
+            head = stream.read(16)
+            label = f"message {number}"
+            check_count(len(head), 16, label)
+            length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
+            if head[7] == 1 and length >= LONG_MESSAGE:
+                # The exact length follows only from the sections.
+                length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
+            check_count(size - at, length, label)
+            points = _points(stream, at, head[7], min(at + length, size), label)
+            check_memory(8 * points, f"the grid of {label}")
+            at = _next(stream, at + max(length, 4))
+
+
+def _next(stream: BinaryIO, at: int) -> int | None:
+    """Return the position of the next message; between two any bytes may lie."""
+    stream.seek(at)
+    data = b""
+    while part := stream.read(CHUNK_BYTES):
+        data = data[-3:] + part
+        if (found := data.find(GRIB_MAGIC)) >= 0:
+            return stream.tell() - len(data) + found
+    return None
+
+
+def _points(stream: BinaryIO, at: int, edition: int, end: int, label: str) -> int:
+    """Return the number of points of the largest grid of a message."""
+    if edition == 1:
+        stream.seek(at + 8)
+        section = stream.read(8)
+        if len(section) < 8 or not section[7] & 0x80:
+            return 0
+        stream.seek(at + 8 + int.from_bytes(section[:3], "big") + 6)
+        columns, rows = stream.read(2), stream.read(2)
+        return int.from_bytes(columns, "big") * int.from_bytes(rows, "big")
+    place, most = at + 16, 0
+    while place + 11 <= end:
+        stream.seek(place)
+        head = stream.read(10)
+        length = int.from_bytes(head[:4], "big")
+        if not 5 <= length <= end - place:
+            break
+        if head[4] == 3:
+            most = max(most, int.from_bytes(head[6:10], "big"))
+        place += length
+    # ecCodes reads for ever where sections do not lead to the end.
+    stream.seek(place)
+    if place + 4 != end or stream.read(4) != b"7777":
+        msg = f"the sections of {label} do not match its length; the file is corrupt"
+        raise FieldError(msg)
+    return most

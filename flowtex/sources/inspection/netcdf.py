@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection.limits import check_count, check_memory
-from flowtex.sources.inspection.others import check_attributes
+from flowtex.sources.reader_errors import check_attributes, check_count, check_memory
 
 SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")

@@ -18,8 +18,8 @@ from xml.parsers import expat
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection.limits import check_count, check_memory
-from flowtex.sources.inspection.numbers import TextScanner
+from flowtex.sources.inspection.vtk_legacy import TextScanner
+from flowtex.sources.reader_errors import check_count, check_memory
 
 #: Endings of files of one mesh, of its pieces, of blocks and of series.
 SUFFIXES = (

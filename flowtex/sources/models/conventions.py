@@ -14,9 +14,9 @@ import numpy as np
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVELS, NODES
 from flowtex.sources.datasets.select import find_pairs
-from flowtex.sources.inspection.limits import values_in
 from flowtex.sources.models.mesh import Mesh
 from flowtex.sources.models.scattered import NAMED, points_in, with_points
+from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:
     import xarray as xr

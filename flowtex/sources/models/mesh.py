@@ -16,7 +16,7 @@ from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
-from flowtex.sources.inspection.limits import values_in
+from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -23,8 +23,8 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
-from flowtex.sources.inspection.limits import check_count, check_memory
 from flowtex.sources.opening.components import of_array
+from flowtex.sources.reader_errors import check_count, check_memory
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,10 +14,10 @@ from flowtex._util.child import FORKS, Child, ChildError, fork_server
 from flowtex._util.notices import Notice, notify
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.sources.identity import file_identity
+from flowtex.sources.files import file_identity
 from flowtex.sources.mesh_source import Source
 from flowtex.sources.notices import DatasetNotice
-from flowtex.sources.remote.packing import take_description, unpack_field
+from flowtex.sources.remote.reader import take_description, unpack_field
 
 _log = logging.getLogger(__name__)
 

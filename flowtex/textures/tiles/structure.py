@@ -12,7 +12,7 @@ from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.textures.tiles.shared import coarsened_field, has_pyramid, shared_pyramid
 from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
-from flowtex.trace.structure.nullclines import nullclines, view_window
+from flowtex.trace.structure.formula_lines import nullclines, view_window
 from flowtex.trace.structure.orbits import ClosedOrbit, orbits_around
 from flowtex.trace.structure.separatrices import Separatrices, separatrices_between
 

@@ -23,11 +23,11 @@ from flowtex.trace.structure.cells import (
     bilinear_zeros,
     folded,
     linear_zeros,
+    strengths,
     triangle_indices,
 )
 from flowtex.trace.structure.formula_points import Zeros, directions, zeros
 from flowtex.trace.structure.records import Records, steady_parts
-from flowtex.trace.structure.strength import strengths
 
 if TYPE_CHECKING:
     import pyvista as pv

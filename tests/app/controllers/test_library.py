@@ -18,7 +18,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import build
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.sources.identity import file_identity
+from flowtex.sources.files import file_identity
 from flowtex.sources.mesh_source import FlowSource
 from flowtex.textures.tiles.shared import has_pyramid
 from flowtex.trace.store import SliceStore

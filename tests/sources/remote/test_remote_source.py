@@ -28,8 +28,7 @@ from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
 from flowtex.sources.dataset_source import open_source
 from flowtex.sources.remote import RemoteSource, open_remote
-from flowtex.sources.remote.packing import describe_source, pack_field, unpack_field
-from flowtex.sources.remote.reader import Reader
+from flowtex.sources.remote.reader import Reader, describe_source, pack_field, unpack_field
 
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
 
