@@ -37,8 +37,8 @@ WHOLE = {
 #: ... memory, ...
 MEMORY = {
     "sources/datasets/align.py: array.drop_vars(clash).rename",
-    "sources/opening/components.py: array.rename",
-    "sources/opening/components.py: ds.rename",
+    "sources/opening/tables.py: array.rename",
+    "sources/opening/tables.py: ds.rename",
     "sources/opening/tables.py: frame.rename",
     "plotting/offscreen/plotter.py: self._plotter.screenshot",
     "app/jupyter_backend.py: plotter.screenshot",

@@ -30,7 +30,7 @@ from flowtex.field.formula import KNOWN
 if TYPE_CHECKING:
     from flowtex.app import Library
     from flowtex.field import FlowField
-    from flowtex.sources.mesh_source import FlowSource
+    from flowtex.sources.open_source import FlowSource
 
 #: Initial zoom and focus of examples.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
@@ -85,7 +85,7 @@ def demo(
 
 
 def _source(make: Callable[[], FlowField]) -> FlowSource:
-    from flowtex.sources.mesh_source import FlowSource
+    from flowtex.sources.open_source import FlowSource
 
     return FlowSource(make())
 

@@ -19,7 +19,6 @@ computes them again.
 
 from __future__ import annotations
 
-from flowtex.examples._exact import double_gyre_velocity
 from flowtex.examples._flows import (
     NAMES,
     airfoil,
@@ -32,6 +31,7 @@ from flowtex.examples._flows import (
     double_gyre,
     double_gyre_field,
     double_gyre_series,
+    double_gyre_velocity,
     to_grid,
     to_series,
     vortex,

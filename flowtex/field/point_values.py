@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
 from flowtex.field.earth import Projection
-from flowtex.field.grids.signs import weighted_axis
+from flowtex.field.grids.arrays import weighted_axis
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import (
     CURVED_TOLERANCE,

@@ -47,6 +47,10 @@ from flowtex.pyramid.places import (
 )
 from flowtex.pyramid.source import Source, source_of
 from flowtex.pyramid.tasks import (
+    PART_BYTES,
+    TILE_BYTES,
+    Cluster,
+    Threads,
     TileTask,
     checks_of,
     compare_finest,
@@ -55,7 +59,6 @@ from flowtex.pyramid.tasks import (
     make_tile,
     mend,
 )
-from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
 from flowtex.settings import TABLE
 from flowtex.textures.tiles.pyramid import TileKey, level_lines, level_shape
 

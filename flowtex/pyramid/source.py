@@ -33,8 +33,8 @@ from flowtex.pyramid.places import (
 )
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.read import read_datasets
-from flowtex.sources.datasets.regions import Lines, Regions
 from flowtex.sources.datasets.select import find_pairs
+from flowtex.sources.datasets.values import Lines, Regions
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.sources.inspection.inspect_file import check_zarr
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group

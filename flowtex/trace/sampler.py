@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.grids.arrays import corner_signs
 from flowtex.field.grids.poles import Pole, Poles
-from flowtex.field.grids.signs import corner_signs
 from flowtex.field.interpolation import bracket, fill_blanked
 
 #: A particle slower than this share of the greatest speed has stopped.

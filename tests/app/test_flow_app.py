@@ -20,7 +20,7 @@ from flowtex import Camera, examples
 from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
-from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.open_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -29,7 +29,7 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.scene.probe import probe
 from flowtex.settings import Settings
-from flowtex.sources.mesh_source import FlowSource, Source
+from flowtex.sources.open_source import FlowSource, Source
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

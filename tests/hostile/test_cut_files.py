@@ -20,7 +20,7 @@ from flowtex import FlowField
 from flowtex._util.child import Child
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.remote import open_remote
+from flowtex.sources.remote.source import open_remote
 
 #: Cuts, or changes, of a file of each format.
 CASES = 24

@@ -20,7 +20,7 @@ from flowtex.sources.inspection.inspect_file import inspect_file
 
 def refused(path: Path) -> str:
     """Return why a file is refused by every way in."""
-    from flowtex.sources.dataset_source import open_source
+    from flowtex.sources.open_source import open_source
 
     with pytest.raises(FieldError) as caught:
         FlowField.from_file(path)

@@ -20,7 +20,7 @@ from flowtex.field.steps import LazySteps
 from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
 from flowtex.pyramid.build import MOST_FAILURES
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.workers import MOST_TRIALS, Threads
+from flowtex.pyramid.tasks import MOST_TRIALS, Threads
 from flowtex.textures.tiles.pyramid import TileKey
 
 zarr = pytest.importorskip("zarr")

@@ -12,7 +12,7 @@ from cluster import Cluster, ObjectStorage, digests
 from small_tiles import shrink
 from waiting import PATIENCE_S
 
-from flowtex.pyramid import PyramidError, build, open_store, workers
+from flowtex.pyramid import PyramidError, build, open_store, tasks
 from flowtex.pyramid.places import store_at
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
@@ -97,11 +97,11 @@ def test_workers_build_what_threads_build_though_one_is_killed(
 
 
 def test_what_holds_its_data_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "MOST_SENT", 10_000)
-    assert workers._packed(np.zeros(9_000, np.uint8)) is not None
-    assert workers._packed(np.zeros(11_000, np.uint8)) is None
+    monkeypatch.setattr(tasks, "MOST_SENT", 10_000)
+    assert tasks._packed(np.zeros(9_000, np.uint8)) is not None
+    assert tasks._packed(np.zeros(11_000, np.uint8)) is None
     with pytest.raises(PyramidError, match="cannot be sent to the workers"):
-        workers._packed(n for n in range(3))
+        tasks._packed(n for n in range(3))
 
 
 def _name_of(client: Any, pid: int) -> str:

@@ -22,11 +22,11 @@ from flowtex.pyramid.layout import FILE_CHUNK, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
-from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
+from flowtex.pyramid.tasks import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import Scene
-from flowtex.sources.datasets.regions import Regions
+from flowtex.sources.datasets.values import Regions
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import shared_pyramid

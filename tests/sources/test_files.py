@@ -17,9 +17,9 @@ from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
+from flowtex.sources.files import BlockSummary, describe
 from flowtex.sources.meshes.plot3d import find_grid, find_layout, find_solution
 from flowtex.sources.reader_errors import errors_of_file
-from flowtex.sources.summary import BlockSummary, describe
 
 pv = pytest.importorskip("pyvista")
 

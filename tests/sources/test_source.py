@@ -10,7 +10,7 @@ import pyvista as pv
 from flowtex import FlowField, examples
 from flowtex._util import progress
 from flowtex.errors import FieldError
-from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.open_source import FlowSource
 
 
 def block(steps: int = 1) -> pv.StructuredGrid:

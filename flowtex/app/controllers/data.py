@@ -32,7 +32,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
-from flowtex.sources.mesh_source import Source
+from flowtex.sources.open_source import Source
 from flowtex.textures.tiles.shared import coarsened_field
 
 #: Nodes of another file above which it is first shown coarser, and how many it then has.

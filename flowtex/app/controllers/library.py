@@ -26,14 +26,13 @@ from flowtex.pyramid.source import has_parts
 from flowtex.scene.options import FieldOptions
 from flowtex.scene.scene import drawn_store
 from flowtex.settings import Settings
-from flowtex.sources.dataset_source import DatasetSource
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.files import Identity, file_identity, members_of
-from flowtex.sources.mesh_source import FlowSource, Source
 from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
+from flowtex.sources.open_source import DatasetSource, FlowSource, Source
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
-from flowtex.sources.remote import open_remote, prepare_readers
+from flowtex.sources.remote.source import open_remote, prepare_readers
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.trace.store import SliceStore
 

@@ -45,7 +45,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Appearance as Look
 from flowtex.scene.signatures import option_form
 from flowtex.settings import TABLE, SettingsError
-from flowtex.sources.mesh_source import OUTER
+from flowtex.sources.open_source import OUTER
 from flowtex.sources.opening.dataset_files import is_dataset_file
 
 #: Values that a link leaves out.

@@ -21,7 +21,7 @@ from flowtex.sources.datasets.axes import (
     is_dates,
     line_of,
 )
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import xarray as xr

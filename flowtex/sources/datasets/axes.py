@@ -15,7 +15,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
 from flowtex.sources.datasets import labels
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import xarray as xr

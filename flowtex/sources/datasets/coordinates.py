@@ -16,8 +16,8 @@ from flowtex.field import units
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, coordinate_of, horizontal_dims
+from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
-from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr

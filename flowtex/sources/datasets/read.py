@@ -29,7 +29,6 @@ from flowtex.sources.datasets.axes import NODES, TIME, axis_kind, axis_values, h
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
-from flowtex.sources.datasets.regions import Regions, Words, region_lines
 from flowtex.sources.datasets.select import (
     Pair,
     choose_pair,
@@ -37,11 +36,11 @@ from flowtex.sources.datasets.select import (
     other_velocities,
     variable,
 )
-from flowtex.sources.datasets.values import read_step
+from flowtex.sources.datasets.values import Regions, Words, read_step, region_lines
 from flowtex.sources.datasets.vertical import is_section, read_section
 from flowtex.sources.maps.grid_map import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
+from flowtex.sources.notices import Record
 from flowtex.sources.opening.series import Datasets, as_datasets
-from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -20,8 +20,8 @@ from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import renamed
 from flowtex.sources.datasets.axes import Drawn, as_slice, horizontal_dims
 from flowtex.sources.datasets.coordinates import Places, find_places
+from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
-from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr

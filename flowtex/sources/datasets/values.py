@@ -1,11 +1,14 @@
 """The values of the two components at a step: without missing data, and in one unit.
 
-All choices are made before, so that any process reads any step and region by itself.
+All choices are made before, so that any process reads any step and region by itself, the same bit
+for bit. Only names of files, and arrays that are read late, are sent to it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -13,21 +16,35 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
+from flowtex.field.arrays import Reading
+from flowtex.field.earth import Projection
+from flowtex.field.grids.periodic import find_closure
+from flowtex.field.steps import Nodes, typical_steps
+from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
+from flowtex.sources.maps.grid_map import (
+    CYLINDERS,
+    lines_on_map,
+    projection_of,
+    shown_positions,
+    shown_rows,
+)
+from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
-from flowtex.sources.record import Record
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: Numbers of rows and columns; ``None`` for all.
-Lines: TypeAlias = tuple[Indices, Indices] | None
+Chosen: TypeAlias = tuple[Indices, Indices] | None
 #: Values of a step that are examined, and lines of each of the nine parts of larger ones.
 MOST_EXAMINED, PART_LINES = 4_000_000, 200
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
+#: Rows or columns, by numbers or as a slice.
+Lines: TypeAlias = Indices | slice
 
 
 def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
@@ -42,7 +59,7 @@ def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
     return values
 
 
-def read_step(variable: xr.Variable, step: int, lines: Lines = None, *, axes: int = 2) -> Floats:
+def read_step(variable: xr.Variable, step: int, lines: Chosen = None, *, axes: int = 2) -> Floats:
     """Return a step of a variable ([time], ...) with this many axes, or some rows and columns."""
     part = variable[step] if variable.ndim > axes else variable
     if lines is None:
@@ -64,7 +81,7 @@ class Component:
     valid: tuple[float, float] | None = None
     fill: float | None = None  #: A value that means missing data, though no attribute names it.
 
-    def read(self, step: int, lines: Lines, *, axes: int) -> Floats:
+    def read(self, step: int, lines: Chosen, *, axes: int) -> Floats:
         """Return a step, with NaN for missing data."""
         values = read_step(self.variable, step, lines, axes=axes)
         with np.errstate(invalid="ignore"):
@@ -126,7 +143,7 @@ class Values:
     columns: Sides | None = None
     land: Bools | None = None  #: Cells that are land, (J, I).
 
-    def read(self, step: int, lines: Lines = None) -> tuple[Floats, Floats]:
+    def read(self, step: int, lines: Chosen = None) -> tuple[Floats, Floats]:
         """Return the components at all nodes, or at some rows and columns."""
         u, v = (part.read(step, lines, axes=self.axes) for part in self.components)
         staggered = self.rows is not None or self.columns is not None
@@ -154,3 +171,149 @@ class Values:
         if self.rows is not None:
             values = values[self.rows.cells]
         return values if self.columns is None else values[:, self.columns.cells]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionLines:
+    """Places of the nodes: two lines of coordinates, and their numbers in the data."""
+
+    a: Floats  #: Longitude of each column, (I,), or x.
+    b: Floats  #: Latitude of each row, (J,), or y.
+    rows: Indices  #: Numbers in the data.
+    columns: Indices  #: Numbers in the data between which each column lies, (2, I).
+    share: Floats  #: Share of the way from the first to the second, (I,).
+    projection: Projection | None  #: The map; ``None`` in a plane.
+    closed: bool  #: Whether the last column repeats the first.
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of nodes (J, I)."""
+        return len(self.rows), len(self.share)
+
+    def points(self, rows: Lines, columns: Lines) -> Floats:
+        """Return positions (J, I, 3) of some rows and columns."""
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
+        if self.projection is None:
+            return np.stack([a, b, np.zeros(a.shape)], axis=-1)
+        if self.projection.is_globe:
+            return self.projection.positions(a, b)
+        return shown_positions(self.projection, a, b)
+
+    def vectors(self, u: Floats, v: Floats, rows: Lines, columns: Lines) -> Floats:
+        """Return vectors (J, I, 3) of components at some rows and columns."""
+        if self.projection is None:
+            return np.stack([u, v, np.zeros(u.shape)], axis=-1)
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
+        return self.projection.vectors(a, b, u, v)
+
+
+@dataclass(frozen=True)
+class Words:
+    """Names, units and times as in a :class:`FlowField`."""
+
+    name: str
+    length_unit: str
+    time_unit: str
+    velocity_unit: str
+    times: Floats
+    start: Any
+    reading: Reading
+    units: Mapping[str, str] = field(default_factory=dict)
+    long_names: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Regions:
+    """A dataset on lines of coordinates."""
+
+    words: Words
+    lines: RegionLines  #: Places of the nodes.
+    values: Values  #: The velocity.
+    factor: float  #: From its unit to that of length and time.
+    scalars: Mapping[str, xr.Variable]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the scalars, that of the speed on the Earth among them."""
+        projection = self.lines.projection
+        drawn = projection is not None and not projection.is_globe
+        return (*self.scalars, "speed") if drawn else tuple(self.scalars)
+
+    def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
+        """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
+        u, v = self.components(step, rows, columns)
+        velocity = self.lines.vectors(u, v, rows, columns) * self.factor
+        finite = np.isfinite(velocity).all(axis=-1)
+        if valid is None:
+            valid = np.zeros_like(finite)
+            for other in typical_steps(len(self.words.times)):
+                if valid.all():  # the others are read only where a step has gaps
+                    break
+                if other != step:
+                    a, b = self.components(other, rows, columns)
+                    valid |= np.isfinite(self.lines.vectors(a, b, rows, columns)).all(axis=-1)
+                else:
+                    valid |= finite
+        velocity[~(valid & finite)] = 0.0
+        scalars = {name: self.scalar(name, step, rows, columns) for name in self.scalars}
+        if len(self.names) > len(scalars):
+            scalars["speed"] = np.hypot(u, v)
+        points = self.lines.points(rows, columns)
+        return Nodes(points, valid, velocity, scalars)
+
+    def components(self, step: int, rows: Lines, columns: Lines) -> tuple[Floats, Floats]:
+        """Return the components of some rows and columns, NaN where there are no data."""
+        u, v = self._between(partial(self.values.read, step), rows, columns)
+        return u, v
+
+    def scalar(self, name: str, step: int, rows: Lines, columns: Lines) -> Floats:
+        """Return some rows and columns of a scalar."""
+        return self._between(
+            lambda lines: (read_step(self.scalars[name], step, lines),), rows, columns
+        )[0]
+
+    def _between(
+        self,
+        read: Callable[[tuple[Indices, Indices]], Sequence[Floats]],
+        rows: Lines,
+        columns: Lines,
+    ) -> list[Floats]:
+        """Return what is read of some rows and columns; those on the edge of a map lie between."""
+        lines = self.lines
+        chosen, numbers, share = lines.rows[rows], lines.columns[:, columns], lines.share[columns]
+        parts = list(read((chosen, numbers[0])))
+        if (moved := np.flatnonzero(share)).size:
+            others = read((chosen, numbers[1][moved]))
+            for part, other in zip(parts, others, strict=True):
+                part[:, moved] = (1 - share[moved]) * part[:, moved] + share[moved] * other
+        return parts
+
+
+def region_lines(places: Places, name: str | None) -> RegionLines | None:
+    """Return the places of nodes; ``None`` where regions cannot be read separately."""
+    if not places.is_line or not all(_is_ordered(line) for line in places.lines):
+        return None
+    a, b = places.lines
+    if not places.is_earth:
+        ends = [np.broadcast_arrays(a, b[[0, -1], None]), np.broadcast_arrays(a[[0, -1], None], b)]
+        grids = [np.stack([*pair, np.zeros(pair[0].shape)], axis=-1) for pair in ends]
+        if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
+            return None
+        columns = np.tile(np.arange(len(a)), (2, 1))
+        return RegionLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, closed=False)
+    projection, _ = projection_of(places, name)
+    if not (projection.is_globe or projection.family in CYLINDERS):
+        return None
+    lines = lines_on_map(places, projection)
+    if not (np.isfinite(lines.lon).all() and np.isfinite(lines.lat).all()):
+        return None
+    kept = slice(None)
+    if not projection.is_globe:
+        kept = shown_rows(shown_positions(projection, lines.lon[:1], lines.lat[:, None]))
+    closed, chosen = lines.periodic == "i", (lines.columns, lines.share)
+    return RegionLines(lines.lon, lines.lat[kept], lines.rows[kept], *chosen, projection, closed)
+
+
+def _is_ordered(line: Floats) -> bool:
+    steps = np.diff(line)
+    return len(line) > 1 and bool((steps > 0).all() or (steps < 0).all())

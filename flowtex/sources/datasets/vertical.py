@@ -33,7 +33,7 @@ from flowtex.sources.datasets.axes import (
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import variable, velocity_unit
 from flowtex.sources.datasets.values import checked_component, numbers_in
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import xarray as xr

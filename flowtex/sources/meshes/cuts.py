@@ -18,16 +18,17 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.triangles.arrays import nodal_means, solid_triangles
 from flowtex.field.triangles.topology import needle_edges, triangle_normals
-from flowtex.sources.meshes.nodes import Sheet, hidden_nodes
 from flowtex.sources.meshes.vectors import (
     BLANKING,
     MeshArray,
+    Sheet,
     catalogue,
     data_of,
+    hidden_nodes,
     near_name,
     values_of,
 )
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import pyvista as pv

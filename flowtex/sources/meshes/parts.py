@@ -15,7 +15,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, data_of
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import pyvista as pv

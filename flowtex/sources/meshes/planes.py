@@ -27,10 +27,16 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex.field.grids.arrays import axes, products
 from flowtex.field.grids.periodic import find_closure
-from flowtex.field.grids.signs import axes, products
-from flowtex.sources.meshes.nodes import Sheet, hidden_nodes, visible_cells
-from flowtex.sources.meshes.vectors import MeshArray, catalogue, values_of
+from flowtex.sources.meshes.vectors import (
+    MeshArray,
+    Sheet,
+    catalogue,
+    hidden_nodes,
+    values_of,
+    visible_cells,
+)
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 

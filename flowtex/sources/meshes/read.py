@@ -20,9 +20,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.derived.vectors import component_name
-from flowtex.sources.meshes.components import NO_VELOCITY, named_axes
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
-from flowtex.sources.meshes.nodes import Masks, Sheet
 from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps, times_of
 from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
 from flowtex.sources.meshes.series import (
@@ -32,9 +30,18 @@ from flowtex.sources.meshes.series import (
     common_scalars,
     ordered_times,
 )
-from flowtex.sources.meshes.vectors import MeshArray, Selection, select_velocity, thick_axes
+from flowtex.sources.meshes.vectors import (
+    NO_VELOCITY,
+    Masks,
+    MeshArray,
+    Selection,
+    Sheet,
+    named_axes,
+    select_velocity,
+    thick_axes,
+)
 from flowtex.sources.meshes.volume import VolumeValues
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 #: Greatest ratio of the variances across and along a flat mesh.
 FLAT = 1e-10

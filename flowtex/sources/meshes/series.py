@@ -12,11 +12,10 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.nodes import Sheet
 from flowtex.sources.meshes.parts import SAME_NODE_SHARE, TimeStep, is_structured, part_size
 from flowtex.sources.meshes.planes import count_nodes
-from flowtex.sources.meshes.vectors import MeshArray, catalogue, missing_arrays
-from flowtex.sources.record import Record
+from flowtex.sources.meshes.vectors import MeshArray, Sheet, catalogue, missing_arrays
+from flowtex.sources.notices import Record
 
 #: Length of a gap in usual steps from which on a notice is issued.
 GAP_STEPS = 8

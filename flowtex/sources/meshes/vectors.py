@@ -1,7 +1,9 @@
-"""The arrays of a mesh, and the choice of the velocity.
+"""The arrays of a mesh, the choice of the velocity, and the drawn nodes at one time.
 
 A velocity is an array of two or three components, or as many arrays of one: those that are named,
-or whose names belong together (:mod:`flowtex.sources.meshes.components`).
+or whose names differ only in one letter or number, such as ``X Velocity`` or ``vel_z``. Meshes hide
+nodes and cells by VTK's ghost arrays on points and on cells, by PLOT3D's ``IBlank``, and by the
+mask of points that a sampling filter missed. Vectors may have a fill value.
 """
 
 from __future__ import annotations
@@ -9,15 +11,16 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.components import NO_VELOCITY, find_vectors
+from flowtex.sources.datasets.masks import undeclared_fill
+from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -32,6 +35,37 @@ VELOCITY = re.compile(
 #: Share of the extent of a mesh below which it is flat along an axis.
 FLAT_SHARE = 1e-6
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
+#: Names of vectors other than the velocity.
+NO_VELOCITY = re.compile(
+    r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE
+)
+#: Momenta, which are not velocities; a real array of vectors is left to the user.
+_MOMENTUM = re.compile(r".*momentum.*|rho.?[uv]?", re.IGNORECASE)
+_VELOCITY = re.compile(r"(.*[ _.:-])?(vel|velocit(y|ies)|wind|[uv])([ _.:-].*)?", re.IGNORECASE)
+
+#: Letters and numbers of the components.
+_AXES = ("xyz", "XYZ")
+_ALPHABETS = (*_AXES, "uvw", "UVW", "012", "123")
+_GAP = r"[ _.:-]+"
+_FORMS = tuple(
+    re.compile(form)
+    for form in (
+        rf"(?P<token>[x-zu-w]){_GAP}.+",
+        rf"(?P<token>[X-ZU-W]){_GAP}.+",
+        r"(?P<token>[XYZ])[A-Z][a-z].*",
+        rf".+?{_GAP}(?P<token>[X-ZU-Wx-zu-w0-3])",
+        r".+?[\[(](?P<token>[X-ZU-Wx-zu-w0-3])[\])]",
+        r".*[a-z0-9](?P<token>[XYZ])",
+        r"([uv]|vel|velocity)(?P<token>[xyz0-3])",
+        r"([UV]|Vel|Velocity|VEL|VELOCITY)(?P<token>[xyzXYZ0-3])",
+        r"(?P<token>[uvwUVW])",
+    )
+)
+_UNIT = re.compile(r"\s*(\[[^\]]{2,}\]|\([^)]{2,}\))$")
+_EDGES = " _.:-()[]"
+#: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
+#: cells that are duplicates of a neighbouring piece carry data and count as visible.
+_HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
 
 
 @dataclass(frozen=True)
@@ -215,3 +249,166 @@ def _found(mesh: pv.DataSet, known: str) -> Selection:
     listed = ", ".join(map(str, others))
     text += f', chosen by its name; other vectors: {listed}. Choose one of them as in vectors="'
     return Selection(array, f'{text}{others[0].name}"', notable=True)
+
+
+def find_vectors(
+    names: Sequence[str], pair: tuple[int, int] | None = None
+) -> dict[str, tuple[str, ...]]:
+    """Return the names of the components of each vector, by a name for the vector.
+
+    Two components are sufficient on a flat mesh: those along the ``pair`` of axes in its plane, or
+    the first two if their letters name no axes. A vector has the name of its components without
+    their letter, ``Velocity``, or if that is too short or the name of an array, all their names,
+    ``u,v,w``.
+    """
+    all_names = set(names)
+    vectors: dict[str, tuple[str, ...]] = {}
+    for name in names:
+        for before, alphabet, after in _parses(name):
+            whole = tuple(before + token + after for token in alphabet)
+            # Four numbered arrays are not a vector.
+            numbered = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
+            if numbered and all_names.issuperset(numbered):
+                continue
+            choices = [whole]
+            if pair is not None:
+                pairs = dict.fromkeys((pair, pair if alphabet in _AXES else (0, 1)))
+                choices += [(whole[first], whole[second]) for first, second in pairs]
+            parts = next((parts for parts in choices if all_names.issuperset(parts)), ())
+            if parts and name == parts[0] and parts not in vectors.values():
+                stem = _stem(before, after)
+                free = len(stem) > 1 and stem not in all_names and stem not in vectors
+                vectors[stem if free else ",".join(parts)] = parts
+    return vectors
+
+
+def named_axes(parts: Sequence[str]) -> tuple[tuple[int, ...], bool]:
+    """Return the axes, 0 to 2, of named components, empty if unknown, and if these say x, y, z."""
+    parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES)) if parts else ()
+    for before, alphabet, after in parses:
+        whole = [before + token + after for token in alphabet]
+        if set(parts) <= set(whole) and len(set(parts)) == len(parts):
+            axes = tuple(whole.index(part) for part in parts)
+            return (axes, True) if alphabet in _AXES else (() if axes == (0, 1) else axes, False)
+    return (), False
+
+
+def _parses(name: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the ways to read a name: text, alphabet of the component, and text."""
+    bare = _UNIT.sub("", name)
+    for form in _FORMS:
+        match = form.fullmatch(bare)
+        if match is None or "," in name:
+            continue
+        start, end = match.span("token")
+        before, after = name[:start], name[end:]
+        stem, token = _stem(before, after), match["token"]
+        if NO_VELOCITY.fullmatch(stem) or _MOMENTUM.fullmatch(stem):
+            continue
+        velocity = bool(_VELOCITY.fullmatch(stem))
+        for alphabet in _ALPHABETS:
+            if token in alphabet and _is_plausible(stem, alphabet, before, velocity=velocity):
+                yield before, alphabet, after
+
+
+def _is_plausible(stem: str, alphabet: str, before: str, *, velocity: bool) -> bool:
+    """Return whether a name may be a component: x, y, z and numbers also have other uses."""
+    if alphabet[0] in "uU":
+        return velocity or not stem
+    if alphabet[0].isdecimal():
+        return velocity or before.endswith((":", "["))
+    return bool(stem)
+
+
+def _stem(before: str, after: str) -> str:
+    """Return the name of a vector: that of a component without its letter and its unit."""
+    return (before + _UNIT.sub("", after)).strip(_EDGES)
+
+
+@dataclass(kw_only=True)
+class Sheet:
+    """Positions (..., 3) and visibility (...) of nodes, which are (J, I) or (N,).
+
+    ``nodes`` computes the values of an array at the nodes, ``flat`` returns those of the cells,
+    (J - 1, I - 1) or (M,), and ``arrays`` are all that there are.
+    """
+
+    points: Floats
+    shown: Bools
+    arrays: list[MeshArray]
+    nodes: Callable[[MeshArray], Floats]
+    flat: Callable[[MeshArray], Floats]
+    #: Corners of triangles (M, 3), or the cells of a grid that are shown and have a velocity,
+    #: (J - 1, I - 1), and whether the last line along (j, i) repeats the first one.
+    triangles: Indices | None = None
+    cells: Bools | None = None
+    wrap: tuple[bool, bool] = (False, False)
+
+
+def hidden_nodes(mesh: Any) -> Bools:
+    """Return which nodes a mesh hides, (N,)."""
+    return np.any([np.zeros(mesh.n_points, bool), *_hidden(mesh).values()], axis=0)
+
+
+def visible_cells(mesh: Any) -> Bools:
+    """Return which cells a mesh shows, (N,)."""
+    flags = mesh.cell_data.get("vtkGhostType", np.zeros(mesh.n_cells, np.uint8))
+    return (np.asarray(flags) & _HIDDEN_CELL) == 0
+
+
+def _hidden(mesh: Any) -> dict[str, Bools]:
+    """Return the hidden nodes by the reason."""
+    # Negative values and those above one are walls and overlaps of grids, with data.
+    tests: dict[str, Callable[[Any], Bools]] = {
+        "vtkGhostType": lambda flags: (flags & _HIDDEN_POINT) != 0,
+        "IBlank": lambda flags: flags == 0,
+        "vtkValidPointMask": lambda flags: flags == 0,
+    }
+    data = mesh.point_data
+    return {name: test(np.asarray(data[name])) for name, test in tests.items() if name in data}
+
+
+class Masks:
+    """The masks of a series, and the greatest share that each of them hides."""
+
+    def __init__(self, velocity: MeshArray) -> None:
+        self._velocity = velocity
+        self._shares: dict[str, float] = {}
+        self._fills: dict[float, str] = {}
+
+    def masked(self, mesh: Any) -> Any:
+        """Return a mesh whose vectors are NaN where they have a fill value."""
+        name, where, parts = self._velocity.name, self._velocity.where, self._velocity.parts
+        values = values_of(mesh, self._velocity)
+        hidden = {f"of the nodes are hidden by {array}": at for array, at in _hidden(mesh).items()}
+        hidden["of the cells are hidden by vtkGhostType"] = ~visible_cells(mesh)
+        if values.size and np.isnan(values.min()):
+            missing = f"of the {where} have no velocity: {name} is NaN"
+            hidden[missing] = np.asarray(np.isnan(values).any(-1))
+        visible = visible_cells(mesh) if where == "cells" else ~hidden_nodes(mesh)
+        known = values if visible.all() else values[visible]
+        for fill in self._fills:
+            known = np.where(known == fill, np.nan, known)
+        while (found := undeclared_fill(known)) is not None:
+            text = f"{name} is {found:g} there, which is taken for a fill value"
+            self._fills[found] = f"of the {where} are masked: {text}"
+            known = np.where(known == found, np.nan, known)
+        for fill, text in self._fills.items():
+            hidden[text] = (values == fill).any(axis=-1) & visible
+        for text, at in hidden.items():
+            share = float(at.mean()) if at.size else 0.0
+            self._shares[text] = max(share, self._shares.get(text, 0.0))
+        if not self._fills:
+            return mesh
+        left = np.where(np.isin(values, list(self._fills)), np.nan, values)
+        mesh = mesh.copy(deep=False)
+        for array, column in zip(parts or (name,), left.T if parts else (left,), strict=True):
+            data_of(mesh, where)[array] = column
+        return mesh
+
+    def tell(self, record: Record) -> None:
+        """Record what was hidden."""
+        for text, share in self._shares.items():
+            percent = f"{share:.0%}" if share >= 0.01 else "less than 1%"
+            if share:
+                record("mask", f"{percent} {text}", notable=text in self._fills.values())

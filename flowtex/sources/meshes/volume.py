@@ -13,9 +13,15 @@ from flowtex._util.cache import ByteCache
 from flowtex._util.vectors import dot, norm
 from flowtex.field.validation import MAGNITUDES
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
-from flowtex.sources.meshes.nodes import hidden_nodes, visible_cells
 from flowtex.sources.meshes.planes import Plane
-from flowtex.sources.meshes.vectors import BLANKING, MeshArray, catalogue, values_of
+from flowtex.sources.meshes.vectors import (
+    BLANKING,
+    MeshArray,
+    catalogue,
+    hidden_nodes,
+    values_of,
+    visible_cells,
+)
 
 #: Values that are kept of an array, of all steps together, and at least of one.
 MOST_VALUES, LEAST_VALUES = 1 << 16, 1 << 10

@@ -21,9 +21,8 @@ from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_mesh_axes
-from flowtex.sources.opening.components import split_components
-from flowtex.sources.opening.tables import as_dataset
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
+from flowtex.sources.opening.tables import as_dataset, split_components
 
 if TYPE_CHECKING:
     import xarray as xr

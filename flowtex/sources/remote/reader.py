@@ -14,8 +14,7 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.sources.dataset_source import open_source
-from flowtex.sources.mesh_source import Source
+from flowtex.sources.open_source import Source, open_source
 
 #: Reads a step.
 Read = Callable[[int], Floats]
@@ -42,7 +41,7 @@ CHOICES = (
 
 
 class Reader:
-    """Handler of the requests of a :class:`~flowtex.sources.remote.RemoteSource`."""
+    """Handler of the requests of a :class:`~flowtex.sources.remote.source.RemoteSource`."""
 
     def __init__(self) -> None:
         self._source: Source | None = None

@@ -15,8 +15,8 @@ from flowtex._util.notices import Notice, notify
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.sources.files import file_identity
-from flowtex.sources.mesh_source import Source
 from flowtex.sources.notices import DatasetNotice
+from flowtex.sources.open_source import Source
 from flowtex.sources.remote.reader import take_description, unpack_field
 
 _log = logging.getLogger(__name__)

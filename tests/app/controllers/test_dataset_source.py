@@ -13,7 +13,7 @@ from earth_data import winds
 from flowtex.app import Choice, Library
 from flowtex.app.controllers.serialization import to_python
 from flowtex.errors import FieldError
-from flowtex.sources.dataset_source import DatasetSource, open_source
+from flowtex.sources.open_source import DatasetSource, open_source
 
 
 def levels() -> Any:

@@ -22,7 +22,7 @@ from flowtex.app import FlowApp, Library
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.serialization import from_link, to_link
 from flowtex.app.controllers.sharing import PictureJob
-from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.open_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -19,7 +19,7 @@ from flowtex.pyramid import build
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.sources.files import file_identity
-from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.open_source import FlowSource
 from flowtex.textures.tiles.shared import has_pyramid
 from flowtex.trace.store import SliceStore
 

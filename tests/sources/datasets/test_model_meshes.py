@@ -20,11 +20,10 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.sources.dataset_source import DatasetSource
 from flowtex.sources.datasets.flow import read_flow
-from flowtex.sources.notices import DatasetNotice
+from flowtex.sources.notices import DatasetNotice, Record
+from flowtex.sources.open_source import DatasetSource
 from flowtex.sources.opening.series import as_datasets
-from flowtex.sources.record import Record
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 

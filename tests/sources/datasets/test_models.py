@@ -17,8 +17,7 @@ import pytest
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.flow import read_flow
-from flowtex.sources.notices import DatasetNotice
-from flowtex.sources.record import Record
+from flowtex.sources.notices import DatasetNotice, Record
 
 #: What is recognised: the names of the components, along what they are, and the grid.
 KNOWN = {

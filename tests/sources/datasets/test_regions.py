@@ -14,7 +14,7 @@ from flowtex._util.blocks import even_runs
 from flowtex.field.arrays import GridArrays
 from flowtex.field.gaps import NO_DATA
 from flowtex.sources.datasets.read import read_datasets
-from flowtex.sources.datasets.regions import Regions
+from flowtex.sources.datasets.values import Regions
 
 xr = pytest.importorskip("xarray")
 

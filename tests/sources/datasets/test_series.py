@@ -16,8 +16,8 @@ from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.scene.options import Options
 from flowtex.settings import SettingsError
-from flowtex.sources.dataset_source import open_source
 from flowtex.sources.notices import DatasetNotice
+from flowtex.sources.open_source import open_source
 
 pytest.importorskip("netCDF4")
 

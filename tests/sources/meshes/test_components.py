@@ -13,9 +13,9 @@ import pyvista as pv
 from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
-from flowtex.sources.mesh_source import FlowSource
-from flowtex.sources.meshes.components import find_vectors
-from flowtex.sources.summary import describe
+from flowtex.sources.files import describe
+from flowtex.sources.meshes.vectors import find_vectors
+from flowtex.sources.open_source import FlowSource
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(

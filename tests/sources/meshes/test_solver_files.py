@@ -14,8 +14,8 @@ from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, wr
 from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
-from flowtex.sources.mesh_source import FlowSource
-from flowtex.sources.summary import BlockSummary, describe
+from flowtex.sources.files import BlockSummary, describe
+from flowtex.sources.open_source import FlowSource
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -125,7 +125,7 @@ def test_blocks_with_times_are_read_when_they_are_asked_for(
 def test_blocks_of_a_large_series_are_read_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.sources.mesh_source.MAX_SERIES_BYTES", 0)
+    monkeypatch.setattr("flowtex.sources.open_source.MAX_SERIES_BYTES", 0)
     source = FlowSource.from_file(cgns(tmp_path / "flow.cgns"))
     field = source.field(block="Wing/Zone 2", plane="k=0")
     assert np.allclose(field.velocity[1], turning(BODY, 2.0)[0])

@@ -17,7 +17,7 @@ from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.sources.mesh_source import FlowSource
+from flowtex.sources.open_source import FlowSource
 
 pv = pytest.importorskip("pyvista")
 

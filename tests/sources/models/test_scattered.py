@@ -15,9 +15,9 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.units import factor
 from flowtex.sources.datasets.flow import read_flow
+from flowtex.sources.models.conventions import healpix_centres
 from flowtex.sources.models.mesh import join_points
-from flowtex.sources.models.scattered import healpix_centres
-from flowtex.sources.record import Record
+from flowtex.sources.notices import Record
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 

@@ -9,7 +9,7 @@ import xarray as xr
 from flowtex import FlowField, render
 from flowtex.errors import FieldError
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.opening.components import split_components
+from flowtex.sources.opening.tables import split_components
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 

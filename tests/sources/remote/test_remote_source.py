@@ -26,9 +26,9 @@ from flowtex._util.notices import Notice
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
-from flowtex.sources.dataset_source import open_source
-from flowtex.sources.remote import RemoteSource, open_remote
+from flowtex.sources.open_source import open_source
 from flowtex.sources.remote.reader import Reader, describe_source, pack_field, unpack_field
+from flowtex.sources.remote.source import RemoteSource, open_remote
 
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
 
