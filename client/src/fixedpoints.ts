@@ -1,6 +1,6 @@
 // Fixed points of a formula, the separatrices of its saddles, and closed orbits: zeros of the rates themselves,
 // and lines that are followed along them. The search for points is that of
-// flowtex/trace/structure/formula_points.py, which describes the constants.
+// flowtex/trace/structure/formula_lines.py, which describes the constants.
 
 export type Pair = [x: number, y: number];
 /** The rates of change at a place; not finite if they do not exist. */

@@ -24,7 +24,6 @@ from flowtex.field.derived.methods import FieldQuantities
 from flowtex.field.derived.vectors import magnitude_label
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
-from flowtex.field.gaps import prepared
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
@@ -40,7 +39,7 @@ from flowtex.field.surface import IndexVelocity, Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.units import factor, speed_unit
-from flowtex.field.validation import ALL_AT_REST
+from flowtex.field.validation import ALL_AT_REST, prepared
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"

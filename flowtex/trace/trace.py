@@ -24,9 +24,9 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import FOLLOWED
 from flowtex.field.derived.gradient import node_gradient, true_positions
-from flowtex.field.gaps import known_nodes
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.steps import LazySteps, Steps
+from flowtex.field.validation import known_nodes
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit

@@ -10,8 +10,8 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.gaps import NO_DATA
 from flowtex.field.steps import LazySteps
+from flowtex.field.validation import NO_DATA
 from flowtex.scene.scene import Scene
 
 X, Y = np.meshgrid(np.linspace(0, 3, 30), np.linspace(0, 2, 20))

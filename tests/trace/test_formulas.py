@@ -18,8 +18,8 @@ from scipy.optimize import fsolve
 import flowtex
 from flowtex import FlowField
 from flowtex._util.notices import Notice
+from flowtex.field.formula.flow import derivative
 from flowtex.field.formula.grammar import OPERATIONS, evaluate, parse
-from flowtex.field.formula.rates import derivative
 
 CASES = json.loads((Path(__file__).parent / "formula_cases.json").read_text(encoding="utf-8"))
 #: Some where lines turn around a point, and none closes but around a centre.

@@ -12,8 +12,8 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
 from flowtex.field.derived.vectors import vector_names, with_vector_scalar
-from flowtex.field.gaps import NO_DATA, known_nodes
 from flowtex.field.steps import LazySteps, Steps, map_steps
+from flowtex.field.validation import NO_DATA, known_nodes
 
 #: Functions of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {

@@ -20,7 +20,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex._util.vectors import norm
 from flowtex.field.formula import Formula
-from flowtex.field.formula.rates import gradient_trees
+from flowtex.field.formula.flow import gradient_trees
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -30,7 +30,7 @@ from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
-from flowtex.trace.structure.critical_points import formula_rates
+from flowtex.trace.structure.formula_lines import formula_rates
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4

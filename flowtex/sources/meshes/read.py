@@ -22,7 +22,6 @@ from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.derived.vectors import component_name
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps, times_of
-from flowtex.sources.meshes.planes import Plane, find_plane, nodes_to_keep, plane_sheet
 from flowtex.sources.meshes.series import (
     aligned,
     check_arrays,
@@ -40,7 +39,13 @@ from flowtex.sources.meshes.vectors import (
     select_velocity,
     thick_axes,
 )
-from flowtex.sources.meshes.volume import VolumeValues
+from flowtex.sources.meshes.volume import (
+    Plane,
+    VolumeValues,
+    find_plane,
+    nodes_to_keep,
+    plane_sheet,
+)
 from flowtex.sources.notices import Record
 
 #: Greatest ratio of the variances across and along a flat mesh.

@@ -13,8 +13,8 @@ import scipy
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.sources.meshes.parts import SAME_NODE_SHARE, TimeStep, is_structured, part_size
-from flowtex.sources.meshes.planes import count_nodes
 from flowtex.sources.meshes.vectors import MeshArray, Sheet, catalogue, missing_arrays
+from flowtex.sources.meshes.volume import count_nodes
 from flowtex.sources.notices import Record
 
 #: Length of a gap in usual steps from which on a notice is issued.

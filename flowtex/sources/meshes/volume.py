@@ -1,22 +1,31 @@
-"""Values of the arrays of a volume, which give the colours of its slices their range."""
+"""One plane of nodes of a structured mesh, as (j, i), and ranges of values of the whole volume.
+
+A structured mesh of I x J x K nodes has node (i, j, k) at place i + I (j + J k). With one index
+fixed, the other two keep their order, and nothing is mirrored for a right-handed surface. Vectors
+at the nodes are means of the visible cells around each, on both sides of the plane, so that blanked
+cells have no effect.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import re
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.blocks import row_blocks
 from flowtex._util.cache import ByteCache
 from flowtex._util.vectors import dot, norm
+from flowtex.field.grids.arrays import axes, products
+from flowtex.field.grids.periodic import find_closure
 from flowtex.field.validation import MAGNITUDES
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
-from flowtex.sources.meshes.planes import Plane
 from flowtex.sources.meshes.vectors import (
     BLANKING,
     MeshArray,
+    Sheet,
     catalogue,
     hidden_nodes,
     values_of,
@@ -29,6 +38,7 @@ MOST_VALUES, LEAST_VALUES = 1 << 16, 1 << 10
 GOLDEN_SHARE = (5**0.5 - 1) / 2
 #: Samples by the states of their arrays, which VTK numbers: a moving slice asks again and again.
 _samples: ByteCache[tuple[object, ...], Floats] = ByteCache(128_000_000)
+_PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
 
 class VolumeValues:
@@ -127,3 +137,165 @@ def _lengths(vectors: Floats, normals: Floats | None) -> Floats:
                 part -= (dot(part, normal) / dot(normal, normal))[..., None] * normal
         lengths[rows] = norm(part)
     return lengths
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane of constant i, j or k (axis 0, 1 or 2) of a mesh of (I, J, K) nodes."""
+
+    dimensions: tuple[int, int, int]
+    axis: int
+    index: int
+
+    def nodes(self, values: AnyArray) -> AnyArray:
+        """Take the plane out of nodal values, (N, ...) to (J, I, ...)."""
+        shaped = values.reshape(*self.dimensions[::-1], *values.shape[1:])
+        return np.asarray(np.take(shaped, self.index, axis=2 - self.axis))
+
+    def cells(self, values: AnyArray) -> AnyArray:
+        """Take the cells on both sides of the plane, (N, ...) to (1 or 2, J - 1, I - 1, ...)."""
+        counts = [max(n - 1, 1) for n in self.dimensions]
+        last = counts[self.axis] - 1
+        sides = sorted({max(self.index - 1, 0), min(self.index, last)})
+        shaped = values.reshape(*counts[::-1], *values.shape[1:])
+        return np.moveaxis(np.take(shaped, sides, axis=2 - self.axis), 2 - self.axis, 0)
+
+
+def count_nodes(dimensions: tuple[int, int, int]) -> str:
+    """Return the size of a mesh as text."""
+    return " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
+
+
+def find_plane(mesh: Any, plane: Any) -> tuple[Plane | None, str]:
+    """Return a plane and a sentence about it, or ``None`` and the fault in the choice.
+
+    ``None`` stands for the mesh itself, or the middle of a volume.
+    """
+    dimensions = tuple(mesh.dimensions)
+    size, middle = count_nodes(dimensions), f"k={dimensions[2] // 2}"
+    if min(dimensions) < 1:
+        return None, "the mesh has no nodes; check the file or filter that made it"
+    if sum(n > 1 for n in dimensions) < 2:
+        text = "a single row; a surface needs at least 2 nodes along two of the axes"
+        return None, f"the mesh has {size}, {text}"
+    if plane is None and min(dimensions) == 1:
+        return Plane(dimensions, dimensions.index(1), 0), ""
+    if plane is None:
+        ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
+        return Plane(dimensions, 2, dimensions[2] // 2), (
+            f'the plane is "{middle}", the middle of {size}; choose another as in '
+            f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
+        )
+    match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
+    if match is None:
+        text = 'expected "i=N", "j=N" or "k=N" with a whole number N'
+        return None, f'plane is {plane!r}; {text}, as in plane="{middle}"'
+    letter = match[1].lower()
+    axis, index = "ijk".index(letter), int(match[2])
+    count = dimensions[axis]
+    if not -count <= index < count:
+        text = f"expected {letter} from {-count} to {count - 1}, because the mesh has {size}"
+        return None, f"plane is {plane!r}; {text}"
+    if min(dimensions) == 1 and count > 1:
+        text = f"which selects a single row, because the mesh has {size}; the mesh is already a"
+        return None, f"plane is {plane!r}, {text} surface: omit plane"
+    return Plane(dimensions, axis, index % count), f"plane {letter} = {index % count} of {size}"
+
+
+def plane_sheet(
+    grid: Any, plane: Plane, velocity: MeshArray, periodic: str | None, *, sign_free: bool
+) -> Sheet:
+    """Return the nodes of a plane of a structured mesh, (J, I)."""
+    points = _positions(grid, plane)
+    shown = ~plane.nodes(hidden_nodes(grid))
+    wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
+    visible = plane.cells(visible_cells(grid))
+
+    def nodes(array: MeshArray) -> Floats:
+        values = values_of(grid, array)
+        if array.where == "points":
+            return plane.nodes(values).astype(np.float64)
+        layers = plane.cells(values).astype(np.float64)
+        seen = visible & np.isfinite(layers.reshape(*visible.shape, -1)).all(axis=-1)
+        if sign_free and array == velocity:
+            return axes(_spread(products(layers), seen, wrap))
+        return _spread(layers, seen, wrap)
+
+    def flat(array: MeshArray) -> Floats:
+        """Return the values beyond the plane, as of PyVista's ``extract_subset``, or before it."""
+        layers = plane.cells(values_of(grid, array)).astype(np.float64)
+        layers[~visible] = np.nan
+        seen = visible[-1].reshape(*visible.shape[1:], *[1] * (layers.ndim - 3))
+        return np.asarray(np.where(seen, layers[-1], layers[0]))
+
+    cells = visible
+    if velocity.where == "cells":
+        cells = visible & np.isfinite(plane.cells(values_of(grid, velocity))).all(axis=-1)
+    return Sheet(
+        points=points,
+        shown=shown,
+        arrays=catalogue(grid),
+        nodes=nodes,
+        flat=flat,
+        cells=np.asarray(cells.any(axis=0)),
+        wrap=wrap,
+    )
+
+
+def _positions(grid: Any, plane: Plane) -> Floats:
+    """Return positions of the nodes of a plane, (J, I, 3)."""
+    import pyvista as pv
+
+    if isinstance(grid, pv.RectilinearGrid):
+        lines = [grid.x, grid.y, grid.z]
+        lines[plane.axis] = lines[plane.axis][plane.index : plane.index + 1]
+        part: Any = pv.RectilinearGrid(*lines)
+    else:
+        bare, ends = grid.copy(deep=False), np.reshape(grid.GetExtent(), (3, 2))
+        bare.clear_data()
+        ends[plane.axis] = ends[plane.axis, 0] + plane.index
+        part = bare.extract_subset(ends.ravel().tolist())
+    points = np.asarray(part.points, dtype=np.float64)
+    return points.reshape(*np.delete(plane.dimensions, plane.axis)[::-1], 3)
+
+
+def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
+    """Return whether the last line along (j, i) repeats the first one, so that cells go round."""
+    ends = find_closure(points), find_closure(np.swapaxes(points, 0, 1))
+    allowed = [periodic is None or letter in periodic for letter in "ji"]
+    j, i = (end.periodic and end.line is None for end in ends)
+    return j and allowed[0], i and allowed[1]
+
+
+def _spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
+    """Return the mean of the visible cells around each node, (J, I, ...); NaN without such cells.
+
+    Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` marks those that
+    count, (L, J - 1, I - 1). ``wrap`` is whether the last line of nodes along (j, i) repeats the
+    first one, so that the cells beyond it are known.
+    """
+    seen = visible.reshape(*visible.shape, *[1] * (values.ndim - 3))
+    total = _around(np.where(seen, values, 0.0).sum(axis=0), wrap)
+    count = _around(seen.sum(axis=0).astype(np.float64), wrap)
+    return np.asarray(np.where(count > 0, total / np.maximum(count, 1.0), np.nan))
+
+
+def nodes_to_keep(visible: Bools, wrap: tuple[bool, bool]) -> Bools:
+    """Return nodes (J, I) that draw the visible cells (J - 1, I - 1) and none of the hidden ones.
+
+    A cell is drawn when its four nodes are kept. Nodes between a visible and a hidden cell are
+    kept, unless that would draw a hidden cell: a wall one cell thick takes its nodes with it.
+    """
+    keep = _around(visible.astype(np.float64), wrap) > 0
+    drawn = keep[:-1, :-1] & keep[1:, :-1] & keep[:-1, 1:] & keep[1:, 1:]
+    return np.asarray(keep & (_around((drawn & ~visible).astype(np.float64), wrap) == 0))
+
+
+def _around(cells: Floats, wrap: tuple[bool, bool]) -> Floats:
+    """Return sums of the four cells around each node, (J - 1, I - 1, ...) to (J, I, ...)."""
+    for axis in (0, 1):
+        width = [(1, 1) if a == axis else (0, 0) for a in range(cells.ndim)]
+        padded = np.pad(cells, width, mode="wrap" if wrap[axis] else "constant")
+        lines = np.swapaxes(padded, 0, axis)
+        cells = np.swapaxes(lines[:-1] + lines[1:], 0, axis)
+    return cells

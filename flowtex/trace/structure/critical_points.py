@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, overload
@@ -11,11 +12,13 @@ import scipy
 
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.extras import import_extra
 from flowtex._util.notices import notify
+from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
-from flowtex.field.formula.rates import Rates
+from flowtex.field.formula.flow import Rates
 from flowtex.field.grids.poles import Pole
 from flowtex.field.locate import surface_point
 from flowtex.field.triangles.surface import TriangleSurface
@@ -26,8 +29,7 @@ from flowtex.trace.structure.cells import (
     strengths,
     triangle_indices,
 )
-from flowtex.trace.structure.formula_points import Zeros, directions, zeros
-from flowtex.trace.structure.records import Records, steady_parts
+from flowtex.trace.structure.formula_lines import Zeros, directions, formula_rates, zeros
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -46,6 +48,45 @@ SAME_POINT_CELLS = 1e-3
 REST_SHARE = 1e-12
 #: Share of a neighbour's velocity that replaces one that is zero.
 LEAST_SHARE = 1e-7
+
+
+class Records(ABC):
+    """Features that are rows of a table, with places on the Earth for a field there."""
+
+    @abstractmethod
+    def records(self) -> list[dict[str, Any]]:
+        """Return a dictionary of numbers and strings for each row."""
+
+    @abstractmethod
+    def _geometries(self) -> list[dict[str, Any] | None]:
+        """Return the GeoJSON geometry of each row, or ``None`` for those not on the Earth."""
+
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of :meth:`records`."""
+        return import_extra("pandas", "xarray").DataFrame(self.records())
+
+    def to_geojson(self) -> dict[str, Any]:
+        """Return a GeoJSON ``FeatureCollection``; lines are split where they cross 180 degrees.
+
+        Raises
+        ------
+        FieldError
+            When the field is not in coordinates of the Earth.
+        """
+        geometries, features = self._geometries(), []
+        if None in geometries:
+            msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
+            raise FieldError(msg)
+        for geometry, row in zip(geometries, self.records(), strict=True):
+            properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
+            features.append({"type": "Feature", "geometry": geometry, "properties": properties})
+        return {"type": "FeatureCollection", "features": features}
+
+
+def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> Iterator[FlowField]:
+    """Return the fields of some time steps, or of all, with a progress bar of this text."""
+    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
+    return map(field.at_step, track(numbers, len(numbers), text))
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,21 +271,6 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
             found = (_on_grid if part.triangles is None else _on_triangles)(part)
         points += _with_strength(found, part)
     return CriticalPoints(points)
-
-
-def formula_rates(field: FlowField) -> Rates | None:
-    """Return the rates of the formula from which a steady field was made, if they are known."""
-    formula, valid = field.formula, field.valid
-    if formula is None or field.triangles is not None:
-        return None
-    u, v = formula.coordinates(field.shape)
-    points, velocity = formula.points(u, v), formula.velocity(u, v, float(field.times[0]))
-    for own, other in ((field.points, points), (field.velocity[0], velocity)):
-        flat = np.zeros((*field.shape, 3 - other.shape[-1]))
-        if not np.allclose(own[valid], np.concatenate([other, flat], axis=-1)[valid]):
-            return None
-    rates = Rates(formula, float(field.times[0]))
-    return rates if rates.is_known else None
 
 
 def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:

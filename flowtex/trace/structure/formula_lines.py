@@ -1,22 +1,47 @@
-"""Lines and closed orbits of a formula, integrated from the formula itself; nullclines."""
+"""Fixed points, lines and closed orbits of a formula, from the formula itself; nullclines.
+
+Fixed points are zeros, by Newton's method with the gradient. Their lengths are in search cells, of
+which there are CELLS along the longer side, and each rate is a share of its largest value near the
+cell from which the search starts. The browser does the same in ``client/src/fixedpoints.ts``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
+from numpy.lib.stride_tricks import sliding_window_view
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.formula.rates import Rates
+from flowtex.field.formula.flow import Rates
 from flowtex.trace.integrate import Paths
-from flowtex.trace.structure.critical_points import formula_rates
-from flowtex.trace.structure.formula_points import runge_kutta
 from flowtex.trace.trace import paths
 
+#: Search cells along the longer side, and along the other one at least.
+CELLS, LEAST_CELLS = 160, 8
+#: Steps of Newton's method, their greatest length, and how far they may lead.
+STEPS, FAR = 100, 3.0
+#: Last step and remaining rate of a zero, and how far beyond the border it may lie.
+LAST_STEP, LEFT, BEYOND = 1e-6, 1e-11, 1e-6
+#: Distance from which zeros are different ones; a degenerate one is less precise.
+SAME, SAME_DEGENERATE = 1e-6, 0.05
+#: Step of the change of the determinant, and distance of its zero at a degenerate point.
+CHANGE, DEGENERATE = 1e-2, 1e-5
+#: Determinants and traces that are zero, as a share of the gradient.
+SINGULAR, ROUNDING = 1e-13, 1e-9
+#: Distance around a degenerate point at which others show that it lies on a line of rest.
+AROUND, ON_LINE = 0.1, 0.02
+#: Area of a cell of a surface at its poles, as a share of that in the middle.
+POLE_AREA = 1e-6
+#: Radius of the circle on which an index is counted, points of it, and its most directions.
+RADIUS, CIRCLE, MOST_DIRECTIONS = 0.05, 720, 24
+#: Radius and steps of a turn around a possible centre, and the change of the radius that counts.
+TURN_RADIUS, TURN_STEPS, RETURNED = 2.0, 400, 1e-7
+_SIDES = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], float)
 #: Longest step along a line, as a share of the diagonal.
 STEP = 1 / 700
 #: Share of the period after which an orbit is at its section again at the earliest; turns until it
@@ -25,14 +50,244 @@ ALMOST, TURNS, CLOSED, POINTS = 0.8, 12, 1e-7, 4000
 #: Tolerance of the integration, and least growth in a turn beside an orbit, as an exponent.
 TOLERANCE, LEAST_GROWTH = 1e-10, 1e-6
 #: A component is zero up to this share of its quantile at the other: beside a pole it is huge.
-ROUNDING, USUAL_SHARE = 1e-12, 0.9
+ZERO_SHARE, USUAL_SHARE = 1e-12, 0.9
 #: Halvings of a side of a triangle that a line crosses, and the greatest remaining share of a value
 #: that goes to zero there; at a pole and at a jump more remains.
-HALVINGS, LEFT = 12, 0.25
+HALVINGS, LEFT_SHARE = 12, 0.25
 #: Cells along the longer side of what is searched in a formula, and along the other one at least.
-CELLS, LEAST_CELLS = 256, 8
+LINE_CELLS, LEAST_LINE_CELLS = 256, 8
 #: Size of a window over that of the view, at least, and steps of its middle over its size.
 WINDOW_VIEWS, WINDOW_STEPS = 2.0, 4
+
+
+def formula_rates(field: FlowField) -> Rates | None:
+    """Return the rates of the formula from which a steady field was made, if they are known."""
+    formula, valid = field.formula, field.valid
+    if formula is None or field.triangles is not None:
+        return None
+    u, v = formula.coordinates(field.shape)
+    points, velocity = formula.points(u, v), formula.velocity(u, v, float(field.times[0]))
+    for own, other in ((field.points, points), (field.velocity[0], velocity)):
+        flat = np.zeros((*field.shape, 3 - other.shape[-1]))
+        if not np.allclose(own[valid], np.concatenate([other, flat], axis=-1)[valid]):
+            return None
+    rates = Rates(formula, float(field.times[0]))
+    return rates if rates.is_known else None
+
+
+class Zeros(NamedTuple):
+    """Isolated zeros of rates: places (K, 2), gradients (K, 2, 2), and Poincare indices (K,).
+
+    ``growth`` (K,) is the growth of the radius in a turn around points with imaginary eigenvalues.
+    ``lines`` says whether there are lines of rest.
+    """
+
+    places: Floats
+    gradient: Floats
+    indices: Indices
+    is_degenerate: Bools
+    growth: Floats
+    lines: bool
+
+
+def zeros(rates: Rates) -> Zeros:
+    """Return the isolated zeros of rates in their ranges."""
+    start, scale, cell = _starts(rates)
+    found, left = _newton(rates, start, scale, cell)
+    with np.errstate(invalid="ignore"):
+        inside = (np.abs(found - np.clip(found, *rates.ends.T)) <= BEYOND * cell).all(axis=1)
+    area = rates.area(np.concatenate([rates.ends.mean(axis=1)[None], found]))
+    inside &= area[1:] > POLE_AREA * area[0]
+    places, scale = np.clip(found[inside], *rates.ends.T), scale[inside]
+    degenerate = _are_degenerate(rates, places, scale, cell)
+    kept = _distinct(places / cell, degenerate, left[inside])
+    places, scale, degenerate = places[kept], scale[kept], degenerate[kept]
+    on_line = degenerate.copy()
+    on_line[degenerate] = _on_lines(rates, places[degenerate], scale[degenerate], cell)
+    places, degenerate = places[~on_line], degenerate[~on_line]
+    places[np.abs(places) < LEFT * cell] = 0.0
+    gradient = rates.lowered(rates.gradient(places), places)
+    indices = np.sign(np.linalg.det(gradient)).astype(np.intp)
+    gaps = np.linalg.norm((places[:, None] - places) / cell, axis=-1)
+    np.fill_diagonal(gaps, np.inf)
+    free = gaps.min(axis=1, initial=np.inf)
+    for n in np.flatnonzero(degenerate):
+        circle = places[n] + min(RADIUS, 0.3 * free[n]) * cell * _circle()[0]
+        values = rates.at(circle)
+        angle = np.unwrap(np.arctan2(values[:, 1], values[:, 0]))
+        turns = (angle[-1] - angle[0]) / (2 * np.pi)
+        indices[n] = round(turns) if np.isfinite(turns) else 0
+    growth = np.zeros(len(places))
+    trace, size = np.trace(gradient, axis1=1, axis2=2), np.abs(gradient).max(axis=(1, 2), initial=0)
+    turning = (indices == 1) & ~degenerate & (np.abs(trace) <= ROUNDING * size)
+    radius = np.minimum(TURN_RADIUS, 0.2 * free[turning])
+    growth[turning] = _growth(rates, places[turning], gradient[turning], radius, cell)
+    return Zeros(places, gradient, indices, degenerate, growth, bool(on_line.any()))
+
+
+def _starts(rates: Rates) -> tuple[Floats, Floats, Floats]:
+    """Return the middles of cells that may have a zero, (S, 2), and the largest rates near them.
+
+    Each rate must change by as much around the cell as it is in it. Also returns the size of a
+    cell, (2,).
+    """
+    sides = np.ptp(rates.ends, axis=1)
+    counts = np.maximum(np.round(CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
+    lines = [
+        low + side / n * np.arange(n + 1)
+        for low, side, n in zip(rates.ends[:, 0], sides, counts, strict=True)
+    ]
+    nodes = np.stack(np.meshgrid(*lines), axis=-1)
+    values = rates.at(nodes.reshape(-1, 2)).reshape(nodes.shape)
+    values[~np.isfinite(values)] = np.nan
+    around = sliding_window_view(np.pad(values, ((1, 1), (1, 1), (0, 0)), "edge"), (4, 4), (0, 1))
+    top, bottom = (extreme.reduce(around, axis=(-2, -1)) for extreme in (np.fmax, np.fmin))
+    least = np.fmin.reduce(np.abs(around[..., 1:3, 1:3]), axis=(-2, -1))
+    scale = np.maximum(np.abs(top), np.abs(bottom))
+    chosen = (least <= top - bottom).all(axis=-1)
+    row, column = np.nonzero(chosen & (scale > 0).any(axis=-1))
+    cell = sides / counts
+    middle = rates.ends[:, 0] + cell * (np.stack([column, row], axis=-1) + 0.5)
+    return middle, np.where(scale > 0, scale, 1.0)[row, column], cell
+
+
+def _step(rates: Rates, at: Floats, scale: Floats, cell: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the largest rate (N,), Newton's step (N, 2), and the determinant's share (N,)."""
+    value = rates.at(at) / scale
+    (a, b), (c, d) = np.moveaxis(rates.gradient(at) * cell / scale[..., None], 0, -1)
+    size, determinant = a * a + b * b + c * c + d * d, a * d - b * c
+    with np.errstate(all="ignore"):
+        u, v = value.T
+        step = np.stack([b * v - d * u, c * u - a * v], axis=-1) / determinant[:, None]
+        share = np.abs(determinant) / size
+        # Along a line of zeros the shortest step.
+        shortest = -np.stack([a * u + c * v, b * u + d * v], axis=-1) / size[:, None]
+    step = np.where((share > 0.1 * SINGULAR)[:, None], step, shortest)
+    return np.abs(value).max(axis=1, initial=0), step, share
+
+
+def _newton(rates: Rates, start: Floats, scale: Floats, cell: Floats) -> tuple[Floats, Floats]:
+    """Return the zeros near places (N, 2), NaN where there is none, and the rates left there."""
+    best, least = np.full(start.shape, np.nan), np.full(len(start), np.inf)
+    at, going = start.copy(), np.arange(len(start))
+    for _ in range(STEPS):
+        left, step, _ = _step(rates, at[going], scale[going], cell)
+        better = left < least[going]
+        best[going[better]], least[going[better]] = at[going[better]], left[better]
+        length = np.abs(step).max(axis=1, initial=0)
+        at[going] += cell * step / np.maximum(length, 1.0)[:, None]
+        with np.errstate(invalid="ignore"):
+            is_near = (np.abs(at[going] - start[going]) <= FAR * cell).all(axis=1)
+            going = going[is_near & (length > SINGULAR)]
+        if not len(going):
+            break
+    left, step, share = _step(rates, best, scale, cell)
+    with np.errstate(invalid="ignore"):
+        is_regular = (np.abs(step).max(axis=1, initial=0) < LAST_STEP) & (share > SINGULAR)
+        best[~((left <= LEFT) | is_regular)] = np.nan
+    return best, left
+
+
+def _are_degenerate(rates: Rates, places: Floats, scale: Floats, cell: Floats) -> Bools:
+    """Return whether the determinant is zero at places, or so near that rounding hides it."""
+    near = places[:, None] + CHANGE * cell * np.concatenate([np.zeros((1, 2)), _SIDES])
+    scale = np.repeat(scale, len(_SIDES) + 1, axis=0)
+    gradient = rates.gradient(near.reshape(-1, 2)) * cell / scale[..., None]
+    determinant = np.linalg.det(gradient).reshape(-1, len(_SIDES) + 1)
+    size = (gradient**2).sum(axis=(1, 2)).reshape(-1, len(_SIDES) + 1)[:, 0]
+    change = np.abs(determinant - determinant[:, :1])
+    here = np.abs(determinant[:, 0])
+    change = np.where(np.isfinite(change), change, 0).max(axis=1, initial=0)
+    return np.asarray(~((here > SINGULAR * size) & (here * CHANGE >= DEGENERATE * change)))
+
+
+def _distinct(places: Floats, degenerate: Bools, left: Floats) -> Indices:
+    """Return the numbers of different places, (K, 2) in cells."""
+    order = np.lexsort([left, ~degenerate])
+    kept = np.ones(len(places), dtype=bool)
+    if len(places):
+        pairs = scipy.spatial.KDTree(places[order]).query_pairs(SAME_DEGENERATE)
+        for first, second in sorted(pairs):
+            one, other = order[first], order[second]
+            apart = SAME_DEGENERATE if degenerate[one] else SAME
+            if kept[one] and kept[other]:
+                kept[other] = np.abs(places[one] - places[other]).max() >= apart
+    return np.flatnonzero(kept)
+
+
+def _on_lines(rates: Rates, places: Floats, scale: Floats, cell: Floats) -> Bools:
+    """Return which degenerate zeros have others beside them, and so belong to a line of zeros."""
+    around = places[:, None] + AROUND * cell * _SIDES
+    scales = np.repeat(scale, len(_SIDES), axis=0)
+    others = _newton(rates, around.reshape(-1, 2), scales, cell)[0].reshape(around.shape)
+    with np.errstate(invalid="ignore"):
+        return np.asarray((np.abs((others - places[:, None]) / cell) > ON_LINE).any(axis=(1, 2)))
+
+
+def _circle() -> tuple[Floats, Floats]:
+    """Return unit vectors around a circle, the last one again the first, and their angles."""
+    # No usual direction is exactly one of these.
+    angle = 0.3 + np.linspace(0, 2 * np.pi, CIRCLE + 1)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1), angle
+
+
+def directions(rates: Rates, place: Floats) -> tuple[Floats, Bools]:
+    """Return the directions of the separatrices of a degenerate zero, (D, 2), and which leave it.
+
+    These are the directions in which lines enter or leave it, at borders of its sectors: between
+    two lines that both leave it, or both come, others do the same.
+    """
+    sides = np.ptp(rates.ends, axis=1)
+    radius = RADIUS * sides.max() / CELLS
+    _, angle = _circle()
+
+    def radial(angle: Floats) -> tuple[Floats, Floats]:
+        way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        u, v = rates.lowered(rates.at(place + radius * way), place + radius * way).T
+        return way[:, 0] * v - way[:, 1] * u, way[:, 0] * u + way[:, 1] * v
+
+    across = radial(angle)[0]
+    first = np.flatnonzero(across[:-1] * across[1:] < 0)
+    if not 0 < len(first) <= MOST_DIRECTIONS:
+        return np.empty((0, 2)), np.empty(0, dtype=bool)
+    low, high = angle[first], angle[first + 1]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        is_low = radial(middle)[0] * across[first] > 0
+        low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
+    leaves = radial(low)[1] > 0
+    kept = (leaves != np.roll(leaves, 1)) | (leaves != np.roll(leaves, -1))
+    return np.stack([np.cos(low), np.sin(low)], axis=-1)[kept], leaves[kept]
+
+
+def _growth(rates: Rates, places: Floats, gradient: Floats, radius: Floats, cell: Floats) -> Floats:
+    """Return the growth of the radius (N,) in a turn around places with imaginary eigenvalues."""
+    (a, b), (c, _) = np.moveaxis(gradient, 0, -1)
+    turn = np.sqrt(np.maximum(-a * a - b * c, 0))
+    # In w = (x, (a x + b y) / turn) the linear flow turns on circles.
+    radius = radius / np.maximum(1 / cell[0], (turn + np.abs(a)) / np.abs(b) / cell[1])
+
+    def rate(w: Floats) -> Floats:
+        at = places + np.stack([w[:, 0], (turn * w[:, 1] - a * w[:, 0]) / b], axis=-1)
+        u, v = rates.lowered(rates.at(at), at).T
+        return np.stack([u, (a * u + b * v) / turn], axis=-1)
+
+    w, step = np.stack([radius, 0 * radius], axis=-1), 2 * np.pi / TURN_STEPS / turn
+    with np.errstate(all="ignore"):
+        for n in range(TURN_STEPS + 4):
+            if n >= TURN_STEPS:  # to the ray from which it began
+                step = w[:, 1] / (turn * w[:, 0])
+            w = runge_kutta(rate, w, step[:, None])
+        growth = w[:, 0] / radius - 1
+    return np.where(np.abs(growth) > RETURNED, growth, 0.0)
+
+
+def runge_kutta(rate: Callable[[Floats], Floats], at: Floats, step: Any) -> Floats:
+    """Return places after a step of fourth order."""
+    one = rate(at)
+    two = rate(at + step / 2 * one)
+    three = rate(at + step / 2 * two)
+    return np.asarray(at + step / 6 * (one + 2 * two + 2 * three + rate(at + step * three)))
 
 
 def plane_rates(field: FlowField) -> Rates | None:
@@ -190,7 +445,7 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
 
 def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     sides = np.ptp(window, axis=1)
-    counts = np.maximum(np.round(CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
+    counts = np.maximum(np.round(LINE_CELLS * sides / sides.max()), LEAST_LINE_CELLS).astype(int)
     x, y = (np.linspace(window[k, 0], window[k, 1], counts[k] + 1) for k in range(2))
     nodes = np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1)
     number = np.arange(len(x) * len(y)).reshape(len(y), len(x))
@@ -226,13 +481,13 @@ def _crossing(rate: Callable[[Floats], Floats], sides: Floats) -> tuple[Floats, 
             values[n] = np.where(moves, value, values[n])
     with np.errstate(invalid="ignore", divide="ignore"):
         share = np.nan_to_num(values[0] / (values[0] - values[1]), nan=0.5)[:, None]
-        vanishes = np.maximum(*np.abs(values)) < LEFT * first
+        vanishes = np.maximum(*np.abs(values)) < LEFT_SHARE * first
     return ends[0] + share * (ends[1] - ends[0]), np.asarray(vanishes)
 
 
 def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Return pieces (S, 2, 3) where values (M, 3) are zero, and their sides (S, 2, 2, 3)."""
-    least = ROUNDING * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
+    least = ZERO_SHARE * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
     differs = np.abs(values) > least
     # A side along which the component is zero is a piece, perhaps a wall with one triangle.
     is_side = differs.sum(axis=1) == 1

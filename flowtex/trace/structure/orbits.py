@@ -19,15 +19,15 @@ import scipy
 from flowtex._util.arguments import check_field
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.formula.rates import Rates
+from flowtex.field.formula.flow import Rates
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
     gradient_and_error,
+    steady_parts,
 )
 from flowtex.trace.structure.formula_lines import follower, formula_orbit, plane_rates
-from flowtex.trace.structure.records import steady_parts
 
 #: Distance between the points of a line in cells, points that are followed at once, and greatest
 #: length of a turn, as a share of the surface's extent and in points.

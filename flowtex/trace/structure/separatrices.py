@@ -14,10 +14,15 @@ from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
-from flowtex.trace.structure.critical_points import CriticalPoint, CriticalPoints, critical_points
+from flowtex.trace.structure.critical_points import (
+    CriticalPoint,
+    CriticalPoints,
+    Records,
+    critical_points,
+    steady_parts,
+)
 from flowtex.trace.structure.formula_lines import follower, plane_rates
 from flowtex.trace.structure.orbits import Isolation
-from flowtex.trace.structure.records import Records, steady_parts
 
 if TYPE_CHECKING:
     import pyvista as pv

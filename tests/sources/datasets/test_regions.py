@@ -12,7 +12,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex._util.blocks import even_runs
 from flowtex.field.arrays import GridArrays
-from flowtex.field.gaps import NO_DATA
+from flowtex.field.validation import NO_DATA
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.values import Regions
 

@@ -14,7 +14,7 @@ from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.scene.scene import Scene
-from flowtex.sources.meshes.planes import nodes_to_keep
+from flowtex.sources.meshes.volume import nodes_to_keep
 
 pv = pytest.importorskip("pyvista")
 
