@@ -37,8 +37,12 @@ from flowtex.sources.meshes.parts import (
 )
 from flowtex.sources.meshes.vectors import candidates
 from flowtex.sources.notices import DatasetNotice, Record
-from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
-from flowtex.sources.opening.series import as_datasets
+from flowtex.sources.opening.dataset_files import (
+    as_datasets,
+    common_name,
+    dataset_paths,
+    open_datasets,
+)
 from flowtex.sources.reader_errors import errors_of_file
 
 #: Size of a series that is held in memory; a larger one is read again for each field.

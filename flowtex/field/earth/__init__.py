@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from flowtex.field.earth.lines import MapLines, coastlines, graticule
 from flowtex.field.earth.projection import (
     DEGREE,
     EARTH_RADIUS,
     GLOBE,
     NAMES,
+    MapLines,
     Projection,
     ProjectionError,
+    coastlines,
+    graticule,
     place_text,
 )
 

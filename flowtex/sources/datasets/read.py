@@ -40,7 +40,7 @@ from flowtex.sources.datasets.values import Regions, Words, read_step, region_li
 from flowtex.sources.datasets.vertical import is_section, read_section
 from flowtex.sources.maps.grid_map import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.notices import Record
-from flowtex.sources.opening.series import Datasets, as_datasets
+from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,7 +18,7 @@ from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
 from flowtex.field.arrays import Reading
 from flowtex.field.earth import Projection
-from flowtex.field.grids.periodic import find_closure
+from flowtex.field.grids.arrays import find_closure
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range

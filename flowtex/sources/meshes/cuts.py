@@ -16,8 +16,12 @@ import numpy as np
 from flowtex._util.arguments import brief
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.triangles.arrays import nodal_means, solid_triangles
-from flowtex.field.triangles.topology import needle_edges, triangle_normals
+from flowtex.field.triangles.arrays import (
+    needle_edges,
+    nodal_means,
+    solid_triangles,
+    triangle_normals,
+)
 from flowtex.sources.meshes.vectors import (
     BLANKING,
     MeshArray,

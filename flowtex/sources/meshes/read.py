@@ -21,13 +21,16 @@ from flowtex.errors import FieldError, raise_faults
 from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.derived.vectors import component_name
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
-from flowtex.sources.meshes.parts import TimeStep, is_structured, time_steps, times_of
-from flowtex.sources.meshes.series import (
+from flowtex.sources.meshes.parts import (
+    TimeStep,
     aligned,
     check_arrays,
     check_nodes,
     common_scalars,
+    is_structured,
     ordered_times,
+    time_steps,
+    times_of,
 )
 from flowtex.sources.meshes.vectors import (
     NO_VELOCITY,

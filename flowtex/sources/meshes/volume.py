@@ -18,8 +18,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.blocks import row_blocks
 from flowtex._util.cache import ByteCache
 from flowtex._util.vectors import dot, norm
-from flowtex.field.grids.arrays import axes, products
-from flowtex.field.grids.periodic import find_closure
+from flowtex.field.grids.arrays import axes, find_closure, products
 from flowtex.field.validation import MAGNITUDES
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
 from flowtex.sources.meshes.vectors import (

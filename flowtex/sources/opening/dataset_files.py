@@ -3,22 +3,48 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import warnings
-from collections.abc import Sequence
-from itertools import takewhile
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from contextlib import suppress
+from importlib.util import find_spec
+from itertools import chain, takewhile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from flowtex._util.arguments import brief
+from flowtex._util.array_types import AnyArray
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
+from flowtex.field import units
+from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
-from flowtex.sources.opening.series import Opened, are_steps, of_tree
-from flowtex.sources.opening.tables import read_csv, read_vec, read_winds
+from flowtex.sources.models.conventions import with_mesh_axes
+from flowtex.sources.notices import Record
+from flowtex.sources.opening.tables import (
+    as_dataset,
+    read_csv,
+    read_vec,
+    read_winds,
+    split_components,
+)
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Names of coordinates by what they are.
+Names = dict[str, list[Hashable]]
+
+#: Names of dates as text, which some models write beside less exact times, or instead of them.
+LETTERS = ("Times", "xtime")
+#: A unit of time of ICON: a date, with the share of the day behind its point.
+DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json", ".geojson")
 TABLES = {".csv": read_csv, ".vec": read_vec}
@@ -26,6 +52,278 @@ TABLES = {".csv": read_csv, ".vec": read_vec}
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 #: The newest Python for which the wheels of eccodes have its library.
 ECCODES_UNTIL = (3, 13)
+
+
+class Opened(list["xr.Dataset"]):
+    """Datasets of files that flowtex has opened, and functions that close these."""
+
+    def __init__(
+        self, items: Iterable[xr.Dataset] = (), closers: Iterable[Callable[[], None]] = ()
+    ) -> None:
+        super().__init__(items)
+        self.closers = tuple(closers)
+
+    @classmethod
+    def of(cls, items: Iterable[xr.Dataset], parts: Iterable[Any]) -> Opened:
+        """Return datasets, with the functions that close the datasets and nodes of trees.
+
+        The method ``close`` of a dataset works only once, but xarray opens a file for each read.
+        """
+        return cls(items, [part._close for part in parts if part._close is not None])
+
+
+class Datasets(Opened):
+    """Datasets whose axes cf_xarray recognises, with times as dates."""
+
+    def close(self) -> None:
+        """Close the files; a later read opens them again."""
+        for close in self.closers:
+            close()
+
+
+def as_datasets(data: Any, record: Record | None = None) -> Datasets:
+    """Return datasets with recognised axes: series and regions joined, and of a tree one group."""
+    if isinstance(data, Datasets):
+        return data
+    xarray, record = import_extra("xarray", "xarray"), record or Record()
+    result = []
+    for ds in data if isinstance(data, (list, tuple)) else [data]:
+        several = isinstance(data, (list, tuple)) and len(data) > 1
+        part = of_tree(ds) if isinstance(ds, xarray.DataTree) else as_dataset(ds, several=several)
+        result.append(split_components(_decoded(part)))
+    groups: dict[frozenset[Any], list[xr.Dataset]] = {}
+    for ds in result:
+        groups.setdefault(frozenset(ds.data_vars), []).append(ds)
+    result = [ds for group in groups.values() for ds in _together(group, record)]
+    closers = data.closers if isinstance(data, Opened) else ()
+    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers)
+
+
+def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
+    """Join datasets of the same variables: steps of one series, or regions beside each other."""
+    if len(group) < 2 or not any(array.ndim > 1 for array in group[0].data_vars.values()):
+        return group
+    if _times_differ(group):
+        try:
+            return [joined(group, record)]
+        except FieldError:  # such as domains of different sizes
+            return _apart(group, record)
+    xarray = import_extra("xarray", "xarray")
+    lines = [{d: ds.indexes[d] for d in ds.dims if d in ds.indexes} for ds in group]
+    axes = [d for d in lines[0] if any(not lines[0][d].equals(o.get(d, [])) for o in lines[1:])]
+    if not axes or any(lines[0].keys() != other.keys() for other in lines[1:]):
+        return _apart(group, record)
+    try:
+        whole = xarray.combine_by_coords(_chunked([ds.sortby(axes) for ds in group]))
+    except (ValueError, KeyError):  # such as regions that overlap
+        return _apart(group, record)
+    record("select", f"{len(group)} regions joined along {' and '.join(map(str, axes))}")
+    return [whole]
+
+
+def _apart(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
+    """Return datasets that cannot be joined, of whose velocities the first is drawn."""
+    if find_pairs(group[:1]):
+        text = f"{len(group)} datasets of one velocity cannot be joined; the first one is drawn"
+        record("select", text, notable=True)
+    return group
+
+
+def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:
+    """Return the dataset of the one group of a tree (of a file) with a velocity, or of its root."""
+    parts = {node.path: node.to_dataset() for node in tree.subtree}
+    groups = [path for path, ds in parts.items() if find_pairs([ds])]
+    if len(groups) > 1 and groups[0] != tree.path:
+        listed = ", ".join(groups)
+        example = f"tree[{groups[0]!r}]" if file is None else repr(f"{file}{groups[0]}")
+        msg = f"the groups {listed} have a velocity; give one, as in {example}"
+        raise FieldError(msg)
+    return parts[groups[0] if groups else tree.path]
+
+
+def _decoded(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset with ``Unit``, ``Units`` and ``unit`` as units, and times as dates."""
+    named = {
+        name: value
+        for name, variable in ds.variables.items()
+        for key, value in variable.attrs.items()
+        if str(key).lower() in ("unit", "units") and "units" not in variable.attrs
+    }
+    if named:
+        ds = ds.copy()
+        for name, unit in named.items():
+            ds[name].attrs["units"] = unit
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with suppress(ValueError, OverflowError, TypeError):  # times of no calendar
+            ds = import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
+    return _dated(ds)
+
+
+def _dated(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset with dates along its axis of time, if texts or numbers have them."""
+    for name in (*LETTERS, *(n for n, c in ds.coords.items() if c.dims == (n,))):
+        if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
+            continue
+        if ds[name].dtype.kind == "O" and is_dates(ds[name]):
+            continue
+        dim = str(ds[name].dims[0])
+        rows = ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
+        texts = [
+            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0") for row in rows
+        ]
+        try:
+            dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
+        except ValueError:
+            continue
+        if ds.sizes[dim] == len(dates):
+            return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
+    for axis in ds.dims:
+        line = ds.variables.get(axis)
+        if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
+            return ds.assign_coords({axis: (axis, _days(line.values), {"axis": "T"})})
+    return ds
+
+
+def _days(numbers: AnyArray) -> AnyArray:
+    whole = np.floor(numbers).astype(int)
+    days = np.array([f"{n:08d}" for n in whole])
+    dates = [np.datetime64(f"{d[:4]}-{d[4:6]}-{d[6:]}", "s") for d in days]
+    seconds = np.round((numbers - whole) * 86400).astype("timedelta64[s]")
+    return np.asarray(np.array(dates) + seconds, dtype="datetime64[ns]")
+
+
+def _with_axes(ds: xr.Dataset) -> xr.Dataset:
+    import_extra("cf_xarray", "xarray")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        guessed, axes, places = _guessed(ds)
+        # Asked for often, and slowly found: each coordinate is marked with its axis.
+        marks = {**axes, "Z": [*axes.get("Z", []), *places.get("vertical", [])]}
+        for axis, names in marks.items():
+            for name in names:
+                guessed[name].attrs.setdefault("axis", axis)
+    for name, c in guessed.coords.items():  # such as months, which are no times of a series
+        is_guess = "axis" not in ds[name].attrs and c.attrs.get("axis") == "T"
+        is_time = units.measures(str(c.attrs.get("units", "")), units.TIMES)
+        if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
+            del c.attrs["axis"]
+    return guessed
+
+
+def _guessed(ds: xr.Dataset) -> tuple[xr.Dataset, Names, Names]:
+    """Return what ``ds.cf.guess_coord_axis()`` returns, and its axes and coordinates.
+
+    That looks all of them up for each coordinate and pattern, which takes most of the time to open.
+    """
+    from cf_xarray.accessor import ATTRS
+    from cf_xarray.criteria import regex
+
+    ds = ds.copy(deep=False)
+    known: tuple[Names, Names] = ds.cf.axes, ds.cf.coordinates
+    for name, c in ds.coords.items():
+        dates = c.ndim == 1 and (c.dtype.kind == "m" or is_dates(c))
+        if dates and name not in chain(*known[1].values()):
+            kinds = ["time"]
+        else:
+            kinds = [kind for kind, pattern in regex.items() if pattern.match(str(name).lower())]
+        for kind in kinds:
+            if name not in chain(*known[kind not in "XYZT"].values()):
+                ds[name].attrs = {**ATTRS[kind], **ds[name].attrs}
+                known = ds.cf.axes, ds.cf.coordinates
+    return ds, *known
+
+
+def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:
+    """Return whether several datasets have times, and none has the same as another."""
+    name = _time_axis(datasets)
+    times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in datasets]
+    texts = [tuple(map(str, line)) for line in times]
+    return all(map(len, times)) and len(set(texts)) == len(texts)
+
+
+def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
+    """Return the name of the axis of time, ``"time"`` where none is recognised."""
+    axes = [_with_axes(ds).cf.axes.get("T", []) for ds in (datasets[0], datasets[-1])]
+    return str(axes[0][0]) if axes[0] and axes[0] == axes[-1] else "time"
+
+
+def are_steps(datasets: Sequence[xr.Dataset]) -> bool:
+    """Return whether datasets may be steps of one series: with the same variables."""
+    same = {frozenset(ds.data_vars) for ds in datasets}
+    return len(same) == 1 and bool(find_pairs([datasets[0]]))
+
+
+def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
+    """Join steps of a series in the order of their times, on the positions that all have."""
+    xarray, record = import_extra("xarray", "xarray"), record or Record()
+    datasets = [_decoded(ds) for ds in datasets]
+    name = _time_axis(datasets)
+    dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
+    if dates is not None and name in datasets[0] and datasets[0][name].dtype.kind in "fiu":
+        # The times are numbers without a unit.
+        datasets = [
+            ds.assign_coords({name: [d]}) if name in ds.dims else ds
+            for ds, d in zip(datasets, dates, strict=True)
+        ]
+    datasets = _alike(datasets, name, record)
+    try:
+        series: xr.Dataset = xarray.concat(
+            _chunked(datasets),
+            dim=name,
+            data_vars="different",
+            coords="different",
+            compat="equals",
+            join="exact",
+        ).sortby(name)
+        return series
+    except (ValueError, KeyError) as error:
+        msg = (
+            f"the files are not steps of one series: {error}. Give only files that belong together"
+        )
+        raise FieldError(msg) from error
+
+
+def _chunked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Return datasets of arrays that are joined without reading all data, where Dask is present."""
+    return [ds.chunk() for ds in datasets] if find_spec("dask") is not None else datasets
+
+
+def _alike(datasets: list[xr.Dataset], name: str, record: Record) -> list[xr.Dataset]:
+    """Return steps of a series on the labels that all have along each axis, in one order."""
+    for dim in map(str, datasets[0].dims):
+        if dim == name or dim not in datasets[0].indexes:
+            continue
+        lines = [np.asarray(ds[dim].values) for ds in datasets if dim in ds.indexes]
+        if len(lines) < len(datasets):
+            continue
+        degrees = units.is_angle(str(datasets[0][dim].attrs.get("units", "")))
+        period = 360.0 if degrees and lines[0].dtype.kind in "fiu" else None
+        kept = lines[0]
+        for line in lines[1:]:
+            kept = kept[labels.match(kept, line, period).one]
+        if not len(kept):
+            continue
+        if len(kept) < max(map(len, lines)):
+            text = f"{dim}: {len(kept)} values that all steps have in common"
+            record("align", text, notable=True)
+        parts = []
+        for ds, line in zip(datasets, lines, strict=True):
+            found = labels.match(kept, line, period).other
+            part = ds.isel({dim: as_slice(found)}) if not np.array_equal(line, kept) else ds
+            parts.append(part.assign_coords({dim: (dim, kept, datasets[0][dim].attrs)}))
+        datasets = parts
+    return datasets
+
+
+def _dates_in_names(paths: Sequence[Path]) -> list[np.datetime64] | None:
+    """Return the dates in the names of files, as in ``winds_20020101.nc``, all different."""
+    matches = [re.search(r"(?<!\d)(\d{4})-?(\d{2})-?(\d{2})(?!\d)", path.stem) for path in paths]
+    try:
+        dates = [np.datetime64("-".join(match.groups())) for match in matches if match]
+    except ValueError:
+        return None
+    return dates if len(set(dates)) == len(paths) else None
 
 
 def is_dataset_file(path: Path) -> bool:

@@ -18,9 +18,8 @@ from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
-from flowtex.field.triangles.arrays import known_means
+from flowtex.field.triangles.arrays import known_means, triangle_normals
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.triangles.topology import triangle_normals
 
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0

@@ -23,7 +23,7 @@ from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.open_source import DatasetSource
-from flowtex.sources.opening.series import as_datasets
+from flowtex.sources.opening.dataset_files import as_datasets
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 

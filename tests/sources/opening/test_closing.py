@@ -11,8 +11,7 @@ import xarray as xr
 from earth_data import winds
 
 from flowtex import FlowField
-from flowtex.sources.opening.dataset_files import open_datasets
-from flowtex.sources.opening.series import as_datasets
+from flowtex.sources.opening.dataset_files import as_datasets, open_datasets
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice"),
