@@ -17,7 +17,7 @@ from typing import Any
 
 from flowtex._util.whole_file import whole_file
 from flowtex.rendering.webgl.protocol import part_info, part_text
-from flowtex.web.export import different, json_text, page_data
+from flowtex.web.export import headers_text, json_text, page_data
 from flowtex.web.view import WebView
 
 #: Letters from which on a part has a script of its own, which scenes of the same flow share.
@@ -58,8 +58,7 @@ def _script(
     if len(views) > 1:
         for header in headers:
             header["differs"] = list(views[1].own_settings)
-    told = [headers[0], *(different(header, headers[0]) for header in headers[1:])]
-    yield f'flowtexScene({json_text(name)}, {{"headers": {json_text(told)}, "parts": ['
+    yield f'flowtexScene({json_text(name)}, {{"headers": {headers_text(headers)}, "parts": ['
     written: dict[str, dict[str, Any]] = {}
     for n, scene in enumerate(scenes):
         steps = (part for step in range(scene.steps) for part in scene.step(step).items())

@@ -28,7 +28,7 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
-from flowtex.field.derived import SIGNED, drawn_mask, steps_of
+from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import share_field, with_scalars
@@ -390,7 +390,10 @@ class Scene:
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes, or of the volume that they cut, at all times."""
-        typical, valid = self.field.typical, drawn_mask(self.field, name)
+        field, typical = self.field, self.field.typical
+        # Triangles have a value each; a cell of a grid has the place of its first node.
+        on_triangles = name in field.on_cells and field.triangles is not None
+        valid = field.surface.cells[None] if on_triangles else field.valid
         if (values := typical.volume_values.get(name)) is not None:
             return values
         if self.pyramid is None or name in self.field.scalars:

@@ -205,14 +205,11 @@ def _contents(views: Sequence[WebView], store: str | None, **options: Any) -> Co
     return contents_of(views, scenes, link, **options)
 
 
-def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientData]:
-    """Return the data of views in a page, with as many levels of tiles as fit.
-
-    With ``traces`` they are velocities, which the client traces, instead of slices.
-    """
+def page_data(views: Sequence[WebView]) -> list[ClientData]:
+    """Return the data of views in a page, with as many levels of tiles as fit."""
     scenes = []
     for view in views:
-        scene = replace(view.page_data(), traces=traces)
+        scene = view.page_data()
         pyramid, finest = scene.pyramid, 0
         if pyramid is not None:
             finest, room = pyramid.depth, float(TILE_BYTES)
@@ -298,7 +295,7 @@ def module_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a module piece by piece."""
     values = {
         "script": client_script(with_store=contents.link is not None),
-        "headers": _headers_text(contents.headers),
+        "headers": headers_text(contents.headers),
         "store": "" if contents.link is None else ", flowtexStore.open",
     }
     yield from _filled("scene.mjs", (json_text(part) + ",\n" for part in contents.parts), values)
@@ -306,7 +303,7 @@ def module_pieces(contents: Contents) -> Iterator[str]:
 
 def scene_pieces(contents: Contents) -> Iterator[str]:
     """Yield the JSON text of a scene in pieces."""
-    yield f'{{"headers": {_headers_text(contents.headers)}, "parts": ['
+    yield f'{{"headers": {headers_text(contents.headers)}, "parts": ['
     for n, packed in enumerate(contents.parts):
         yield (",\n" if n else "") + json_text(packed)
     yield "]}\n"
@@ -333,8 +330,9 @@ def _filled(name: str, parts: Iterator[str], values: Mapping[str, str]) -> Itera
     yield string.Template(after).substitute(values)
 
 
-def _headers_text(headers: Sequence[Header]) -> str:
-    first, *others = headers  # of which equal items are stored once
+def headers_text(headers: Sequence[Header]) -> str:
+    """Return headers as JSON, and of the second what differs from the first."""
+    first, *others = headers
     return json_text([first, *({n: v for n, v in h.items() if v != first[n]} for h in others)])
 
 
@@ -361,7 +359,7 @@ def _values(contents: Contents) -> dict[str, str]:
         "style": look,
         # Browsers recognise JPEG.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": zipped(_headers_text(headers).encode()),
+        "headers": zipped(headers_text(headers).encode()),
         "script": script,
     }
 

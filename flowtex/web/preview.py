@@ -45,15 +45,14 @@ def preview_png(
     *,
     camera: CameraValues | None = None,
     time: float | None = None,
-    scene: ClientData | None = None,
     coarser: int = COARSER,
 ) -> bytes:
     """Draw a small picture and return it as PNG.
 
-    By default the whole surface is shown, at the first time. ``scene`` has the view's data with
-    few nodes, when they are available; one pixel is computed for ``coarser`` along each side.
+    By default the whole surface is shown, at the first time; one pixel is computed for ``coarser``
+    along each side.
     """
-    scene = scene or view.coarse_data(NODES)
+    scene = view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
     image, _ = draw_flow(view, scene, size, Camera.from_dict(camera), time, coarser)
     return encoded(image, is_page=scene.colours.background is None)

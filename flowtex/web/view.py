@@ -324,12 +324,9 @@ def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
     return _Tile(textures, None if textures is None else packing_of(textures))
 
 
-_FOLDER = Path(__file__).resolve().parent
-
-
 def asset(name: str) -> Path:
     """Return the path of one of the client's files, such as ``"core.js"``."""
-    path = _FOLDER / name
+    path = Path(__file__).resolve().parent / name
     if not path.is_file():
         msg = (
             f"{path} is missing. Install flowtex again: "
@@ -341,13 +338,10 @@ def asset(name: str) -> Path:
 
 def client_module() -> str:
     """Return the client as the text of a module, for widgets and pages."""
-    return _joined("core.js", "exports.mjs")
+    return client_script() + asset("exports.mjs").read_text("utf-8")
 
 
 def client_script(*, with_store: bool = False) -> str:
     """Return the client as a script that defines ``flowtex``, and ``flowtexStore`` to read one."""
-    return _joined("core.js", *(("store.js",) if with_store else ()))
-
-
-def _joined(*names: str) -> str:
+    names = ("core.js", "store.js") if with_store else ("core.js",)
     return "".join(asset(name).read_text("utf-8") for name in names)

@@ -99,8 +99,6 @@ else:
     )
 
 
-#: Traits of the widget with the headers of the views, from left to right.
-HEADERS = ("_header", "_header_beside")
 #: Fields of the appearance that can be chosen in the browser.
 CHOSEN = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
 
@@ -373,7 +371,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             shaders = list(self._shaders)
             shaders[number] = header["shaders"]
             self._shaders = shaders
-            setattr(self, HEADERS[number], {**header, "shaders": None})
+            trait = "_header_beside" if number else "_header"
+            setattr(self, trait, {**header, "shaders": None})
 
     def _handle_message(self, _: Any, content: Any, buffers: list[memoryview]) -> None:
         if isinstance(content, dict):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
 from flowtex.field.derived.vectors import vector_names, with_vector_scalar
@@ -70,16 +70,6 @@ def steps_of(field: Any, name: str) -> Steps:
     if name in FOLLOWED:
         msg = f"{name!r} needs a horizon; first call field.with_derived({name!r}, horizon=...)"
     raise FieldError(msg)
-
-
-def drawn_mask(field: Any, name: str) -> Bools:
-    """Return which values of a scalar are drawn, (J, I), or (1, M) of the cells of triangles.
-
-    A cell of a structured surface has its first node's place, and NaN if it is missing.
-    """
-    on_triangles = name in field.on_cells and field.triangles is not None
-    mask: Bools = field.surface.cells[None] if on_triangles else field.valid
-    return mask
 
 
 def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
