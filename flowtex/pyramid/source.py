@@ -7,7 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -167,17 +167,10 @@ class RegionSource(Source):
         self.field = FlowField(
             points=np.zeros((1, 1, 3)),
             velocity=np.zeros((len(words.times), 1, 1, 3)),
-            times=words.times,
             valid=np.zeros((1, 1), dtype=bool),
             periodic=(False, lines.closed),
-            name=words.name,
-            length_unit=words.length_unit,
-            time_unit=words.time_unit,
-            velocity_unit=words.velocity_unit,
-            units=words.units,
-            long_names=words.long_names,
-            start=words.start,
             projection=lines.projection,
+            **{n.name: getattr(words, n.name) for n in fields(words) if n.name != "reading"},
         )
 
     def points(self, rows: Lines, columns: Lines) -> Floats:

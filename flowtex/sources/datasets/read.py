@@ -303,6 +303,8 @@ def _regions(
     if flat:
         others.pop("speed", None)
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
+    if lines.projection is None:
+        words["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
     factor, time, own = units.velocity_units(named["length_unit"], named["time_unit"], flow.unit)
     return Regions(
         Words(

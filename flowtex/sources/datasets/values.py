@@ -220,6 +220,7 @@ class Words:
     reading: Reading
     units: Mapping[str, str] = field(default_factory=dict)
     long_names: Mapping[str, str] = field(default_factory=dict)
+    vectors: str = ""
 
 
 @dataclass(frozen=True, eq=False)
