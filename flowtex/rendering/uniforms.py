@@ -313,7 +313,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
-        "u_clock": (coarse, turns - coarse),
+        "u_clock": (coarse, float(turns - coarse)),
         "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,
         "u_travelBySpeed": by_speed,

@@ -20,7 +20,7 @@ APART = {"formula", "start", "section", "reading"}
 
 def with_scalars(field: FlowField, name: str | None) -> FlowField:
     """Return the field with the scalar of its colours, if that is derived from vectors."""
-    if name is None or name in field.scalars or has_pyramid(field):
+    if name is None or name in ("speed", *field.scalars) or has_pyramid(field):
         return field
     if name not in DERIVED:
         return _fields.get(name, lambda: with_vector_scalar(field, name), owner=field)
