@@ -157,7 +157,7 @@ def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:
     rows, columns = coordinate.shape[:2]
     drawn = parts["padded"][1 + top : 1 + top + rows, 1 + left : 1 + left + columns]
     (values,) = (part for name, part in parts.items() if name.startswith("scalars/"))
-    share = (values - colours.low) / ((colours.high - colours.low) or 1.0)
+    share = (values - colours.scale.low) / ((colours.scale.high - colours.scale.low) or 1.0)
     share = np.where(np.isfinite(share), share, NO_VALUE).astype(np.float32)
     return {
         "flowtexPosition": (drawn + np.float32(trace["middle"])).reshape(-1, 3),

@@ -89,17 +89,18 @@ def dragged(lab: Lab, nth: int, x: int, by: int) -> None:
     box = canvas.bounding_box()
     assert box is not None
     was = json.loads(lab.said(CAMERA))
-    page.mouse.move(box["x"] + x, box["y"] + 100)
+    page.mouse.move(box["x"] + x, box["y"] + box["height"] / 2)
     page.mouse.down()
-    page.mouse.move(box["x"] + x + by, box["y"] + 100, steps=4)
+    page.mouse.move(box["x"] + x + by, box["y"] + box["height"] / 2, steps=4)
     page.mouse.up()
     now: dict[str, Any] = {}
 
     def has_moved() -> bool:
         now.update(json.loads(lab.said(CAMERA)))
         moved = now["focal_point"][0] - was["focal_point"][0]
-        # Of the two hundred pixels that are twice the parallel scale.
-        return bool(moved == pytest.approx(-by / 200 * 2 * was["parallel_scale"], rel=0.05))
+        # The height of the flow is twice the parallel scale.
+        share = -by / box["height"]
+        return bool(moved == pytest.approx(share * 2 * was["parallel_scale"], rel=0.05))
 
     wait_until(has_moved, lambda: (was, now))
     assert now["parallel_scale"] == pytest.approx(was["parallel_scale"])

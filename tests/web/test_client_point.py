@@ -66,7 +66,7 @@ def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None
     length = float(np.linalg.norm(np.diff(judge.points, axis=0), axis=1).sum())
     assert length > 0
     # The sides are as long as the samples reach, to a part of the grain that is not followed.
-    loose = 0.1 if name == "texture" else 0.06
+    loose = 0.1 if name in ("texture", "curved") else 0.06
     ends = np.array([drawn["sampled"][0], drawn["sampled"][-1]])
     if drawn["directed"]:
         np.testing.assert_allclose(ends, judge.points[[0, -1]], atol=loose * length)

@@ -230,7 +230,7 @@ def test_a_view_asks_for_no_more_than_it_shows(shown: Shown, server: RangeServer
     assert len(server.asked) == 1 + 2 + 2, server.asked
     assert {(method, span) for method, _, span in server.asked} == {("GET", "")}
     with acted(shown.page):
-        for _ in range(9):
+        for _ in range(5):
             shown.drag()
     assert set(tiles_of(server)) == {"0/0/0", "0/0/1"}
     assert len(server.asked) == 1 + 2 + 2 + 2
