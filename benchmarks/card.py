@@ -111,7 +111,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
         values["header"] = data.tile_header
         drawn.append((mesh, levels, values, _arrays(data, parts)))
     joins = join(regions, pyramid.blocks if pyramid else levels.shape, geometry.periodic)
-    layers, arrays = [], {"cmap": whole.surface()["cmap"]}
+    layers, arrays = [], {"cmap": whole.colours.scale.texels}
     for (mesh, levels, values, own), borders in zip(drawn, joins, strict=True):
         own["index"] = mesh.triangles(levels, borders).astype("u4")
         if own["index"].size:
@@ -308,7 +308,8 @@ class Picture:
         vertex, fragment = (PREAMBLE + shaders[kind] for kind in ("vertex", "fragment"))
         self._program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self._target = context.simple_framebuffer(tuple(self._about["size"]))
-        self._cmap = context.texture((256, 1), 4, self._arrays["cmap"].tobytes())
+        colours = self._arrays["cmap"]
+        self._cmap = context.texture((len(colours), 1), 4, colours.tobytes(), dtype="f4")
         self._tracings: list[Tracing] = []
         self._layers = [self._layer(n, own) for n, own in enumerate(self._about["layers"])]
         self._written: dict[str, bytes] = {}
