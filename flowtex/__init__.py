@@ -93,8 +93,7 @@ def __getattr__(name: str) -> Any:
             importlib.import_module("flowtex._util.extras").require_pyvista(f"flowtex.{name}")
     if name in _LAZY:
         return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
-    msg = f"module 'flowtex' has no attribute {name!r}"
-    raise AttributeError(msg)
+    raise AttributeError(f"module 'flowtex' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

@@ -34,5 +34,4 @@ def raise_faults(faults: Sequence[str]) -> None:
     if len(faults) == 1:
         raise FieldError(faults[0])
     listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
-    msg = f"{len(faults)} things are wrong:\n{listed}"
-    raise FieldError(msg)
+    raise FieldError(f"{len(faults)} things are wrong:\n{listed}")

@@ -93,8 +93,7 @@ class Setting:
             fits = fits and (self.high is None or value <= self.high)
         if not fits:
             expected = f"{self.expected} (default {self.default!r})"
-            msg = f"{self.name} is {brief(value)}; expected {expected}"
-            raise SettingsError(msg)
+            raise SettingsError(f"{self.name} is {brief(value)}; expected {expected}")
         return self.kind(value)
 
     def parse(self, text: str) -> Any:
@@ -375,8 +374,7 @@ def setting(name: str) -> Setting:
     """Return a row of the table; a SettingsError lists the nearest names, or all."""
     if name in TABLE:
         return TABLE[name]
-    msg = f"the setting {name!r} does not exist; {near_names(name, TABLE)}"
-    raise SettingsError(msg)
+    raise SettingsError(f"the setting {name!r} does not exist; {near_names(name, TABLE)}")
 
 
 def named_values(values: Mapping[str, Any]) -> str:

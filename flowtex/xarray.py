@@ -152,11 +152,10 @@ class FlowtexAccessor:
         4
         """
         if transform is not None and not _is_geodetic(transform):
-            msg = (
+            raise flowtex.FieldError(
                 f"transform is {brief(transform)}; expected ccrs.PlateCarree() or none: the "
                 "positions follow from the longitudes and latitudes of the data"
             )
-            raise flowtex.FieldError(msg)
         options |= {"u": u, "v": v}
         options |= {} if hue is None else {"scalars": hue}
         options |= {"clim": "robust"} if robust else {}
@@ -179,8 +178,9 @@ class FlowtexAccessor:
             pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
             shown = [(panel, self._dataset.loc[n]) for panel, n in pairs if n is not None]
         else:
-            msg = "ax is given, but row and col make their own axes; omit ax, or row and col"
-            raise flowtex.FieldError(msg)
+            raise flowtex.FieldError(
+                "ax is given, but row and col make their own axes; omit ax, or row and col"
+            )
         images = [flowtex.axes(panel, data, **options) for panel, data in shown]
         label = images[0].colour_label
         if label:

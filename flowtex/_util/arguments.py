@@ -78,8 +78,7 @@ def checked_number(
 ) -> float:
     """Return a number from ``low`` to ``high``; otherwise ``error`` names what was expected."""
     if not (is_number(value) and low <= value <= high):
-        msg = f"{name} is {brief(value)}; expected {expected}"
-        raise error(msg)
+        raise error(f"{name} is {brief(value)}; expected {expected}")
     return float(value)
 
 
@@ -89,8 +88,7 @@ def checked_count(
     """Return a whole number from ``low`` to ``high``; a FieldError names what was expected."""
     number = checked_number(name, value, low, high, expected=expected)
     if not number.is_integer():
-        msg = f"{name} is {brief(value)}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"{name} is {brief(value)}; expected {expected}")
     return int(value)
 
 
@@ -99,8 +97,7 @@ def checked_array(name: str, value: Any, *, expected: str) -> Floats:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
-        msg = f"{name} is {brief(value)}; expected {expected}"
-        raise FieldError(msg) from error
+        raise FieldError(f"{name} is {brief(value)}; expected {expected}") from error
 
 
 def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
@@ -108,16 +105,14 @@ def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
     expected = "width and height in pixels, such as (1024, 768)"
     sides = checked_array("size", size, expected=expected)
     if sides.shape != (2,) or not (sides >= low).all() or (sides % 1).any():
-        msg = f"size is {brief(size)}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"size is {brief(size)}; expected {expected}")
     return int(sides[0]), int(sides[1])
 
 
 def checked_path(name: str, path: Any) -> Path:
     """Return a path as one of Python's."""
     if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
-        msg = f"{name} is {brief(path)}; expected a path"
-        raise FieldError(msg)
+        raise FieldError(f"{name} is {brief(path)}; expected a path")
     return Path(path)
 
 
@@ -126,16 +121,18 @@ def checked_target(path: Any) -> Path:
     target = checked_path("path", path)
     if not target.parent.is_dir():
         folder = str(target.parent)
-        msg = f"{target}: the folder {folder!r} does not exist; create it, or choose another"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{target}: the folder {folder!r} does not exist; create it, or choose another"
+        )
     return target
 
 
 def check_field(field: Any, kind: type) -> None:
     """Raise a FieldError if ``field`` is not a field, an instance of ``kind``."""
     if not isinstance(field, kind):
-        msg = f"field is {brief(field)}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
-        raise FieldError(msg)
+        raise FieldError(
+            f"field is {brief(field)}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
+        )
 
 
 def closest(name: str, names: Sequence[str]) -> list[str]:
@@ -172,10 +169,9 @@ def sized(function: Function) -> Function:
     @functools.wraps(function)
     def call(*args: Any, window_size: Any = None, **options: Any) -> Any:
         if window_size is not None and "size" in options:
-            msg = (
+            raise FieldError(
                 f"size is {options['size']!r} and window_size is {window_size!r}; omit one of them"
             )
-            raise FieldError(msg)
         return function(*args, **options, **({"size": window_size} if window_size else {}))
 
     return call  # type: ignore[return-value]

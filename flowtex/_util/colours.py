@@ -80,11 +80,10 @@ def rgb(colour: Any) -> tuple[float, float, float]:
 
         red, green, blue = pv.Color(colour).float_rgb
     except (TypeError, ValueError, OverflowError, ModuleNotFoundError) as error:
-        msg = (
+        raise FieldError(
             f"the colour {colour!r} does not exist; expected a name such as black, #rrggbb, or "
             "(r, g, b)"
-        )
-        raise FieldError(msg) from error
+        ) from error
     return red, green, blue
 
 
@@ -143,8 +142,7 @@ def _named_table(name: Any, count: int) -> Bytes:
         package, _, rest = str(name).partition(".")
         if package in PACKAGES:
             hint = f"install {package}, and give its name there, {rest!r}"
-        msg = f"the colour map {name!r} does not exist; {hint}"
-        raise FieldError(msg) from error
+        raise FieldError(f"the colour map {name!r} does not exist; {hint}") from error
 
 
 _cached_table = cache(_named_table)
@@ -164,8 +162,7 @@ def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, fl
 
 def _resampled(colours: AnyArray, count: int) -> Bytes:
     if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not len(colours):
-        msg = f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)"
-        raise FieldError(msg)
+        raise FieldError(f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)")
     values = colours.astype(float) * (255.0 if colours.dtype.kind == "f" else 1.0)
     table = np.full((count, 4), 255.0)
     number = np.arange(count) * len(values) // count
@@ -289,11 +286,10 @@ def matplotlib_norm(norm: Any) -> Any:
     except (TypeError, ValueError):
         found = None
     if not isinstance(found, Normalize) or isinstance(found, NoNorm):
-        msg = (
+        raise FieldError(
             f"norm is {norm!r}; expected a matplotlib Normalize, such as PowerNorm(0.5), or a name "
             "such as 'log', 'symlog' or 'asinh'"
         )
-        raise FieldError(msg)
     return found
 
 
@@ -303,11 +299,10 @@ def with_limits(norm: Any, low: float, high: float) -> Any:
     norm.autoscale_None(np.array([low, high]))
     if not norm.vmin < norm.vmax:
         kind = type(norm).__name__
-        msg = (
+        raise FieldError(
             f"norm is {kind} from {norm.vmin:g} to {norm.vmax:g}, and the values range from "
             f"{low:g} to {high:g}; give it limits, as in {kind}(vmin=1, vmax=10)"
         )
-        raise FieldError(msg)
     return norm
 
 
@@ -328,12 +323,11 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
     known = places(np.linspace(low, high, NORM_ENTRIES + 1))
     is_increasing = np.isfinite(known).all() and (np.diff(known) >= -ROUNDING).all()
     if not (low < high and is_increasing and known[-1] > known[0]):
-        msg = (
+        raise FieldError(
             f"norm is {type(norm).__name__} from {low:g} to {high:g}, which does not increase with "
             "the value there; expected one that does: give it other limits, as in "
             f"{type(norm).__name__}(..., vmin=1, vmax=10)"
         )
-        raise FieldError(msg)
     boundaries = getattr(norm, "boundaries", None)
     if boundaries is not None:
         parts = max(NORM_ENTRIES // (len(boundaries) - 1), 1)

@@ -14,8 +14,9 @@ def import_extra(module: str, extra: str) -> Any:
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        msg = f"{module} is missing; install it with {install_extra(extra)}"
-        raise ModuleNotFoundError(msg, name=module) from error
+        raise ModuleNotFoundError(
+            f"{module} is missing; install it with {install_extra(extra)}", name=module
+        ) from error
 
 
 def require_pyvista(what: str) -> None:
@@ -23,13 +24,13 @@ def require_pyvista(what: str) -> None:
     try:
         import_module("pyvista")
     except ModuleNotFoundError as error:
-        msg = (
+        raise ModuleNotFoundError(
             f"{what} needs PyVista and VTK, but {error.name} is missing; install it with "
             "python -m pip install pyvista. Python in a browser has neither: make a field there "
             "with FlowField.from_arrays or from_xarray, and draw it with flowtex.FlowWidget or "
-            "flowtex.export"
-        )
-        raise ModuleNotFoundError(msg, name=error.name) from error
+            "flowtex.export",
+            name=error.name,
+        ) from error
 
 
 def install_extra(extra: str) -> str:

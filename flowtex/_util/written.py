@@ -39,8 +39,7 @@ def finite_number(text: str) -> float:
     """Return a number."""
     value = number_or_text(text)
     if isinstance(value, str) or not math.isfinite(value):
-        msg = "a number"
-        raise UnreadableError(msg)
+        raise UnreadableError("a number")
     return value
 
 
@@ -82,8 +81,7 @@ def named_texts(
 
 def _read_switch(text: str) -> bool:
     if text not in ("on", "off"):
-        msg = "'on' or 'off'"
-        raise UnreadableError(msg)
+        raise UnreadableError("'on' or 'off'")
     return text == "on"
 
 

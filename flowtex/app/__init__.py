@@ -49,5 +49,4 @@ def __getattr__(name: str) -> Any:
         if name in ("FlowApp", "FlowArea"):
             require_pyvista(f"flowtex.app.{name}")
         return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    msg = f"module {__name__!r} has no attribute {name!r}"
-    raise AttributeError(msg)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

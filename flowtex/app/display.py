@@ -89,11 +89,10 @@ def in_notebook() -> bool:
 def _refuse_vtk(options: dict[str, Any]) -> None:
     for name in VTK_ARGUMENTS:
         if name in options:
-            msg = (
+            raise FieldError(
                 f"{name} applies to windows, but here the browser draws; omit it, or draw with "
                 "flowtex.render, or with plotter.flowtex.add and plotter.show"
             )
-            raise FieldError(msg)
 
 
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
@@ -112,14 +111,14 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
     _refuse_vtk(options)
     if size is not None:
-        msg = (
+        raise FieldError(
             f"size is {size!r}, but there is no display, and a page is as large as the browser's "
             "window; omit size, or draw with flowtex.render"
         )
-        raise FieldError(msg)
     if options.pop("beside", None) is not None:
-        msg = "two views need a window, but there is no display; use flowtex.render to draw both"
-        raise FieldError(msg)
+        raise FieldError(
+            "two views need a window, but there is no display; use flowtex.render to draw both"
+        )
     field = Options.split(mesh=mesh, **options).field.field(mesh)
     from flowtex.app import serve
 

@@ -264,11 +264,10 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
     if callable(field):
         names = [*options, *(["folder"] if folder is not None else [])]
         if names:
-            msg = (
+            raise FieldError(
                 f"{', '.join(names)} cannot be used with a function; pass them to the application "
                 "that it makes"
             )
-            raise FieldError(msg)
         make_app: MakeApp = field
         return make_app
     # All pages share one library, with its open files and traces.

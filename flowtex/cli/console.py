@@ -90,8 +90,7 @@ def describe(field: FlowField) -> str:
 def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
     if not files:
-        msg = "no file is given; name one"
-        raise UsageError(msg)
+        raise UsageError("no file is given; name one")
     options, mesh = dict(choice), files[0] if len(files) == 1 else files
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"), notices():
@@ -122,8 +121,7 @@ def check_picture_file(output: Path) -> None:
     if output.suffix.lower() not in suffixes:
         suffix = output.suffix
         fault = f"{suffix!r} is not a picture format" if suffix else "the file name has no suffix"
-        msg = f"{output}: {fault}; expected .png, .jpg, .webp or .tiff"
-        raise UsageError(msg)
+        raise UsageError(f"{output}: {fault}; expected .png, .jpg, .webp or .tiff")
     checked_target(output)
 
 
@@ -132,8 +130,7 @@ def check_page_file(output: Path) -> None:
     from flowtex.web.export import SUFFIXES
 
     if output.suffix.lower() not in SUFFIXES:
-        msg = f"{output}: expected a name that ends in {', '.join(SUFFIXES)}"
-        raise UsageError(msg)
+        raise UsageError(f"{output}: expected a name that ends in {', '.join(SUFFIXES)}")
     checked_target(output)
 
 
@@ -141,8 +138,7 @@ def drawing(*groups: object) -> dict[str, Any]:
     """Return the drawing options of flags; raise an error if they conflict."""
     values = arguments(*groups)
     if values.get("noise") == "image" and "image" not in values:
-        msg = "--noise is image but no image is given; add --image FILE"
-        raise UsageError(msg)
+        raise UsageError("--noise is image but no image is given; add --image FILE")
     options = Options.split("appearance", "view", **values)
     options.make_settings()
     if options.appearance.image is not None:
@@ -153,8 +149,9 @@ def drawing(*groups: object) -> dict[str, Any]:
 def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
     """Raise an error for pathlines of a single time."""
     if "time" in choice and values.get("lines") == "pathlines":
-        msg = "--lines is pathlines, which need all times; omit --time, or use flowtex render"
-        raise UsageError(msg)
+        raise UsageError(
+            "--lines is pathlines, which need all times; omit --time, or use flowtex render"
+        )
 
 
 def require_app() -> None:
@@ -162,11 +159,10 @@ def require_app() -> None:
     packages = ("trame", "trame_vuetify", "trame_rca")
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
-        msg = (
+        raise UsageError(
             f"the page needs {', '.join(missing)}, which is not installed. To install it:\n  "
             f"{install_extra('app')}"
         )
-        raise UsageError(msg)
 
 
 @contextmanager
@@ -175,5 +171,4 @@ def writing(output: object) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        msg = f"{output}: cannot be written ({error.strerror or error})"
-        raise UsageError(msg) from error
+        raise UsageError(f"{output}: cannot be written ({error.strerror or error})") from error

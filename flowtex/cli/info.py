@@ -46,8 +46,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
         console.print(_field_table(load_field(files, options), has_reading=True))
         return 0
     if not files:
-        msg = "no input file; usage: flowtex info FILE"
-        raise UsageError(msg)
+        raise UsageError("no input file; usage: flowtex info FILE")
     file = files[0] if len(files) == 1 else one_path(files)
     summary = describe(file, options.get("block"))
     console.print(Text(str(file), "bold"), soft_wrap=True)

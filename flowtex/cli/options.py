@@ -204,8 +204,9 @@ def arguments(*groups: object) -> dict[str, Any]:
                 values[name] = forms[name].read(value)
             except UnreadableError as error:
                 text = " ".join(value) if isinstance(value, tuple) else repr(value)
-                msg = f"--{name.replace('_', '-')} is {text}; expected {error}"
-                raise UsageError(msg) from error
+                raise UsageError(
+                    f"--{name.replace('_', '-')} is {text}; expected {error}"
+                ) from error
     return values
 
 
@@ -219,6 +220,5 @@ def pixels(size: str) -> tuple[int, int]:
     """Return width and height."""
     words = size.lower().replace("×", "x").split("x")
     if len(words) != 2 or not all(w.isdecimal() and 1 <= int(w) <= 16384 for w in words):
-        msg = f"--size is {size!r}; expected width x height up to 16384, as in 1024x768"
-        raise UsageError(msg)
+        raise UsageError(f"--size is {size!r}; expected width x height up to 16384, as in 1024x768")
     return int(words[0]), int(words[1])

@@ -64,18 +64,16 @@ def serve(
     options, server = drawing(look, settings), address or AddressFlags()
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
-        msg = (
+        raise UsageError(
             f"--token is {token!r}; expected 16 or more letters, digits, '-' and '_' that nobody "
             "can guess; omit --token to get a random one"
         )
-        raise UsageError(msg)
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
-        msg = (
+        raise UsageError(
             f"{store} is missing or not a pyramid; build one with `flowtex pyramid FILE -o {store}`"
         )
-        raise UsageError(msg)
     from flowtex.app.server.security import LimitedServer, known_hosts, new_secret
     from flowtex.app.server.site import serve_until_ended
     from flowtex.app.server.store_site import ServedStore, store_application
@@ -163,13 +161,13 @@ def pyramid(
     from flowtex.pyramid.source import source_of
 
     if not files:
-        msg = "no file is given; name one"
-        raise UsageError(msg)
+        raise UsageError("no file is given; name one")
     if verify:
         return _verify(files)
     if not output:
-        msg = "--output is missing; expected the folder or the URL of a store, such as -o flow.zarr"
-        raise UsageError(msg)
+        raise UsageError(
+            "--output is missing; expected the folder or the URL of a store, such as -o flow.zarr"
+        )
     start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"), notices():
         place: Any = files[0] if len(files) == 1 else files
@@ -192,8 +190,9 @@ def _verify(files: Sequence[Path]) -> int:
     from flowtex.pyramid.places import DamageError
 
     if len(files) != 1 or not is_store(files[0]):
-        msg = f"{' '.join(map(str, files))} is missing or not a pyramid; --verify expects one store"
-        raise UsageError(msg)
+        raise UsageError(
+            f"{' '.join(map(str, files))} is missing or not a pyramid; --verify expects one store"
+        )
     try:
         faults = verify(files[0])
     except DamageError as error:  # in the description of the store

@@ -57,8 +57,9 @@ def demo(
 ) -> int:
     """Show the examples on a page in the browser."""
     if example not in NAMES:
-        msg = f"the example {example!r} does not exist; expected one of {', '.join(NAMES)}"
-        raise UsageError(msg)
+        raise UsageError(
+            f"the example {example!r} does not exist; expected one of {', '.join(NAMES)}"
+        )
     options = drawing(settings)
     from flowtex.rendering import diagnostics
 
@@ -127,12 +128,12 @@ def _show_page(
     options: dict[str, Any],
 ) -> int:
     if not files:
-        msg = "no file is given; name a file or a folder, or try `flowtex demo`"
-        raise UsageError(msg)
+        raise UsageError("no file is given; name a file or a folder, or try `flowtex demo`")
     for name, group in (("background", "Colours"), ("beside", "View")):
         if name in options:
-            msg = f"--{name} is for pictures and windows; on the page it is a control under {group}"
-            raise UsageError(msg)
+            raise UsageError(
+                f"--{name} is for pictures and windows; on the page it is a control under {group}"
+            )
     if serve_processes(page):
         return 0
     from flowtex.app import Library
@@ -146,11 +147,10 @@ def _show_page(
     if is_one_flow and any(name in choice for name in FIELD_OPTIONS):
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
-        msg = (
+        raise UsageError(
             f"--{misplaced[0].replace('_', '-')} can be used with one file, not with several "
             "files or a folder"
         )
-        raise UsageError(msg)
     return serve_library(Library.of(*files), page, {**options, **choice})
 
 

@@ -183,10 +183,9 @@ def export(
     check_lines(choice, options)
     field = load_field(files, choice)
     if steps is not None and steps < 1:
-        msg = (
+        raise UsageError(
             f"--steps is {steps}; expected 1 to {len(field.times)}, the number of steps in the file"
         )
-        raise UsageError(msg)
     from flowtex.web.export import export as write_page
 
     with writing(output):
@@ -291,8 +290,9 @@ def formula(
     for text in set:
         name, equals, value = text.partition("=")
         if not equals or not name.isidentifier() or name in ("surface", "times", *ranges):
-            msg = f"--set is {text!r}; expected a parameter and its value, such as b=0.2"
-            raise UsageError(msg)
+            raise UsageError(
+                f"--set is {text!r}; expected a parameter and its value, such as b=0.2"
+            )
         ends = _numbers(f"set {name}", value, 1, 3)
         choice[name] = ends if len(ends) > 1 else ends[0]
     if surface:
@@ -329,8 +329,7 @@ def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
     try:
         return numbers(*counts, expected=expected)(text)
     except UnreadableError as error:
-        msg = f"--{name} is {text!r}; expected {error}"
-        raise UsageError(msg) from error
+        raise UsageError(f"--{name} is {text!r}; expected {error}") from error
 
 
 def _field(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
@@ -341,8 +340,9 @@ def _field(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
     except FieldError as error:
         for flag in (text for text in expressions if re.fullmatch(r"--[A-Za-z]\w*(=.*)?", text)):
             name = flag[2:].partition("=")[0]
-            msg = f"formula has no option {flag}; a parameter is set by --set {name}=1"
-            raise UsageError(msg) from error
+            raise UsageError(
+                f"formula has no option {flag}; a parameter is set by --set {name}=1"
+            ) from error
         text = str(error)
         for before, after in _IN_SHELL:
             text = re.sub(before, after, text)

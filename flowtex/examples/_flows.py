@@ -481,11 +481,10 @@ def double_gyre_velocity(
     """
     positions = np.asarray(points, dtype=np.float64)
     if positions.ndim == 0 or positions.shape[-1] not in (2, 3):
-        message = (
+        raise FieldError(
             f"points has shape {positions.shape}, expected (..., 2) or (..., 3); stack x and y "
             "with np.stack([x, y], axis=-1)"
         )
-        raise FieldError(message)
     f, slope, _ = _border(positions[..., 0], time, epsilon, period)
     y = np.pi * positions[..., 1]
     velocity = np.zeros_like(positions)

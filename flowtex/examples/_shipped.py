@@ -79,12 +79,11 @@ def shipped(name: str) -> Path:
     """
     path = DATA / name
     if not path.is_file():
-        message = (
+        raise FileNotFoundError(
             f"the example file {name!r} is missing from {path.parent}, although it comes with "
             "flowtex: reinstall flowtex, or compute the file in a clone: python "
             "tools/example_data/build.py"
         )
-        raise FileNotFoundError(message)
     return path
 
 

@@ -37,18 +37,16 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
     if values.dtype.kind not in "mM":
         return times, time_unit, None
     if time_unit not in ("", "s"):
-        msg = (
+        raise FieldError(
             f"time_unit is {time_unit!r}, but the times are dates, which are converted to "
             "seconds; omit time_unit and give velocities per second, or give times as numbers"
         )
-        raise FieldError(msg)
     if np.datetime_data(values.dtype)[0] in ("M", "Y"):
         if values.dtype.kind == "m":
-            msg = (
+            raise FieldError(
                 f"times has type {values.dtype}, whose units have no fixed length; expected dates "
                 "or numbers"
             )
-            raise FieldError(msg)
         values = values.astype("datetime64[D]")
     if values.dtype.kind == "M":
         first = values.flat[:1]
@@ -73,8 +71,9 @@ def seconds_since(start: Any, date: Any) -> float:
     if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:
-        msg = f"time is {date!r}; expected a number, because the times of the field are not dates"
-        raise FieldError(msg)
+        raise FieldError(
+            f"time is {date!r}; expected a number, because the times of the field are not dates"
+        )
     try:
         return span_since(start, date)[0]
     except (TypeError, ValueError, AttributeError) as error:
@@ -96,8 +95,7 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     if not isinstance(date, str):
         return (float((date - start).total_seconds()),) * 2
     if (match := _DATE.fullmatch(date.strip())) is None:
-        msg = f"{date!r} is not a valid date"
-        raise FieldError(msg)
+        raise FieldError(f"{date!r} is not a valid date")
     *parts, fraction = match.groups()
     numbers = [int(part) for part in parts if part is not None]
     microsecond = int(f"{fraction or '':0<6.6}")
@@ -120,8 +118,7 @@ def time_within(start: Any, times: Any, date: Any) -> float:
     """Return a time of a field from a number or date; raise a FieldError if it is outside."""
     time = seconds_since(start, date)
     if not float(times[0]) <= time <= float(times[-1]):
-        msg = f"time is {date!r}; expected {expected_times(start, times)}"
-        raise FieldError(msg)
+        raise FieldError(f"time is {date!r}; expected {expected_times(start, times)}")
     if start is not None and isinstance(date, (int, np.integer)) and 0 < date < len(times):
         step = float(times[1] - times[0])
         if date < step:

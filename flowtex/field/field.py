@@ -541,8 +541,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         """
         count = len(self.times)
         if not (is_number(step) and -count <= step < count and int(step) == step):
-            msg = f"time step {step} does not exist: expected 0 to {count - 1}"
-            raise FieldError(msg)
+            raise FieldError(f"time step {step} does not exist: expected 0 to {count - 1}")
         return int(step) % count
 
     def downsample(self, factor: int) -> FlowField:
@@ -554,8 +553,9 @@ class FlowField(FieldConstructors, FieldQuantities):
             When fewer than two lines would be left, or the surface consists of triangles.
         """
         if self.triangles is not None:
-            msg = f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
+            )
         axes = zip(self.shape, self.periodic, strict=True)
         return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
 

@@ -125,9 +125,8 @@ def every_line(count: int, factor: int, *, closed: bool) -> Indices:
         picks.append(count - 1)
     fewest = 4 if closed else 2
     if len(picks) < fewest:
-        msg = (
+        raise FieldError(
             f"factor is {factor}, which keeps {len(picks)} of {count} lines; expected a smaller "
             f"factor that keeps at least {fewest}"
         )
-        raise FieldError(msg)
     return np.array(picks)

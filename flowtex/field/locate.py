@@ -70,8 +70,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     expected = "two finite numbers (j, i), in cells"
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
-        msg = f"index is {brief(index)}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"index is {brief(index)}; expected {expected}")
     place, number, weights = surface.triangle_at(at)
     nodes = surface.corners_of(np.array([number]))[0]
     cell = int(surface.cells_of(np.array([number]))[0])
@@ -272,8 +271,7 @@ def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[flo
     expected = "two or three finite coordinates in the mesh's units"
     at = checked_array("point", point, expected=expected)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
-        msg = f"point is {brief(point)}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"point is {brief(point)}; expected {expected}")
     target = np.zeros((1, 3))
     target[0, : len(at)] = at
     if field.projection is not None:

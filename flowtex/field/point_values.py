@@ -147,8 +147,7 @@ def point_at(field: Any, place: ArrayLike, time: Any = None) -> PointValues | No
     """Return the values at a place in the coordinates of the data; ``None`` outside the data."""
     at = np.asarray(place, dtype=float)
     if not np.isfinite(at).all():
-        msg = f"the place is {brief(place)}; expected finite numbers"
-        raise FieldError(msg)
+        raise FieldError(f"the place is {brief(place)}; expected finite numbers")
     if field.projection is not None:
         index = locate_lonlat(field, *at.tolist())
     else:

@@ -39,8 +39,7 @@ class LazySteps:
     def step(self, number: int) -> Floats:
         """Return one step, (J, I, ...)."""
         if not -self._count <= number < self._count:
-            msg = f"step {number} does not exist: expected 0 to {self._count - 1}"
-            raise IndexError(msg)
+            raise IndexError(f"step {number} does not exist: expected 0 to {self._count - 1}")
         number %= self._count
         return self._kept.get(number, lambda: self._read(number))
 

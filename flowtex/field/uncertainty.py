@@ -46,19 +46,19 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     if value not in scalars and spread_name(value) in scalars:
         value = spread_name(value)
     if value not in scalars:
-        msg = f"uncertainty is {value!r}, which is not a scalar; {near_names(value, scalars)}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"uncertainty is {value!r}, which is not a scalar; {near_names(value, scalars)}"
+        )
     steps = scalars[value]
     on_cells = tuple(name for name in flow.on_cells if name != value)
     if value in flow.on_cells:
         steps = _at_nodes(flow, steps)
         scalars = {**scalars, value: steps}
     if not isinstance(steps, LazySteps) and (least := np.min(steps, initial=0, where=steps < 0)):
-        msg = (
+        raise FieldError(
             f"uncertainty is {least:g} at a node; expected 0 where the direction is known, up to 1 "
             "where it is not, such as a standard deviation over the speed"
         )
-        raise FieldError(msg)
     changed: Field = flow.same_flow(scalars=scalars, uncertainty=value, on_cells=on_cells)
     return changed
 
@@ -72,11 +72,10 @@ def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
         steps = None
     if steps is None or len(steps) not in {1, len(field.times)}:
         shape = np.shape(value) if not isinstance(value, (bool, dict)) else repr(value)
-        msg = (
+        raise FieldError(
             f"{name} is {shape}; expected {other}an array of the shape {field.shape}, or "
             f"{(len(field.times), *field.shape)}"
         )
-        raise FieldError(msg)
     return steps
 
 

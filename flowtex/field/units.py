@@ -95,11 +95,10 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
     own = speed_unit(length, time)
     scale = factor(velocity, own) if own else 1.0
     if scale is None:
-        msg = (
+        raise FieldError(
             f"velocity_unit is {velocity!r}, which cannot be converted to {own!r}, the unit of "
             "the positions per unit of time; expected a unit of the same kind"
         )
-        raise FieldError(msg)
     return scale, time, symbol(velocity)
 
 

@@ -37,20 +37,18 @@ def node_positions(points: Any) -> Any:
         for name, line in zip("xy", points, strict=True):
             steps: Floats = np.diff(np.ma.filled(np.ma.asarray(line, dtype=float), np.nan))
             if (steps > 0).any() and (steps < 0).any():
-                msg = (
+                raise FieldError(
                     f"{name} increases and decreases; expected coordinates in one direction: sort "
                     f"them, and the velocity with them, by np.argsort({name})"
                 )
-                raise FieldError(msg)
         points = np.meshgrid(*points)
     elif not isinstance(points, tuple) or set(sizes) != {2}:
         return points
     shapes = [np.shape(part) for part in points]
     if len(set(shapes)) > 1:
-        msg = (
+        raise FieldError(
             f"points are arrays of shapes {', '.join(map(str, shapes))}; expected one shape (J, I)"
         )
-        raise FieldError(msg)
     return np.ma.stack(points, axis=-1) if any(map(np.ma.isMA, points)) else np.stack(points, -1)
 
 
@@ -60,16 +58,14 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     try:
         array = np.asarray(np.ma.getdata(values))
     except (TypeError, ValueError) as error:
-        msg = (
+        raise FieldError(
             f"{name} is not an array ({error}); expected real numbers, the same number in every row"
-        )
-        raise FieldError(msg) from error
+        ) from error
     if array.dtype.kind not in "fiub":
-        msg = (
+        raise FieldError(
             f"{name} has type {array.dtype}; expected real numbers: convert it with "
             "astype(float), or take its real part"
         )
-        raise FieldError(msg)
     array = np.asarray(array, np.float64)
     if mask is None:
         return array, np.False_

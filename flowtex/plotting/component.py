@@ -150,11 +150,10 @@ class FlowtexComponent:
         flow.
         """
         if not self._handles:
-            msg = (
+            raise FieldError(
                 "this plotter has no flow texture; add one with plotter.flowtex.add(mesh), or "
                 "choose another jupyter_backend"
             )
-            raise FieldError(msg)
         shown = self._handles[0]
         shown.read_changes()
         bodies, left_out = read_bodies(self._plotter, shown)
@@ -229,17 +228,15 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
     for name, actor in _actors(plotter, shown):
         try:
             if actor not in renderer.actors.values():
-                msg = "in another part of the window"
-                raise _NotDrawnError(msg)
+                raise _NotDrawnError("in another part of the window")
             if isinstance(actor, pv.Actor) or actor.IsA("vtkActor"):
                 bodies = [body for body in _bodies(actor) if len(body.points)]
                 size = sum(len(body.points) for body in bodies)
                 if size > room:
-                    msg = (
+                    raise _NotDrawnError(
                         f"{size:,} vertices exceed the {room:,} that are left of "
                         f"{MOST_VERTICES:,} in all; decimate the mesh, or extract a part"
                     )
-                    raise _NotDrawnError(msg)
                 room -= size
                 meshes += bodies
             else:
@@ -277,11 +274,9 @@ def _bodies(actor: Any) -> Iterator[Body]:
     elif data is not None and data.IsA("vtkDataSet"):
         blocks = [pv.wrap(data)]
     else:
-        msg = f"drawn by {mapper.GetClassName()}, which cannot be sent to a browser"
-        raise _NotDrawnError(msg)
+        raise _NotDrawnError(f"drawn by {mapper.GetClassName()}, which cannot be sent to a browser")
     if actor.GetTexture() is not None:
-        msg = "coloured by a texture"
-        raise _NotDrawnError(msg)
+        raise _NotDrawnError("coloured by a texture")
     matrix = pv.array_from_vtkmatrix(actor.GetMatrix())
     for block in blocks:
         surface = _coloured(block, mapper, prop)
@@ -415,8 +410,7 @@ def _bytes(colour: ArrayLike) -> Bytes:
 def _labels(actor: Any) -> Iterator[Label]:
     mapper = actor.GetMapper() if actor.IsA("vtkActor2D") else None
     if mapper is None or not mapper.IsA("vtkLabelPlacementMapper"):
-        msg = f"{actor.GetClassName()}, neither a mesh nor a point label"
-        raise _NotDrawnError(msg)
+        raise _NotDrawnError(f"{actor.GetClassName()}, neither a mesh nor a point label")
     hierarchy = source = mapper.GetInputAlgorithm()
     name, look = hierarchy.GetLabelArrayName(), hierarchy.GetTextProperty()
     while source.IsA("vtkPointSetToLabelHierarchy") or source.IsA("vtkSelectVisiblePoints"):

@@ -188,8 +188,9 @@ def build(
     about = about_source(data, parameter, data.chosen_lines(lines))
     invalid = [name for name in about["scalars"] if not is_scalar_name(name)]
     if invalid:
-        msg = f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
-        raise FieldError(msg)
+        raise FieldError(
+            f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
+        )
     identity, threads = about["source"], Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
     with plain_faults(), closing(workers), building(place):
@@ -282,11 +283,10 @@ def _prepared(
         entries = {"uncertainty": "", "velocity_unit": "", **stored}  # earlier versions wrote none
         differing = [name for name in IDENTITY if entries.get(name) != about[name]]
         if differing:
-            msg = (
+            raise PyramidError(
                 f"{place} contains the pyramid of another field ({', '.join(differing)} differ); "
                 "build with fresh=True to replace it, or choose another place"
             )
-            raise PyramidError(msg)
         about = {**stored, "complete": False}
     arrays = _describe(store, about)
     return zarr.open_group(store, mode="r+"), arrays, about, stored is None
@@ -380,11 +380,10 @@ class _Run:
             count = (
                 f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
             )
-            msg = (
+            raise PyramidError(
                 f"{count} shards could not be built in {self.place}; the first error is "
                 f"{type(first).__name__}: {first}. Build again to build the missing ones"
-            )
-            raise PyramidError(msg) from first
+            ) from first
 
 
 def _existing_units(run: _Run, name: str) -> Iterator[Part | TileTask]:
@@ -419,25 +418,22 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     if source.identity() != run.source:
         run.update(source="")
-        msg = f"the source of {run.place} changed while it was read; build again"
-        raise ChangedError(msg)
+        raise ChangedError(f"the source of {run.place} changed while it was read; build again")
     levels = Levels(run.place)
     if not run.about["ranges"]:
         ranges = ranges_of(levels.whole(SAMPLES), run.about)
         if not ranges:
-            msg = (
+            raise FieldError(
                 f"none of the {math.prod(source.shape):,} nodes has data; check the selected "
                 "variables"
             )
-            raise FieldError(msg)
         run.update(ranges=ranges)
     fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
-        msg = (
+        raise ChangedError(
             f"{run.place} was built from an earlier version of the field; build with fresh=True "
             "to replace it"
         )
-        raise ChangedError(msg)
     run.update(fingerprint=fingerprint)
 
 

@@ -400,11 +400,10 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     """Return the description of a pyramid; a PyramidError says that it is not as it was written."""
     version = about.get("format") if isinstance(about, dict) else None
     if version != FORMAT:
-        msg = (
+        raise PyramidError(
             f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again, or "
             "use the version of flowtex that wrote it"
         )
-        raise PyramidError(msg)
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
     if not wrong and math.prod(level_shape(about["nodes"], about["depth"])) > MOST_ROOT_NODES:
         wrong = ["depth"]
@@ -412,8 +411,7 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
         wrong = ["uncertainty"]
     if wrong or about.get("seal") != _seal(about):
         names = f" ({', '.join(wrong)})" if wrong else ""
-        msg = f"the metadata of {place} are damaged{names}; build it again"
-        raise DamageError(msg)
+        raise DamageError(f"the metadata of {place} are damaged{names}; build it again")
     result: dict[str, Any] = about
     return result
 

@@ -90,11 +90,10 @@ class Levels:
         except PyramidError:
             raise
         except Exception as error:
-            msg = (
+            raise PyramidError(
                 f"{self.place} contains no readable pyramid ({_error_text(error)}); build one with "
                 "flowtex.pyramid.build"
-            )
-            raise PyramidError(msg) from None
+            ) from None
         #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
         self._arrays: dict[str, AsyncArray[ArrayV3Metadata]] = {}
@@ -112,8 +111,7 @@ class Levels:
                 members = group.members(max_depth=None)
                 self._expected[top] = {n: _format_of(a) for n, a in members if hasattr(a, "dtype")}
             if name not in self._expected[top]:
-                msg = f"{self.place} has no {name}; build it again"
-                raise PyramidError(msg)
+                raise PyramidError(f"{self.place} has no {name}; build it again")
             return self._expected[top][name]
 
     def shape(self, level: int) -> tuple[int, int]:
@@ -159,8 +157,7 @@ class Levels:
             nodal["has_position"].astype(bool) if "has_position" in nodal else None,
         )
         if part_digest(nodes, self.about, step) != stored_digest.tobytes():
-            msg = f"velocity {words} of {self.place} differs from what was written"
-            raise DamageError(msg)
+            raise DamageError(f"velocity {words} of {self.place} differs from what was written")
 
     def check_tile(self, key: TileKey, step: int) -> None:
         """Raise a DamageError where a part of a tile is missing or corrupt."""
@@ -190,8 +187,7 @@ class Levels:
         tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
         if owner != self.about["fingerprint"] or not all(n.startswith(prefix) for n in names):
-            msg = f"{name} of {self.place} belongs to another tile; build it again"
-            raise DamageError(msg)
+            raise DamageError(f"{name} of {self.place} belongs to another tile; build it again")
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
             self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
         return names
@@ -282,11 +278,10 @@ class Levels:
         formats = [self._format(piece.array) for piece in pieces]
         need, free = sum(map(_size, pieces, formats)), available_bytes()
         if need > free:
-            msg = (
+            raise PyramidError(
                 f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
                 "of memory are available"
             )
-            raise PyramidError(msg)
 
         async def together() -> list[AnyArray]:
             return await asyncio.gather(*map(self._values, pieces, formats))
@@ -313,11 +308,10 @@ class Levels:
             open_array = import_extra("zarr.api.asynchronous", "store").open_array
             array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
             if _format_of(array) != expected:
-                msg = (
+                raise DamageError(
                     f"{name} of {self.place} has changed since it was written; build the store "
                     "again"
                 )
-                raise DamageError(msg)
             from flowtex.pyramid.objects import bounded
 
             self._arrays[name] = bounded(array)

@@ -97,11 +97,9 @@ class Objects(WrapperStore[Store]):
                         continue
                     if is_refused(error) and key != "zarr.json" and not _CHUNK.search(key):
                         return None
-                    msg = f"{key} {fault_words(error)}"
-                    raise ReadFault(msg) from None
+                    raise ReadFault(f"{key} {fault_words(error)}") from None
         if result is None and not self.sparse and _CHUNK.search(key):
-            msg = f"{key} is missing"
-            raise ReadFault(msg, missing=True)
+            raise ReadFault(f"{key} is missing", missing=True)
         return result
 
 
@@ -164,8 +162,9 @@ class _BoundedGzip(GzipCodec):
         unpacking = zlib.decompressobj(_GZIP_WINDOW)
         data = unpacking.decompress(chunk_bytes.to_bytes(), size + 1)
         if len(data) != size or not unpacking.eof:
-            msg = f"a chunk does not unpack to the {size:,} bytes that its array declares"
-            raise ValueError(msg)
+            raise ValueError(
+                f"a chunk does not unpack to the {size:,} bytes that its array declares"
+            )
         return chunk_spec.prototype.buffer.from_bytes(data)
 
     async def _decode_single(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
@@ -179,8 +178,9 @@ class _BoundedBlosc(BloscCodec):
         size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
         # Blosc writes the size into bytes 4 to 8 of a chunk, and unpacks to no more.
         if int.from_bytes(chunk_bytes.to_bytes()[4:8], "little") != size:
-            msg = f"a chunk does not unpack to the {size:,} bytes that its array declares"
-            raise ValueError(msg)
+            raise ValueError(
+                f"a chunk does not unpack to the {size:,} bytes that its array declares"
+            )
         return await super()._decode_single(chunk_bytes, chunk_spec)
 
 

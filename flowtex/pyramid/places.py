@@ -91,23 +91,22 @@ def place_text(place: str | Path) -> str:
         parts = urlsplit(url)
         user, _, host = parts.netloc.rpartition("@")
     except ValueError:
-        msg = "the address of the store is not a URL; expected one such as s3://bucket/flow.zarr"
-        raise PyramidError(msg) from None
+        raise PyramidError(
+            "the address of the store is not a URL; expected one such as s3://bucket/flow.zarr"
+        ) from None
     scheme = parts.scheme.lower()
     if scheme not in _SCHEMES:
-        msg = (
+        raise PyramidError(
             f"the store is at {scheme}://{host}{parts.path}; expected a folder, or an address "
             f"that starts with one of {', '.join(f'{name}://' for name in _SCHEMES)}"
         )
-        raise PyramidError(msg)
     # In addresses of Azure's the container stands where others have a user.
     secret = user and (scheme not in _AZURE or ":" in user)
     if secret or parts.query or parts.fragment:
-        msg = (
+        raise PyramidError(
             f"the address {scheme}://{host}{parts.path} contains a user, a password or a query; "
             "expected none: credentials come from the environment, such as AWS_ACCESS_KEY_ID"
         )
-        raise PyramidError(msg)
     return url.rstrip("/")
 
 
@@ -145,8 +144,7 @@ def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
         return objects.from_url(text, **options)
     except Exception as error:
         reason = str(error).partition("\n")[0]
-        msg = f"{text} is not the address of a store ({reason})"
-        raise PyramidError(msg) from None
+        raise PyramidError(f"{text} is not the address of a store ({reason})") from None
 
 
 def store_at(place: str | Path, *, read_only: bool = True) -> Store:
@@ -160,8 +158,9 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Store:
     if read_only:
         return storage.ObjectStore(objects_at(text), read_only=True)
     if text.lower().startswith(_WEB):
-        msg = f"{text} is read-only; build in a folder or in object storage such as s3://"
-        raise PyramidError(msg)
+        raise PyramidError(
+            f"{text} is read-only; build in a folder or in object storage such as s3://"
+        )
     return storage.ObjectStore(objects_at(text, patient=True))
 
 
@@ -217,23 +216,22 @@ def _remote_document(text: str) -> bytes:
         # OPeNDAP and other services answer so to an unknown name.
         if isinstance(error, FileNotFoundError) or "status code: 400" in str(error):
             return b""
-        msg = f"{text}/{DOCUMENT} {fault_words(error)}"
-        raise PyramidError(msg) from None
+        raise PyramidError(f"{text}/{DOCUMENT} {fault_words(error)}") from None
 
 
 def check_room(place: str, names: Iterable[str]) -> None:
     """Raise a PyramidError where a build would write among other data, whose names these are."""
     if not is_remote(place) and Path(place).is_file():
-        msg = f"{place} is a file; expected a new folder, an empty one, or a flowtex store"
-        raise PyramidError(msg)
+        raise PyramidError(
+            f"{place} is a file; expected a new folder, an empty one, or a flowtex store"
+        )
     others = sorted({*names} - {BUILDING})
     if others and not is_store(place):
         examples = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
-        msg = (
+        raise PyramidError(
             f"{place} contains other data ({examples}); expected a new folder, an empty one, or a "
             "flowtex store"
         )
-        raise PyramidError(msg)
 
 
 def is_refused(error: Exception) -> bool:
@@ -285,8 +283,7 @@ def plain_faults() -> Iterator[None]:
     except Exception as error:
         if not type(error).__module__.startswith("obstore"):
             raise
-        msg = f"the store {fault_words(error)}"
-        raise PyramidError(msg) from None
+        raise PyramidError(f"the store {fault_words(error)}") from None
 
 
 @contextmanager
@@ -315,12 +312,11 @@ def building(place: str) -> Iterator[None]:
             break
         sync(store.delete(BUILDING))  # it was cut off, or its process has ended
     if holder.get("id") != own:
-        msg = (
+        raise PyramidError(
             f"{place} is being built by process {holder.get('process', '?')} on "
             f"{holder.get('host', 'another machine')}; wait until it ends. If it is no longer "
             f"running, delete {BUILDING} in the store and build again"
         )
-        raise PyramidError(msg)
     try:
         yield
     finally:

@@ -107,11 +107,10 @@ class FieldSource(Source):
     def __init__(self, field: FlowField) -> None:
         if field.triangles is not None or field.sign_free:
             kind = "on triangles" if field.triangles is not None else "sign-free"
-            msg = (
+            raise FieldError(
                 f"the field is {kind}; expected a field on a structured surface that is not "
                 "sign-free"
             )
-            raise FieldError(msg)
         self.field, self.shape = field, field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
         x, y, z = np.moveaxis(field.points, -1, 0)
@@ -234,8 +233,7 @@ def _source_of(data: Any, uncertainty: Any, **options: Any) -> Source:
         refuse(options, "the data of a field")
         return data if isinstance(data, Source) else FieldSource(data)
     if is_store(data):
-        msg = f"{data} is already a pyramid; give the data from which one is built"
-        raise FieldError(msg)
+        raise FieldError(f"{data} is already a pyramid; give the data from which one is built")
     if is_dataset(data):
         return _source_from(read_datasets(data, **read, **options))
     items = data if isinstance(data, (list, tuple)) else [data]
@@ -307,21 +305,19 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
         raise
     except Exception as error:
         words = str(error) if isinstance(error, ReadFault) else fault_words(error)
-        msg = (
+        raise PyramidError(
             f"{place} contains no readable pyramid ({words}); build one with "
             "flowtex.pyramid.build, or give a Zarr group that xarray can open (on the web with "
             "consolidated metadata, see zarr.consolidate_metadata)"
-        )
-        raise PyramidError(msg) from None
+        ) from None
     names = [name.strip("/") for name in level_names(attributes)]
     by_name = {name.strip("/"): dataset for name, dataset in groups.items()}
     chosen = [by_name[name] for name in names if name in by_name] or list(by_name.values())
     levels = [d for d in chosen if (components and components <= {*d}) or find_pairs([d])]
     if not levels:
-        msg = (
+        raise PyramidError(
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
             "v in each level, or their names (on the web with consolidated metadata, see "
             "zarr.consolidate_metadata)"
         )
-        raise PyramidError(msg)
     return sorted(levels, key=lambda level: -max(array.size for array in level.values()))

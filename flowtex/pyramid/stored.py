@@ -91,23 +91,20 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
         others = levels_of_others(place_text(store), options, uncertainty)
         return others if isinstance(others, FlowField) else _field_of(others)
     if options:
-        msg = f"{', '.join(options)} applies to the source of a pyramid; omit it"
-        raise FieldError(msg)
+        raise FieldError(f"{', '.join(options)} applies to the source of a pyramid; omit it")
     levels = Levels(store)
     if not levels.about.get("levels_done"):
-        msg = (
+        raise PyramidError(
             f"{levels.place} is incomplete, and its coarsest level is missing; run "
             "flowtex.pyramid.build again to build the missing parts"
         )
-        raise PyramidError(msg)
     stored = levels.template.uncertainty
     requested = uncertainty if isinstance(uncertainty, str) else "an array"
     if uncertainty is not None and requested not in (stored, stored.removeprefix(spread_name(""))):
-        msg = (
+        raise FieldError(
             f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}; "
             "set it when you build the store"
         )
-        raise FieldError(msg)
     return _field_of(levels)
 
 
@@ -201,11 +198,10 @@ class StoredPyramid(Pyramid):
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
             pairs.append((mean[coarse.valid][:, : velocity.shape[-1]], velocity))
         if not all(_agree(values, reference) for values, reference in pairs):
-            msg = (
+            raise PyramidError(
                 f"the nodes of tile {tuple(key)} of {stored.place} do not match those of the "
                 "level above it; build the store again"
             )
-            raise PyramidError(msg)
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         return self._stored.positions(level, rows, columns)
@@ -236,8 +232,9 @@ def levels_of_others(
         coarser = [read_datasets(d, regions=True, **arguments) for d in datasets[1:]]
     sources = [RegionSource(part) for part in coarser if isinstance(part, Regions)]
     if len(sources) < len(coarser):
-        msg = f"{place}: a coarser level is not on rows and columns, as the finest one is"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{place}: a coarser level is not on rows and columns, as the finest one is"
+        )
     return OtherLevels(place, [finest, *sources])
 
 
@@ -360,8 +357,7 @@ class OtherLevels:
             parts = read(rows, columns)
         except Exception as error:
             words = str(error) if isinstance(error, ReadFault) else fault_words(error)
-            msg = f"{self.place} cannot be read: {words}"
-            raise PyramidError(msg) from None
+            raise PyramidError(f"{self.place} cannot be read: {words}") from None
         return [_interpolated(values, at, (down, across)) for values in parts]
 
 

@@ -103,12 +103,11 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
         != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes()
     ):
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
-        msg = (
+        raise ChangedError(
             f"{place} contains the pyramid of another field, or of an earlier version of this "
             f"one: rows {rows}, columns {columns} differ at step {part.step}. Build with "
             "fresh=True to replace it, or choose another place"
         )
-        raise ChangedError(msg)
 
 
 def mend(place: str, run: str, unit: Part | TileTask) -> None:
@@ -292,11 +291,10 @@ def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts:
     file = np.frombuffer(parts_file({"of": owner, **parts}, planes=True), np.uint8)
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
     if size > FILE_BYTES:
-        msg = (
+        raise PyramidError(
             f"{name} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at "
             "most. Build with lines='streamlines', or with fewer nodes"
         )
-        raise PyramidError(msg)
     array(name)[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
 
 
@@ -356,8 +354,9 @@ class Threads:
             try:
                 self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
             except (ValueError, TypeError, AttributeError) as error:
-                msg = f"memory is {memory!r}; expected a number of bytes, or a text such as '2GB'"
-                raise FieldError(msg) from error
+                raise FieldError(
+                    f"memory is {memory!r}; expected a number of bytes, or a text such as '2GB'"
+                ) from error
 
     def count(self, need: int) -> int:
         """Return how many tasks run at once that need this many bytes each."""
@@ -476,9 +475,8 @@ def _packed(value: object) -> bytes | None:
     try:
         data: bytes = import_extra("cloudpickle", "store").dumps(value)
     except Exception as error:
-        msg = (
+        raise PyramidError(
             f"the dataset cannot be sent to the workers ({type(error).__name__}: {error}); open it "
             "from a file or a store, or build without a scheduler"
-        )
-        raise PyramidError(msg) from error
+        ) from error
     return data if len(data) <= MOST_SENT else None

@@ -191,11 +191,10 @@ class Camera:
         center = surface.center.copy()
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):
-                msg = (
+                raise FieldError(
                     f"focus is {brief(focus)}; expected two or three coordinates in the mesh's "
                     "units"
                 )
-                raise FieldError(msg)
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:  # straight on, the surface's own axes to the right and up
@@ -244,13 +243,13 @@ class Camera:
         """
         names = [f.name for f in fields(cls)]
         if not isinstance(values, Mapping) or not set(values) <= set(names):
-            msg = f"camera is {brief(values)}; expected a mapping with some of {', '.join(names)}"
-            raise CameraError(msg)
+            raise CameraError(
+                f"camera is {brief(values)}; expected a mapping with some of {', '.join(names)}"
+            )
         attributes = {**({} if base is None else asdict(base)), **values}
         missing = [name for name in ("position", "focal_point", "up") if name not in attributes]
         if missing:
-            msg = f"camera is {brief(values)}; expected {', '.join(missing)} as well"
-            raise CameraError(msg)
+            raise CameraError(f"camera is {brief(values)}; expected {', '.join(missing)} as well")
         return cls(**attributes)
 
     @classmethod
@@ -265,8 +264,9 @@ class Camera:
         try:
             position, focal_point, up = points
         except (TypeError, ValueError) as error:
-            msg = f"camera is {brief(points)}; expected position, focal point and up, three points"
-            raise CameraError(msg) from error
+            raise CameraError(
+                f"camera is {brief(points)}; expected position, focal point and up, three points"
+            ) from error
         return cls(position, focal_point, up)
 
     @classmethod
@@ -284,8 +284,9 @@ class Camera:
         if len(words) == 8:
             return cls.from_points(points)
         if kind not in ("parallel", "perspective") or len(numbers) != 11:
-            msg = f"camera is {text!r}; expected nine numbers: position, focal point and up"
-            raise CameraError(msg)
+            raise CameraError(
+                f"camera is {text!r}; expected nine numbers: position, focal point and up"
+            )
         scale, angle = numbers[9:]
         position, focal_point, up = points
         return cls(position, focal_point, up, kind == "parallel", scale, angle)  # type: ignore[arg-type]

@@ -199,8 +199,9 @@ def require_opengl() -> OpenGLReport:
     """
     report = opengl_report()
     if not report.usable:
-        msg = f"VTK cannot draw here: {report.failure}. To fix it:\n  {report.remedy}"
-        raise OpenGLMissingError(msg)
+        raise OpenGLMissingError(
+            f"VTK cannot draw here: {report.failure}. To fix it:\n  {report.remedy}"
+        )
     return report
 
 

@@ -29,11 +29,10 @@ def shader_folder(package: Path = _PACKAGE) -> Path:
     # Beside an installed package lies site-packages, where "shaders" would be someone else's.
     if (checkout / "pyproject.toml").is_file() and (checkout / "shaders").is_dir():
         return checkout / "shaders"
-    msg = (
+    raise FileNotFoundError(
         f"flowtex's shaders are missing: neither {installed} nor {checkout / 'shaders'} exists. "
         "Install flowtex again: python -m pip install --force-reinstall --no-deps flowtex"
     )
-    raise FileNotFoundError(msg)
 
 
 def shader_names() -> tuple[str, ...]:
@@ -54,11 +53,10 @@ def shader_source(name: str) -> str:
     # Listing all names takes longer than reading one, and is left to the error.
     inside = not any(part.startswith((".", "/")) for part in PurePosixPath(name).parts)
     if not inside or not path.is_file():
-        msg = (
+        raise FileNotFoundError(
             f"the shader {name!r} does not exist; expected one of: "
             f"{', '.join(shader_names()) or 'none'}"
         )
-        raise FileNotFoundError(msg)
     return path.read_text(encoding="utf-8")
 
 

@@ -64,8 +64,7 @@ class AppearanceAttributes:
             names = [n for n in dir(type(self)) if not n.startswith("_")]
             setting_hint = f"it is a setting: use settings.{name}"
             hint = setting_hint if name in TABLE else near_names(name, names)
-            msg = f"{type(self).__name__} has no attribute {name!r}; {hint}"
-            raise AttributeError(msg)
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}; {hint}")
         super().__setattr__(name, value)
 
 

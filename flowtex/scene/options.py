@@ -86,8 +86,7 @@ def _read_ends(text: str) -> str | tuple[float, ...]:
         return ROBUST
     low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
     if not low < high:
-        msg = "two numbers, the lower one first"
-        raise UnreadableError(msg)
+        raise UnreadableError("two numbers, the lower one first")
     return low, high
 
 
@@ -191,8 +190,9 @@ class FieldOptions:
         if self.vectors is not None or self.u is None or self.v is None:
             given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
             words = ", ".join(f"{name}={value!r}" for name, value in given.items())
-            msg = f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
+            )
         object.__setattr__(self, "vectors", ",".join(names))
         for name in "uvw":
             object.__setattr__(self, name, None)
@@ -221,18 +221,16 @@ class FieldOptions:
         meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
         if all(isinstance(item, (str, Path)) for item in meshes):
             if "times" in choices:
-                msg = f"times is given, but {str(mesh)!r} already has times; omit it"
-                raise FieldError(msg)
+                raise FieldError(f"times is given, but {str(mesh)!r} already has times; omit it")
             return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
         if not isinstance(mesh, FlowField):
             self._refuse(choices, OF_EARTH, "datasets, but this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
-            msg = (
+            raise FieldError(
                 f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
                 "set it when you make the field"
             )
-            raise FieldError(msg)
         return mesh
 
     def _of_store(
@@ -261,8 +259,7 @@ class FieldOptions:
     @staticmethod
     def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], scope: str) -> None:
         if given := [name for name in names if name in choices]:
-            msg = f"{', '.join(given)} applies to {scope}; omit it"
-            raise FieldError(msg)
+            raise FieldError(f"{', '.join(given)} applies to {scope}; omit it")
 
 
 #: Lines of the Earth that are drawn or not.
@@ -495,18 +492,18 @@ class ViewOptions:
     def __post_init__(self) -> None:
         """Check values that nothing else checks."""
         if self.axes is not None and self.axes not in AXES:
-            msg = f"axes is {brief(self.axes)}; expected {', '.join(map(repr, AXES))}, or None"
-            raise FieldError(msg)
+            raise FieldError(
+                f"axes is {brief(self.axes)}; expected {', '.join(map(repr, AXES))}, or None"
+            )
         if self.background is not None:
             rgb(self.background)
         if hasattr(self.camera, "GetFocalPoint"):
             object.__setattr__(self, "camera", read_camera(self.camera))
         if not (self.beside is None or isinstance(self.beside, Mapping)):
-            msg = (
+            raise FieldError(
                 f"beside is {brief(self.beside)}; expected settings by name, such as "
                 "{'lod': False}"
             )
-            raise FieldError(msg)
 
     @property
     def ground(self) -> Any:
@@ -551,8 +548,7 @@ class Options:
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")
             if noise != "image":
-                msg = f"noise is {noise!r}, but an image is given; omit one of them"
-                raise SettingsError(msg)
+                raise SettingsError(f"noise is {noise!r}, but an image is given; omit one of them")
             values.setdefault("strength", 1.0)
         return Settings(**values)
 
@@ -586,8 +582,7 @@ class Options:
                     near = axis
                 of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
                 near = near or f"help(flowtex.render) has all of them{of_file}"
-                msg = f"the setting or argument {name!r} does not exist; {near}"
-                raise SettingsError(msg)
+                raise SettingsError(f"the setting or argument {name!r} does not exist; {near}")
         if is_array:  # which is read with the mesh, and is no argument of its own
             object.__setattr__(parts["field"], ARRAY, array)
         return cls(**parts, settings=values)

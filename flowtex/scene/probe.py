@@ -196,8 +196,9 @@ def probe(
     if not isinstance(pixel, Camera):
         camera, size = camera_facing(surface, place, pixel), (1, 1)
     elif size is None:
-        msg = "size is None; expected the width and height of the camera's picture, in pixels"
-        raise FieldError(msg)
+        raise FieldError(
+            "size is None; expected the width and height of the camera's picture, in pixels"
+        )
     else:
         camera = pixel
     before, after, between = view.moment
@@ -359,8 +360,9 @@ def cover_place(
     # The shares sum to one, so two of them are free.
     free = by_share[1:] - by_share[0]
     if not abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2:
-        msg = f"the triangle at (j, i) = {place.index} is seen edge-on; expected a visible triangle"
-        raise FieldError(msg)
+        raise FieldError(
+            f"the triangle at (j, i) = {place.index} is seen edge-on; expected a visible triangle"
+        )
     inverse = np.linalg.inv(free)
     shares = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
     first = np.zeros(1, dtype=np.intp)
@@ -375,10 +377,9 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
     triangle has no area.
     """
     if not 0 < pixel < np.inf:
-        msg = (
+        raise FieldError(
             f"pixel is {brief(pixel)}; expected a positive length in the mesh's units, or a Camera"
         )
-        raise FieldError(msg)
     a, b, c = surface.points.reshape(-1, 3)[place.nodes]
     normal = np.cross(b - a, c - a)
     length = float(np.linalg.norm(normal))

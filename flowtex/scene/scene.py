@@ -128,11 +128,10 @@ class Scene:
         """
         field_names = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
         if field_names:
-            msg = (
+            raise FieldError(
                 f"beside has {', '.join(field_names)}, which selects data; both views show the "
                 "same field, so expected settings"
             )
-            raise FieldError(msg)
         field, settings = field or self.field, dict(self.settings)
         if "image" in changes:  # an image keeps its own colours
             del settings["noise"], settings["strength"]
@@ -352,11 +351,10 @@ class Scene:
             scale_of(appearance, self._limits(appearance))
         low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
         if low <= 0:
-            msg = (
+            raise FieldError(
                 f"log_scale is True, but {name!r} ranges from {low:g} to {high:g}; expected values "
                 "above 0: pass clim=(low, high) with low above 0, or omit log_scale"
             )
-            raise FieldError(msg)
 
     def usual_range(self, name: str) -> tuple[float, float]:
         """Return the default range of colours: all values, or robust if there are outliers."""

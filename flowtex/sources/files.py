@@ -153,8 +153,7 @@ def open_file(path: str | Path) -> OpenFile:
         reason = repr(file.suffix) if file.suffix else "no suffix"
         if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
             reason = "not a PLOT3D grid in any layout"
-        msg = f"unknown format ({reason}); expected {_KNOWN_FORMATS}"
-        raise FieldError(msg) from error
+        raise FieldError(f"unknown format ({reason}); expected {_KNOWN_FORMATS}") from error
 
 
 def _check_path(file: Path) -> None:
@@ -214,8 +213,9 @@ def _at_time(source: Any, time: float) -> Any:
                 source.set_active_time_value(value)
                 return source.read()
     listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
-    msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
-    raise FieldError(msg)
+    raise FieldError(
+        f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
+    )
 
 
 def read_files(
@@ -241,8 +241,7 @@ def read_files(
     _check_path(file)
     refuse(chosen, "datasets, but this is a mesh")
     if isinstance(time, str):
-        msg = f"time is {time!r}; expected a number, one of the times of the file"
-        raise FieldError(msg)
+        raise FieldError(f"time is {time!r}; expected a number, one of the times of the file")
     opened = open_file(file)
     if opened.problem:
         raise FieldError(opened.problem)
@@ -258,13 +257,13 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
     if missing := [str(each) for each in path if not Path(each).expanduser().exists()]:
-        msg = f"{', '.join(missing)}: no such file; check the path and the working directory"
-        raise FieldError(msg)
-    msg = (
+        raise FieldError(
+            f"{', '.join(missing)}: no such file; check the path and the working directory"
+        )
+    raise FieldError(
         f"{len(path)} files are given, but several are read only as datasets; for the steps of a "
         "mesh give a .pvd file, or in Python a list of meshes"
     )
-    raise FieldError(msg)
 
 
 def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
@@ -276,8 +275,7 @@ def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager
 def refuse(choices: Mapping[str, Any], subject: str) -> None:
     """Raise a FieldError for options that apply to other data."""
     if names := [name for name, value in choices.items() if value not in (None, False)]:
-        msg = f"{', '.join(names)} applies to {subject}; omit it"
-        raise FieldError(msg)
+        raise FieldError(f"{', '.join(names)} applies to {subject}; omit it")
 
 
 def file_identity(paths: Iterable[Path]) -> Identity:

@@ -127,8 +127,7 @@ class Source:
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, in the form of :attr:`default_plane`."""
-        msg = f"level is {level!r}; expected a dataset, but this is a mesh"
-        raise FieldError(msg)
+        raise FieldError(f"level is {level!r}; expected a dataset, but this is a mesh")
 
     def field(
         self,
@@ -221,8 +220,7 @@ class FlowSource(Source):
             block = self.blocks[int(block)] if block not in self.blocks else block
         block = block or self.blocks[0]
         if block not in self.blocks:
-            msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
-            raise FieldError(msg)
+            raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
         # Pages share a source, and there is one reader.
         with self._lock, self._errors():
             if block not in self._parts:
@@ -332,8 +330,7 @@ class DatasetSource(Source):
     def part(self, block: str | None = None) -> Source:
         """Return this source, which draws on any of the maps."""
         if block is not None and block not in self.blocks:
-            msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
-            raise FieldError(msg)
+            raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
         return self
 
     def _field(

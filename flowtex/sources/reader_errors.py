@@ -95,17 +95,14 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     if catcher and catcher.error_events:
         # VTK continues after an error with partial data, or none: this is the cause.
         first = _first_line(catcher.error_events[0].alert)
-        msg = (
+        raise FieldError(
             f"{file}: the file is damaged, incomplete, or not of this format. VTK reports: {first}"
-        )
-        raise FieldError(msg) from cause
+        ) from cause
     if isinstance(cause, FieldError):
-        msg = f"{file}: {cause}"
-        raise FieldError(msg) from cause
+        raise FieldError(f"{file}: {cause}") from cause
     if cause is not None:
         reason = str(cause) or type(cause).__name__
-        msg = f"{file}: cannot be read: {reason}"
-        raise FieldError(msg) from cause
+        raise FieldError(f"{file}: cannot be read: {reason}") from cause
     warnings = catcher.warning_events if catcher else []
     for warning in dict.fromkeys(_first_line(event.alert) for event in warnings):
         notify(f"{file}: VTK reports: {warning}", UserWarning)
@@ -169,19 +166,17 @@ def check_attributes(attributes: Any) -> None:
 
 
 def _refuse(program: str) -> None:
-    msg = f"this is {REMEDIES[program]}"
-    raise FieldError(msg)
+    raise FieldError(f"this is {REMEDIES[program]}")
 
 
 def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
     """Raise a FieldError if a file has less than it declares."""
     if found < declared:
-        msg = (
+        raise FieldError(
             f"the file is truncated or damaged: {what} declares {_text(declared)} {unit}, but the "
             f"file has {max(found, 0):,}, and {_text(declared - max(found, 0))} are missing; "
             "write or copy it again"
         )
-        raise FieldError(msg)
 
 
 def check_memory(nbytes: int, what: str) -> None:
@@ -190,12 +185,11 @@ def check_memory(nbytes: int, what: str) -> None:
         return
     budget = int(available_bytes() * MEMORY_SHARE)
     if nbytes > budget:
-        msg = (
+        raise FieldError(
             f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
             "available for data; write a part or a coarser version to a separate file, or read "
             "it on a machine with more memory"
         )
-        raise FieldError(msg)
 
 
 def size_text(nbytes: int) -> str:

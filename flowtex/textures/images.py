@@ -52,14 +52,11 @@ def as_picture(image: Any) -> Floats32:
     try:
         array = np.asarray(image)
     except ValueError as error:
-        msg = f"the image is not an array ({error}); expected {SHAPES}"
-        raise ImageError(msg) from error
+        raise ImageError(f"the image is not an array ({error}); expected {SHAPES}") from error
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] not in (3, 4)):
-        msg = f"the image has shape {array.shape}; expected {SHAPES}"
-        raise ImageError(msg)
+        raise ImageError(f"the image has shape {array.shape}; expected {SHAPES}")
     if array.size == 0:
-        msg = f"the image is empty, of shape {array.shape}; expected at least one pixel"
-        raise ImageError(msg)
+        raise ImageError(f"the image is empty, of shape {array.shape}; expected at least one pixel")
     values = _fractions(array).reshape(*array.shape[:2], -1)
     channels = values.shape[-1]
     picture = np.ones((*values.shape[:2], 4), np.float32)
@@ -85,19 +82,18 @@ def _fractions(array: AnyArray) -> Floats32:
     if array.dtype.kind == "u":
         return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
     if array.dtype.kind != "f":
-        msg = f"the image holds {array.dtype}; expected uint8, or floats from 0 to 1"
-        raise ImageError(msg)
+        raise ImageError(f"the image holds {array.dtype}; expected uint8, or floats from 0 to 1")
     bad = int((~np.isfinite(array)).sum())
     if bad:
-        msg = f"the image has {bad} values that are NaN or infinite; replace them, for example by 0"
-        raise ImageError(msg)
+        raise ImageError(
+            f"the image has {bad} values that are NaN or infinite; replace them, for example by 0"
+        )
     low, high = float(array.min()), float(array.max())
     if low < -SLACK or high > 1 + SLACK:
-        msg = (
+        raise ImageError(
             f"the image's floats range from {low:g} to {high:g}; expected 0 to 1: divide by the "
             "maximum, or pass uint8"
         )
-        raise ImageError(msg)
     return np.asarray(np.clip(array, 0, 1), np.float32)
 
 
@@ -132,8 +128,7 @@ def load_image(image: Any) -> Any:
     path = Path(image).expanduser()
     if not path.is_file():
         problem = "is a folder" if path.is_dir() else "the file does not exist"
-        msg = f"{image}: {problem}; expected a picture, such as a PNG or a JPEG"
-        raise ImageError(msg)
+        raise ImageError(f"{image}: {problem}; expected a picture, such as a PNG or a JPEG")
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     try:
@@ -143,14 +138,17 @@ def load_image(image: Any) -> Any:
             with Image.open(path) as opened:
                 return pixels_of(ImageOps.exif_transpose(opened))
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
-        msg = f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
-        raise ImageError(msg) from error
+        raise ImageError(
+            f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
+        ) from error
     except UnidentifiedImageError as error:
-        msg = f"{path}: the picture cannot be read; expected a format such as PNG or JPEG"
-        raise ImageError(msg) from error
+        raise ImageError(
+            f"{path}: the picture cannot be read; expected a format such as PNG or JPEG"
+        ) from error
     except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
-        msg = f"{path}: cannot be read ({error}); pass another picture, or an array"
-        raise ImageError(msg) from error
+        raise ImageError(
+            f"{path}: cannot be read ({error}); pass another picture, or an array"
+        ) from error
 
 
 def pixels_of(picture: Image) -> AnyArray:

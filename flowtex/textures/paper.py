@@ -78,8 +78,9 @@ class PaperTextures:
         if settings.noise == "image" and image is not None:
             noise = image
         elif settings.noise != "texture":
-            msg = f"pattern is {settings.noise!r}; expected 'texture', or 'image' with an image"
-            raise FieldError(msg)
+            raise FieldError(
+                f"pattern is {settings.noise!r}; expected 'texture', or 'image' with an image"
+            )
         elif corrected:
             noise = _unit(_even_noise(field, index, size, seed))
         else:

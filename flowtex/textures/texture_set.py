@@ -86,15 +86,15 @@ class TextureSet:
         field = store.field
         check_noise(field, settings.noise)
         if store.unit.shape != field.shape:
-            msg = (
+            raise FieldError(
                 f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
                 "slices traced in this field"
             )
-            raise FieldError(msg)
         least = UNCERTAIN_LAYER if field.uncertainty else 2
         if not least <= len(store.lags) <= MOST_LAGS:
-            msg = f"{len(store.lags)} lags were traced; drawing needs {least} to {MOST_LAGS}"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{len(store.lags)} lags were traced; drawing needs {least} to {MOST_LAGS}"
+            )
         if geometry is None:
             kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
             geometry = kind.of(field)
@@ -105,11 +105,10 @@ class TextureSet:
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture."""
         if self.paper is None:
-            msg = (
+            raise FieldError(
                 "an image replaces a noise texture, but this texture set has none; expected "
                 "noise='image'"
             )
-            raise FieldError(msg)
         return replace(self, paper=self.paper.with_image(image))
 
     def same_paths(self, other: TextureSet) -> bool:
@@ -303,12 +302,11 @@ class TextureSet:
 def check_noise(field: FlowField, noise: str) -> None:
     """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
     if noise != "procedural" and field.triangles is not None:
-        msg = (
+        raise SettingsError(
             f"noise is {noise!r}, which needs the rows and columns of a structured surface, but "
             "this surface consists of triangles; expected noise='procedural', or a structured "
             "mesh"
         )
-        raise SettingsError(msg)
 
 
 class LayerPrefetch:

@@ -173,8 +173,7 @@ class TraceSlices:
         sign, data, reach = -1.0, self.displacement, self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
-                msg = "the slices have no forward side: trace with two_sided=True"
-                raise FieldError(msg)
+                raise FieldError("the slices have no forward side: trace with two_sided=True")
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
         knots = np.concatenate([[0.0], self.lags])

@@ -64,8 +64,7 @@ class SliceStore:
         nodes: Bools | None = None,
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
-            msg = "the slices have only the backward side; a sign-free field needs both"
-            raise FieldError(msg)
+            raise FieldError("the slices have only the backward side; a sign-free field needs both")
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"

@@ -134,14 +134,14 @@ def trace(
     lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
     units = lag_unit(field, parameter) if unit is None else _checked_unit(field, unit)
     if not (np.isfinite(units).all() and (units > 0).all()):
-        msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
-        raise FieldError(msg)
+        raise FieldError(
+            f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
+        )
     if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
-        msg = (
+        raise FieldError(
             f"lags range from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
             f"{MOST_LAG:g}, because of single precision: choose a unit of their size"
         )
-        raise FieldError(msg)
     expected = "a positive number of cells, such as 1e-3"
     tolerance = checked_number("tolerance", tolerance, np.nextafter(0, 1), expected=expected)
     step_numbers = _step_numbers(field, steps)
@@ -244,14 +244,14 @@ def paths(
 def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
     """Raise a FieldError for arguments that have no meaning in a sign-free field."""
     if field.sign_free and not two_sided:
-        msg = "two_sided is False; expected True, because a sign-free field has two equal sides"
-        raise FieldError(msg)
+        raise FieldError(
+            "two_sided is False; expected True, because a sign-free field has two equal sides"
+        )
     if field.sign_free and compose:
-        msg = (
+        raise FieldError(
             "compose is True; expected False or None, because paths of a sign-free field cannot "
             "be composed between nodes of opposite sign"
         )
-        raise FieldError(msg)
 
 
 def _step_numbers(field: FlowField, steps: Any) -> list[int]:
@@ -260,8 +260,7 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
         return list(range(len(field.times)))
     numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
     if not numbers:
-        msg = f"steps is {brief(steps)}; expected numbers of time steps, such as [0]"
-        raise FieldError(msg)
+        raise FieldError(f"steps is {brief(steps)}; expected numbers of time steps, such as [0]")
     return numbers
 
 
@@ -286,8 +285,7 @@ def _threads() -> Iterator[Map]:
 
 def _parameter(field: FlowField, parameter: str) -> str:
     if parameter not in ("arclength", "time"):
-        msg = f'parameter is {brief(parameter)}; expected "arclength" or "time"'
-        raise FieldError(msg)
+        raise FieldError(f'parameter is {brief(parameter)}; expected "arclength" or "time"')
     return parameter if field.steady else "time"
 
 
@@ -301,8 +299,7 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(checked_array("lags", lags, expected=expected))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
     if lag_values.ndim != 1 or not lag_values.size or not good.all():
-        msg = f"lags is {brief(lags)}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"lags is {brief(lags)}; expected {expected}")
     return lag_values
 
 
@@ -310,16 +307,14 @@ def _checked_unit(field: FlowField, unit: ArrayLike) -> Floats:
     expected = f"a number, or one for each node, of shape {field.shape}"
     units = checked_array("unit", unit, expected=expected)
     if units.shape not in ((), field.shape):
-        msg = f"unit has shape {units.shape}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"unit has shape {units.shape}; expected {expected}")
     return np.array(np.broadcast_to(units, field.shape))
 
 
 def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
     chosen: Bools = checked_array("nodes", nodes, expected="a mask of the nodes") != 0
     if chosen.shape != field.shape:
-        msg = f"nodes has shape {chosen.shape}; expected {field.shape} as the field has"
-        raise FieldError(msg)
+        raise FieldError(f"nodes has shape {chosen.shape}; expected {field.shape} as the field has")
     return chosen
 
 

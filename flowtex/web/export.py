@@ -154,8 +154,9 @@ def export(
     """
     path = checked_target(path)
     if path.suffix.lower() not in SUFFIXES:
-        msg = f"path is {str(path)!r}; expected a name that ends in {', '.join(SUFFIXES)}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"path is {str(path)!r}; expected a name that ends in {', '.join(SUFFIXES)}"
+        )
     shown, arguments = browser_options(mesh, **options)
     views = web_views(shown, arguments, steps=steps)
     try:
@@ -414,16 +415,14 @@ class StoreLink:
     def of(cls, text: str) -> StoreLink:
         """Return the link of an address; a FieldError if it is unreadable or contains secrets."""
         if not isinstance(text, str):
-            msg = f"store is {text!r}; expected an address, such as './flow.zarr'"
-            raise FieldError(msg)
+            raise FieldError(f"store is {text!r}; expected an address, such as './flow.zarr'")
         parts = urlsplit(text)
         if parts.query or parts.fragment or "@" in parts.netloc:
-            msg = (
+            raise FieldError(
                 "the address of the store contains a name, a password, a signature or another "
                 "query, which everyone could read in the page; give the address alone, and grant "
                 "read access to everyone who may see the page"
             )
-            raise FieldError(msg)
         if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", text):
             return cls(text, "'self'")
         try:
@@ -434,8 +433,7 @@ class StoreLink:
             hint = (
                 "; s3:// and other object storage have such an address too" if "://" in text else ""
             )
-            msg = f"store is {text!r}; {EXPECTED}{hint}"
-            raise FieldError(msg)
+            raise FieldError(f"store is {text!r}; {EXPECTED}{hint}")
         return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
 
 
@@ -476,51 +474,46 @@ def _stored(view: WebView) -> StoredPyramid:
     scene = view.scene
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":
-        msg = (
+        raise FieldError(
             f"store is given, but tiles cannot be drawn with noise {scene.settings.noise!r}; omit "
             "one of them"
         )
-        raise FieldError(msg)
     pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
     if not isinstance(pyramid, StoredPyramid) or "fingerprint" not in pyramid.about:
         place = pyramid.about["place"] if isinstance(pyramid, StoredPyramid) else "FILE"
-        msg = (
+        raise FieldError(
             "store is given, but the flow is not read from a flowtex store, and only such a "
             f"store has tiles for browsers. Build it with `flowtex pyramid {place} -o flow.zarr` "
             "and export that, or omit store for a page with as many levels as fit"
         )
-        raise FieldError(msg)
     about = pyramid.about
     if (pyramid.parameter, pyramid.lines) != (about["parameter"], about["lines"]):
-        msg = (
+        raise FieldError(
             f"the store has paths with parameter={about['parameter']!r} along {about['lines']}; "
             f"expected {pyramid.parameter!r} along {pyramid.lines}. Export with the settings of "
             "the store, or build another"
         )
-        raise FieldError(msg)
     return pyramid
 
 
 def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None:
     """Raise a FieldError when a map has no style, or cannot show the views of a page."""
     if path.suffix.lower() not in (".html", ".htm"):
-        msg = f"basemap is given, and path is {path.name!r}; expected a page, such as 'map.html'"
-        raise FieldError(msg)
+        raise FieldError(
+            f"basemap is given, and path is {path.name!r}; expected a page, such as 'map.html'"
+        )
     is_address = isinstance(basemap, str) and urlsplit(basemap).scheme in ("http", "https")
     if not is_address and not (isinstance(basemap, Mapping) and "layers" in basemap):
-        msg = (
+        raise FieldError(
             f"basemap is {basemap!r}; expected the address of a style of MapLibre, such as "
             "'https://demotiles.maplibre.org/style.json', or a style as a dictionary"
         )
-        raise FieldError(msg)
     projection = views[0].scene.field.projection
     if projection is None or projection.family != "mercator":
         shown = "no map" if projection is None else f"the map {projection.name!r}"
-        msg = (
+        raise FieldError(
             f"basemap is given, but the flow is on {shown}; web maps are in Mercator's projection: "
             "give projection='mercator', or build the store with it"
         )
-        raise FieldError(msg)
     if len(views) > 1:
-        msg = "basemap is given, but beside makes two views; omit one of them"
-        raise FieldError(msg)
+        raise FieldError("basemap is given, but beside makes two views; omit one of them")

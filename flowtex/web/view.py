@@ -316,8 +316,7 @@ class TileSource:
 def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
     """Return a tile; slices that are sent have a halo large enough for these steps."""
     if scene.pyramid is None:
-        msg = f"tile {tuple(key)} does not exist: the surface is sent as a whole"
-        raise LookupError(msg)
+        raise LookupError(f"tile {tuple(key)} does not exist: the surface is sent as a whole")
     if scene.traced:
         return _Tile(scene.pyramid.textures(key), None)
     textures = scene.pyramid.tile(key, [scene.source(step) for step in steps])
@@ -328,11 +327,10 @@ def asset(name: str) -> Path:
     """Return the path of one of the client's files, such as ``"core.js"``."""
     path = Path(__file__).resolve().parent / name
     if not path.is_file():
-        msg = (
+        raise FileNotFoundError(
             f"{path} is missing. Install flowtex again: "
             "python -m pip install --force-reinstall --no-deps flowtex"
         )
-        raise FileNotFoundError(msg)
     return path
 
 

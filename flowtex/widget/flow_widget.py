@@ -78,8 +78,9 @@ class SizeTrait(traitlets.TraitType[list[int], Any]):
         except (TypeError, ValueError):
             width, height = -1, 0
         if not (0 <= width <= 16384 and 1 <= height <= 16384):
-            msg = f"size is {value!r}; expected (width, height) in pixels, or (0, height)"
-            raise FieldError(msg)
+            raise FieldError(
+                f"size is {value!r}; expected (width, height) in pixels, or (0, height)"
+            )
         return [width, height]
 
 
@@ -340,8 +341,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         first, last = float(times[0]), float(times[-1])
         slack = SLACK * (last - first)
         if not first - slack <= value <= last + slack:
-            msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
-            raise TraitValueError(msg)
+            raise TraitValueError(
+                f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
+            )
         return min(max(value, first), last)
 
     @traitlets.validate("point")

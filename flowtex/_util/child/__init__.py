@@ -207,8 +207,7 @@ def _value(header: dict[str, Any], memory: int) -> Any:
     if kind == "Stopped":
         raise Stopped
     if kind == "MemoryError":
-        msg = f"needs more than {memory / 1e9:.1f} GB of memory"
-        raise ChildError(msg)
+        raise ChildError(f"needs more than {memory / 1e9:.1f} GB of memory")
     trace = "".join(c for c in str(header.get("trace", "")) if c.isprintable() or c == "\n")
     raise ChildError(text, str(kind), trace)
 
@@ -228,8 +227,7 @@ def _listen(
                 header, arrays = message
                 number = header.get("number") if isinstance(header, dict) else None
                 if number not in waiting:
-                    msg = f"an answer to request {number!r}, which was not sent"
-                    raise MessageError(msg)
+                    raise MessageError(f"an answer to request {number!r}, which was not sent")
                 waiting.discard(number)
                 answers.put((header, [] if number in stale else arrays))
     except (MessageError, OSError, MemoryError) as error:
@@ -290,8 +288,7 @@ def _spawned(entry: str, memory: int, _preload: tuple[str, ...], lasting: bool) 
     )
     requests, answers = process.stdin, process.stdout
     if requests is None or answers is None:
-        msg = "a process has no pipes"
-        raise OSError(msg)
+        raise OSError("a process has no pipes")
 
     def end() -> None:
         process.kill()

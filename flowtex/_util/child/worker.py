@@ -140,8 +140,9 @@ def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()
     infos = [[array.dtype.str, np.shape(array)] for array in arrays]
     header = json.dumps({"value": value, "arrays": infos}).encode()
     if len(header) > HEADER_BYTES:
-        msg = f"the header of a message has {len(header):,} bytes; expected {HEADER_BYTES:,}"
-        raise MessageError(msg)
+        raise MessageError(
+            f"the header of a message has {len(header):,} bytes; expected {HEADER_BYTES:,}"
+        )
     stream.write(_PREFIX.pack(len(header)) + header)
     for array in contiguous:
         stream.write(array.reshape(-1).view(np.uint8).data)
@@ -155,8 +156,9 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         return None
     (length,) = _PREFIX.unpack(prefix)
     if length > HEADER_BYTES:
-        msg = f"the header of a message has {length:,} bytes; expected {HEADER_BYTES:,} at most"
-        raise MessageError(msg)
+        raise MessageError(
+            f"the header of a message has {length:,} bytes; expected {HEADER_BYTES:,} at most"
+        )
     header = bytearray(length)
     if not _fill(stream, memoryview(header)):
         return None
@@ -165,12 +167,12 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         value, infos = message["value"], message["arrays"]
         types = [(_type(kind), _shape(shape)) for kind, shape in infos]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        msg = f"the header of a message is malformed: {error}"
-        raise MessageError(msg) from error
+        raise MessageError(f"the header of a message is malformed: {error}") from error
     size = sum(kind.itemsize * math.prod(shape) for kind, shape in types)
     if size > most_bytes:
-        msg = f"a message declares {size:,} bytes of arrays; expected {most_bytes:,} at most"
-        raise MessageError(msg)
+        raise MessageError(
+            f"a message declares {size:,} bytes of arrays; expected {most_bytes:,} at most"
+        )
     arrays: list[AnyArray] = []
     for kind, shape in types:
         arrays.append(np.empty(shape, kind))
@@ -181,16 +183,14 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
 
 def _type(text: Any) -> np.dtype[Any]:
     if not _TYPE.fullmatch(text):
-        msg = f"the type {text!r} of an array"
-        raise ValueError(msg)
+        raise ValueError(f"the type {text!r} of an array")
     kind: np.dtype[Any] = np.dtype(text)
     return kind
 
 
 def _shape(sizes: Any) -> tuple[int, ...]:
     if not all(type(n) is int and n >= 0 for n in sizes):
-        msg = f"the shape {sizes!r} of an array"
-        raise ValueError(msg)
+        raise ValueError(f"the shape {sizes!r} of an array")
     return tuple(sizes)
 
 

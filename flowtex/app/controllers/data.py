@@ -439,11 +439,10 @@ class FileBeside(Controller):
         """Show a flow in the second pane."""
         units = [field.length_unit for field in (self.viewport.field, flow.field)]
         if all(units) and units[0] != units[1]:
-            msg = (
+            raise FieldError(
                 f"{request.name} is in {units[1]} and {self._data.name} in {units[0]}; expected "
                 "the same unit of length in both files, because they share one camera"
             )
-            raise FieldError(msg)
         self._name, self._choice, self._flow = request.name, choice, flow
         self.area.element.names = self._names()
         if self.viewport.differences.get("field") is not flow.field:

@@ -169,8 +169,9 @@ class Library:
             prepare_readers()
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
-            msg = f"{folder}: the folder has no file that can be opened; expected {endings}"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{folder}: the folder has no file that can be opened; expected {endings}"
+            )
 
     def branch(self) -> Library:
         """Return a library of the same flows, to which a page can add its own."""
@@ -247,8 +248,7 @@ class Library:
             if self._is_line(name):
                 return lambda: FlowSource(line_field(name))
             label = repr(shortened(name, 80))
-            msg = f"the file {label} is not among those that may be opened here"
-            raise FieldError(msg)
+            raise FieldError(f"the file {label} is not among those that may be opened here")
         return opener
 
     def _is_line(self, name: str) -> bool:

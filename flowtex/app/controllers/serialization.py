@@ -83,11 +83,10 @@ def to_link(state: State) -> str:
     ]
     for name, value in (state.get("settings") or {}).items():
         if name not in TABLE:
-            msg = (
+            raise SettingsError(
                 f"the setting {name!r} of a link does not exist; expected one of: "
                 f"{', '.join(TABLE)}"
             )
-            raise SettingsError(msg)
         # An image is a person's own; a link has no room for it.
         if value not in (TABLE[name].default, "image"):
             pairs.append((name, TABLE[name].format(value)))
@@ -146,8 +145,7 @@ def _one_of(*choices: str) -> Form:
 
 def _name(text: str) -> str:
     if not text.isprintable() or len(text) > NAME_LENGTH:
-        msg = f"a name of at most {NAME_LENGTH} printable characters"
-        raise UnreadableError(msg)
+        raise UnreadableError(f"a name of at most {NAME_LENGTH} printable characters")
     return text
 
 
@@ -226,8 +224,9 @@ def to_python(
 
 def _from_file(state: State) -> str:
     if not state.get("file"):
-        msg = "the state has no file; pass the expression that makes its field as source"
-        raise FieldError(msg)
+        raise FieldError(
+            "the state has no file; pass the expression that makes its field as source"
+        )
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
     axis, _, number = values.get("plane", "").partition("=")
     if is_dataset_file(Path(str(state["file"]))):

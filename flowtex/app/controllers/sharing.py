@@ -127,8 +127,7 @@ class Sharing(Controller):
         get = self.state.get
         kind = get("out_format")
         if kind not in FORMATS:
-            msg = f"the format is {kind!r}; expected {', '.join(FORMATS)}"
-            raise ExportError(msg)
+            raise ExportError(f"the format is {kind!r}; expected {', '.join(FORMATS)}")
         path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
         try:
             size = (int(self._number("out_width")), int(self._number("out_height")))
@@ -149,8 +148,7 @@ class Sharing(Controller):
         value = self.state.get(name)
         checked = number(value)
         if checked is None:
-            msg = f"{LABELS[name]} is {value!r}; expected a number"
-            raise ExportError(msg)
+            raise ExportError(f"{LABELS[name]} is {value!r}; expected a number")
         return checked
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
@@ -359,8 +357,7 @@ class Job:
             if self.cancelled:
                 raise Stopped
         if picture is None:
-            msg = "the size is empty; expected at least one pixel"
-            raise ExportError(msg)
+            raise ExportError("the size is empty; expected at least one pixel")
         if self._annotations:
             tiled.annotate(picture)
         return picture
@@ -414,8 +411,9 @@ class MovieJob(Job):
         super().__init__(viewport, path, size, **options)
         if size[0] * size[1] > MOST_MOVIE_PIXELS:
             label = f"the movie would be {size[0]} x {size[1]}"
-            msg = f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
-            raise MovieError(msg)
+            raise MovieError(
+                f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
+            )
         fps = default_fps(path) if fps is None else fps
         check_movie(path, size, fps, quality)
         self._quality = quality

@@ -86,8 +86,9 @@ class Routes:
     def give(self, name: str, content: Give) -> str:
         """Serve a file, whose content is called at each request; return its address."""
         if not name or "/" in name:
-            msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
-            raise FieldError(msg)
+            raise FieldError(
+                f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
+            )
         self._content[name] = content
         return f"flowtex/{self.token}/{quote(name)}"
 
@@ -204,8 +205,7 @@ class Downloads:
     def add(self, path: Path) -> str:
         """Serve a file from :meth:`reserve`; return its address, relative to the page."""
         if not path.resolve().is_relative_to(self.folder.resolve()):
-            msg = f"{path} is outside {self.folder}; expected a file from reserve()"
-            raise FieldError(msg)
+            raise FieldError(f"{path} is outside {self.folder}; expected a file from reserve()")
         for oldest in list(self._files)[: 1 - MOST_DOWNLOADS]:
             self.remove(oldest)
         token = new_secret()
@@ -263,20 +263,19 @@ class Uploads:
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
             endings = ", ".join(UPLOAD_SUFFIXES)
-            msg = f"{name}: this format cannot be uploaded; expected one of {endings}"
-            raise FieldError(msg)
+            raise FieldError(f"{name}: this format cannot be uploaded; expected one of {endings}")
         if len(list(self.folder.glob("*"))) >= MOST_UPLOADS:
-            msg = (
+            raise FieldError(
                 f"{name}: {MOST_UPLOADS} files have been uploaded already; reload the page to "
                 "upload more"
             )
-            raise FieldError(msg)
         prepare_readers()
         try:
             path = await self._write(name, content)
         except OSError as error:
-            msg = f"{name}: cannot be stored on the server ({error.strerror or error})"
-            raise FieldError(msg) from error
+            raise FieldError(
+                f"{name}: cannot be stored on the server ({error.strerror or error})"
+            ) from error
         self._arrived(name, path)
 
     async def _write(self, name: str, content: AsyncIterable[bytes]) -> Path:
@@ -288,11 +287,10 @@ class Uploads:
                 async for part in content:
                     size += len(part)
                     if size > UPLOAD_BYTES:
-                        msg = (
+                        raise FieldError(
                             f"{name}: the file is too large; expected {UPLOAD_BYTES / 1e6:g} MB "
                             "at most"
                         )
-                        raise FieldError(msg)
                     await asyncio.to_thread(file.write, part)
         except BaseException:
             shutil.rmtree(path.parent, ignore_errors=True)

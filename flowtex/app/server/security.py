@@ -81,11 +81,10 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
         names.append(ANY)
     for name in allowed:
         if name != ANY and not re.fullmatch(r"[\w.-]+", name):
-            msg = (
+            raise FieldError(
                 f"allow_host is {name!r}; expected a host name without scheme and port, such as "
                 f"'flow.example.org', or {ANY!r} for any"
             )
-            raise FieldError(msg)
         names.append(name)
     return frozenset(name.lower() for name in names)
 

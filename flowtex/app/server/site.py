@@ -101,8 +101,7 @@ class Site:
     async def listen(self, endpoint: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
         """Admit pages, after :meth:`prepare`, at a host and port, or on a listening socket."""
         if self._server is None:
-            msg = "the site is not prepared; call prepare() first"
-            raise RuntimeError(msg)
+            raise RuntimeError("the site is not prepared; call prepare() first")
         self.port = await self._server.start(endpoint)
         self._sweep = asyncio.create_task(self.sessions.sweep())
 
@@ -271,11 +270,10 @@ async def serve_until_ended(
         try:
             port = await listen()
         except OSError as error:
-            msg = (
+            raise ServeError(
                 f"cannot listen on {host}:{port} ({error.strerror or error}); choose another "
                 "port, or 0 for a free one"
-            )
-            raise ServeError(msg) from error
+            ) from error
         address = f"http://{_host_name(host)}:{port}/{rest}"
         announce(address)
         if open_browser:

@@ -73,8 +73,7 @@ class ServedStore:
             except Exception as error:
                 if isinstance(error, FileNotFoundError) or is_refused(error):
                     raise LookupError(name) from None
-                msg = f"{name} {fault_words(error)}"
-                raise ReadFault(msg) from None
+                raise ReadFault(f"{name} {fault_words(error)}") from None
 
 
 def store_application(

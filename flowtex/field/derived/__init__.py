@@ -35,8 +35,9 @@ LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 def derived_steps(name: str, field: Any) -> Steps:
     """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data."""
     if name not in DERIVED:
-        msg = f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
+        )
     surface, projection, compute = field.surface, field.projection, DERIVED[name]
     whole = node_gradient(surface, projection)
 
@@ -75,11 +76,11 @@ def steps_of(field: Any, name: str) -> Steps:
 def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
     """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I)."""
     if name not in FOLLOWED:
-        msg = f"horizon={horizon} is given for {name!r}; only {', '.join(FOLLOWED)} uses it"
-        raise FieldError(msg)
+        raise FieldError(
+            f"horizon={horizon} is given for {name!r}; only {', '.join(FOLLOWED)} uses it"
+        )
     if horizon is None or not (np.isfinite(horizon) and horizon != 0):
-        msg = f"horizon is {horizon} for {name!r}; expected a time other than 0"
-        raise FieldError(msg)
+        raise FieldError(f"horizon is {horizon} for {name!r}; expected a time other than 0")
     return FOLLOWED[name](field, horizon)
 
 

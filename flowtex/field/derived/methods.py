@@ -55,8 +55,7 @@ class FieldQuantities:
         """
         field: Any = self
         if field.sign_free:
-            msg = f"{name} needs a direction, but this field is sign-free"
-            raise FieldError(msg)
+            raise FieldError(f"{name} needs a direction, but this field is sign-free")
         if horizon is not None or name in FOLLOWED:
             return followed_steps(name, field, horizon)
         return derived_steps(name, field)
@@ -111,7 +110,6 @@ class FieldQuantities:
         field: Any = self
         if field.projection is not None and z is not None:
             if time is not None:
-                msg = f"z is {z}, but the field lies on the Earth; omit z"
-                raise FieldError(msg)
+                raise FieldError(f"z is {z}, but the field lies on the Earth; omit z")
             z, time = None, z
         return point_at(field, (x, y) if z is None else (x, y, z), time)

@@ -200,19 +200,17 @@ class Projection:
         try:
             crs: CRS = pyproj.CRS.from_user_input(text)
             if not crs.is_projected:
-                msg = (
+                raise ProjectionError(
                     f"the projection {self.name!r} is in degrees; expected one in metres: "
                     f"{', '.join((GLOBE, *NAMES))}, or a PROJ string"
                 )
-                raise ProjectionError(msg)
             return crs
         except pyproj.exceptions.ProjError as error:
-            msg = (
+            raise ProjectionError(
                 f"the projection {self.name!r} is unknown; expected one of "
                 f"{', '.join((GLOBE, *NAMES))}, or a PROJ string such as 'EPSG:3413' or "
                 "'+proj=laea +lat_0=52 +lon_0=10'"
-            )
-            raise ProjectionError(msg) from error
+            ) from error
 
     @cached_property
     def _transform(self) -> Transformer:

@@ -174,8 +174,9 @@ class Expression:
         elif callable(source):
             return cls._function(source, names)
         else:
-            msg = f"an expression is {source!r}; expected a text, such as '-sin(x)', or a function"
-            raise FormulaError(msg)
+            raise FormulaError(
+                f"an expression is {source!r}; expected a text, such as '-sin(x)', or a function"
+            )
         return cls(str(source), tree, lambda values: evaluate(tree, values))
 
     @classmethod
@@ -187,8 +188,7 @@ class Expression:
             inputs = ("?",)
         for name in inputs:
             if name not in names:
-                msg = f"the function {text} takes {name}; {near_names(name, names)}"
-                raise FormulaError(msg)
+                raise FormulaError(f"the function {text} takes {name}; {near_names(name, names)}")
         return cls(text, None, lambda values: function(**{name: values[name] for name in inputs}))
 
 
@@ -238,15 +238,16 @@ class Formula:
                 if places
                 else "two, the rates of x and y"
             )
-            msg = f"{len(expressions)} expressions are given; expected {expected}"
-            raise FieldError(msg)
+            raise FieldError(f"{len(expressions)} expressions are given; expected {expected}")
         for name, ends in ranges.items():
             if ends is not None and name not in defaults:
-                msg = f"{name} has a range, but the coordinates here are {' and '.join(defaults)}"
-                raise FieldError(msg)
+                raise FieldError(
+                    f"{name} has a range, but the coordinates here are {' and '.join(defaults)}"
+                )
         if taken := [name for name in parameters if name in VARIABLES]:
-            msg = f"{taken[0]} is a coordinate or the time; give the parameter another name"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{taken[0]} is a coordinate or the time; give the parameter another name"
+            )
         read = {name: Parameter.of(name, value) for name, value in parameters.items()}
         names = (*defaults, *read)
         values = (*names, *("xyz" if places else ""), *("t" if timed else ""))
@@ -313,8 +314,9 @@ def _values(expressions: tuple[Expression, ...], values: Values) -> Floats:
             try:
                 result[..., k] = each.values(values)
             except (TypeError, ValueError) as error:
-                msg = f"{each.text} does not return numbers at nodes of shape {shape}: {error}"
-                raise FormulaError(msg) from error
+                raise FormulaError(
+                    f"{each.text} does not return numbers at nodes of shape {shape}: {error}"
+                ) from error
         result[~(np.abs(result) < MOST)] = np.nan
     return result
 
@@ -326,12 +328,14 @@ def _surface(surface: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, f
     if isinstance(surface, str):
         if surface in SURFACES:
             return SURFACES[surface]
-        msg = f"surface is {surface!r}; {near_names(surface, SURFACES)}, or give three expressions"
-        raise FieldError(msg)
+        raise FieldError(
+            f"surface is {surface!r}; {near_names(surface, SURFACES)}, or give three expressions"
+        )
     if not isinstance(surface, (tuple, list)) or len(surface) != COMPONENTS:
         names = ", ".join(SURFACES)
-        msg = f"surface is {surface!r}; expected x, y and z of u and v, or one of {names}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"surface is {surface!r}; expected x, y and z of u and v, or one of {names}"
+        )
     return tuple(surface), {"u": RANGE, "v": RANGE}
 
 
@@ -341,8 +345,9 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
     except (TypeError, ValueError, OverflowError):
         low = high = np.nan
     if not (low < high and abs(low) < MOST and abs(high) < MOST):
-        msg = f"{name} is {ends!r}; expected two numbers, the lower one first, such as (-7, 7)"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{name} is {ends!r}; expected two numbers, the lower one first, such as (-7, 7)"
+        )
     return low, high
 
 
@@ -358,23 +363,22 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     """
     kind = type(expression).__name__
     if depth > MOST_DEPTH:
-        msg = f"{kind} is nested more than {MOST_DEPTH} levels deep; simplify it"
-        raise FormulaError(msg)
+        raise FormulaError(f"{kind} is nested more than {MOST_DEPTH} levels deep; simplify it")
     if kind in ("Symbol", "Dummy"):
         if expression.name in names:
             return str(expression.name)
         listed = ", ".join(sorted(names))
-        msg = (
+        raise FormulaError(
             f"{expression.name} is unknown; known are {listed}. Give a parameter its value, as in "
             f"{expression.name}=1"
         )
-        raise FormulaError(msg)
     if not expression.args:
         try:
             return float(expression)
         except (TypeError, ValueError) as error:
-            msg = f"the sympy expression {expression} is not a real number; expected one"
-            raise FormulaError(msg) from error
+            raise FormulaError(
+                f"the sympy expression {expression} is not a real number; expected one"
+            ) from error
     if kind == "Piecewise":
         pairs = [(p.args[0], p.args[1]) for p in expression.args]
         values = [tree_of(value, names, depth + 1) for value, _ in pairs]
@@ -386,11 +390,10 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     name = _NAMES.get(kind, kind.lower())
     if name not in (*_NAMES.values(), *FUNCTIONS):
         functions = ", ".join(FUNCTIONS)
-        msg = (
+        raise FormulaError(
             f"the sympy function {kind} is not allowed in a formula; expected + - * / ^ and "
             f"{functions}"
         )
-        raise FormulaError(msg)
     arguments = [tree_of(part, names, depth + 1) for part in expression.args]
     if name == "^":
         return reduce(lambda base, power: (name, base, power), arguments)

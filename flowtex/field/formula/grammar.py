@@ -117,8 +117,9 @@ class _Parser:
         self.text = re.sub(r"\s", " ", text).translate(_PRINTED)
         self.names = names
         if len(text) > MOST_LETTERS:
-            msg = f"the formula has {len(text)} characters; expected {MOST_LETTERS} at most"
-            raise FormulaError(msg)
+            raise FormulaError(
+                f"the formula has {len(text)} characters; expected {MOST_LETTERS} at most"
+            )
         #: Kind, text and place of each token; the last one is the end.
         self.tokens: list[tuple[str, str, int]] = []
         at, end = 0, len(self.text.rstrip())
@@ -136,8 +137,7 @@ class _Parser:
 
     def fail(self, problem: str, at: int | None = None) -> NoReturn:
         at = self.tokens[self.next][2] if at is None else at
-        msg = f"{problem}\n  {self.text}\n  {' ' * at}^"
-        raise FormulaError(msg)
+        raise FormulaError(f"{problem}\n  {self.text}\n  {' ' * at}^")
 
     def take(self) -> tuple[str, str, int]:
         token = self.tokens[self.next]

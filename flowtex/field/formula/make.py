@@ -106,13 +106,13 @@ def formula(
         defaults = {key: value for key, value in defaults.items() if key not in ("x", "y")}
         for key in parameters:
             if key not in defaults:
-                msg = f"{title} has no parameter {key!r}; {near_names(key, defaults)}"
-                raise FieldError(msg)
+                raise FieldError(f"{title} has no parameter {key!r}; {near_names(key, defaults)}")
         parameters = {**defaults, **parameters}
     elif expressions and isinstance(expressions[0], str) and expressions[0] in KNOWN:
         rest = " and ".join(map(repr, expressions[1:]))
-        msg = f"{expressions[0]!r} is a known formula and takes no other expression; omit {rest}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{expressions[0]!r} is a known formula and takes no other expression; omit {rest}"
+        )
     steps = None if times is None else _times(times)
     ranges = {"x": x, "y": y, "u": u, "v": v}
     flow = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
@@ -135,8 +135,7 @@ def formula(
     values = np.concatenate([*velocity, points], axis=-1)
     gaps: Bools = np.isnan(values).any(axis=-1)
     if (gaps[1:, 1:] | gaps[1:, :-1] | gaps[:-1, 1:] | gaps[:-1, :-1]).all():
-        msg = f"{flow.title} has no value in any cell of the grid; choose other ranges"
-        raise FieldError(msg)
+        raise FieldError(f"{flow.title} has no value in any cell of the grid; choose other ranges")
     title = flow.title if len(flow.title) <= MOST_TITLE else flow.title[:MOST_TITLE] + "…"
     field = FlowField.from_arrays(
         points,
@@ -156,11 +155,10 @@ def _known_formula(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
             if isinstance(name, str)
             else f"expected one of: {', '.join(KNOWN)}"
         )
-        msg = (
+        raise FieldError(
             f"only one expression is given, {name!r}, and it is not the name of a known formula; "
             f"{hint}"
         )
-        raise FieldError(msg)
     title, expressions, arguments = KNOWN[key]
     return title, expressions, dict(arguments)
 
@@ -173,8 +171,7 @@ def _times(times: ArrayLike) -> Floats:
         or not np.isfinite(values).all()
         or (np.diff(values) <= 0).any()
     ):
-        msg = f"times is {times!r}; expected times that increase, such as [0, 1, 2]"
-        raise FieldError(msg)
+        raise FieldError(f"times is {times!r}; expected times that increase, such as [0, 1, 2]")
     return values
 
 
@@ -206,24 +203,23 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
             try:
                 values = numbers(1, 2, 3, expected="one to three numbers")(match[2])
             except UnreadableError as error:
-                msg = f"{match[1]} is {match[2].strip()!r}; expected {error} separated by commas"
-                raise FieldError(msg) from error
+                raise FieldError(
+                    f"{match[1]} is {match[2].strip()!r}; expected {error} separated by commas"
+                ) from error
             named[match[1]] = values if len(values) > 1 else values[0]
     if isinstance(times := named.pop("t", None), tuple) and len(times) == 3:
         first, last, count = times
         named["times"] = np.linspace(first, last, int(min(max(count, 2), MOST_TIMES)))
     elif times is not None:
-        msg = (
+        raise FieldError(
             "t is the time; expected the first time, the last, and their number, such as t=0,10,41"
         )
-        raise FieldError(msg)
     allowed = ("x", "y", "u", "v", "surface", "times")
     if taken := [n for n in ("resolution", "name") if n in named]:
-        msg = (
+        raise FieldError(
             f"{taken[0]} cannot be the name of a parameter; expected another name, or one of "
             f"{', '.join(allowed)}"
         )
-        raise FieldError(msg)
     return expressions, named
 
 

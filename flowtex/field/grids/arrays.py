@@ -234,8 +234,9 @@ def grid_nodes(
 ) -> GridNodes:
     """Check arrays, and convert them for a field; of late steps the first is read."""
     if not isinstance(scalars, Mapping):
-        msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
-        raise FieldError(msg)
+        raise FieldError(
+            f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
+        )
     p, masked_points = as_numbers("points", node_positions(points))
     v, masked_velocity = as_numbers("velocity", first_step(velocity))
     late = {name: steps for name, steps in scalars.items() if isinstance(steps, LazySteps)}

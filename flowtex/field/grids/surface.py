@@ -141,11 +141,10 @@ class GridSurface(Surface):
         j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
         rows, columns = self.shape
         if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
-            msg = (
+            raise FieldError(
                 f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} "
                 f"and i from 0 to {columns - 1}"
             )
-            raise FieldError(msg)
         # On a line of nodes a position belongs to two cells.
         cells = [
             {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
@@ -156,11 +155,10 @@ class GridSurface(Surface):
                 number = 2 * (row * (columns - 1) + column) + int(a < b)
                 shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
                 return np.array([j, i]), number, np.array(shares)
-        msg = (
+        raise FieldError(
             f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point on the "
             "drawn surface"
         )
-        raise FieldError(msg)
 
     @cached_property
     def apart(self) -> Bools:

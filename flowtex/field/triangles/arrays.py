@@ -65,8 +65,9 @@ def triangle_nodes(
     try:
         corners = np.asarray(triangles)
     except ValueError as error:
-        msg = f"triangles is not an array ({error}); expected three node numbers in every row"
-        raise FieldError(msg) from error
+        raise FieldError(
+            f"triangles is not an array ({error}); expected three node numbers in every row"
+        ) from error
     mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
     arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
     on_cells = {
@@ -94,11 +95,10 @@ def triangle_nodes(
     drawn, pairs = _usable(p, corners.astype(np.intp))
     cells, corners = len(corners), corners[drawn].astype(np.intp)
     if not (ok[corners].all(axis=1)).any():
-        msg = (
+        raise FieldError(
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
             "check the triangles and the mask"
         )
-        raise FieldError(msg)
     # Unknown positions must not take part in computations.
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
     same = merged_nodes(p, corners, pairs)

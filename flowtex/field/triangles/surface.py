@@ -183,18 +183,16 @@ class TriangleSurface(Surface):
         j, i = map(float, index)
         count = len(self.triangles)
         if not (0 <= j < count and 0 <= i <= 1):
-            msg = (
+            raise FieldError(
                 f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {count}, "
                 "the number of the triangle plus the weight of its second corner, and i, the "
                 "weight of its third"
             )
-            raise FieldError(msg)
         if not self.cells[int(j)]:
-            msg = (
+            raise FieldError(
                 f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected a point "
                 "in another triangle"
             )
-            raise FieldError(msg)
         return index, int(j), self.corners_at(index[::-1])[1]
 
     @cached_property

@@ -53,8 +53,9 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
         import holoviews as hv
         from holoviews.streams import PlotSize, RangeXY
     except ImportError as error:
-        msg = "dynamic_map needs HoloViews; install it: python -m pip install holoviews bokeh"
-        raise FieldError(msg) from error
+        raise FieldError(
+            "dynamic_map needs HoloViews; install it: python -m pip install holoviews bokeh"
+        ) from error
     from matplotlib.figure import Figure
 
     # Matplotlib's axes stand for the plot of HoloViews.

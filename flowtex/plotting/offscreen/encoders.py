@@ -104,17 +104,15 @@ def _pyav() -> Any:
     try:
         import av
     except ModuleNotFoundError as error:
-        msg = (
+        raise ModuleNotFoundError(
             "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
             f"{install_extra('movie')}"
-        )
-        raise ModuleNotFoundError(msg) from error
+        ) from error
     if "libx264" not in av.codecs_available:
-        msg = (
+        raise MovieError(
             "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
             "GIF"
         )
-        raise MovieError(msg)
     return av
 
 
@@ -146,8 +144,9 @@ class MovieWriter:
         height, width = picture.shape[:2]
         if (width, height) != self._size:
             expected = f"{self._size[0]} x {self._size[1]}"
-            msg = f"a picture is {width} x {height}; expected {expected}, the size of the movie"
-            raise MovieError(msg)
+            raise MovieError(
+                f"a picture is {width} x {height}; expected {expected}, the size of the movie"
+            )
         self._encoder.add(np.ascontiguousarray(picture))
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
@@ -219,8 +218,9 @@ class _Pillow:
         self._count += 1
         if self._count * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
             most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
-            msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
-            raise MovieError(msg)
+            raise MovieError(
+                f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
+            )
         self._spool.write(picture.data)
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
@@ -297,8 +297,7 @@ def write_movie(
             writer = writer or MovieWriter(path, picture.shape[1::-1], fps, quality)
             writer.add(picture)
         if writer is None:
-            msg = f"{path}: the movie has no pictures; expected one or more"
-            raise MovieError(msg)
+            raise MovieError(f"{path}: the movie has no pictures; expected one or more")
         writer.finish(cancelled)
     finally:
         if writer is not None:

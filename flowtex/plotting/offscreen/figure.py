@@ -96,19 +96,17 @@ def extent(
     """
     chosen, size = Options.split(mesh=mesh, **options), checked_size(size)
     if chosen.view.beside is not None:
-        msg = "beside makes two views, which do not have one common extent; omit it"
-        raise FieldError(msg)
+        raise FieldError("beside makes two views, which do not have one common extent; omit it")
     surface = Scene.from_options(mesh, chosen).whole.surface
     frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
     camera = view.first_camera(surface, aspect)
     if view.camera is None:
         camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
-        msg = (
+        raise FieldError(
             f"camera is {brief(view.camera)}; expected one that looks straight at the surface "
             "without perspective. Omit it, and use zoom and focus"
         )
-        raise FieldError(msg)
     x, y = frame @ camera.focal_point
     half = camera.parallel_scale
     return float(x - half * aspect), float(x + half * aspect), float(y - half), float(y + half)
@@ -169,11 +167,10 @@ def axes(
     >>> plt.close(figure)
     """
     if not is_geo(ax) and getattr(ax, "name", "") not in ("rectilinear", "polar"):
-        msg = (
+        raise FieldError(
             f"ax is {brief(ax)}; expected rectilinear or polar matplotlib axes, such as those of "
             "plt.subplots(), or axes of cartopy"
         )
-        raise FieldError(msg)
     chosen = Options.split("field", "appearance", mesh=mesh, **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
@@ -213,11 +210,10 @@ class FlowImage(AxesImage):
         self._scene = scene = Scene.from_options(mesh, options)
         self._projection = projection = scene.field.projection
         if projection is None and is_geo(ax):
-            msg = (
+            raise FieldError(
                 f"ax is a map, and {brief(scene.field)} is not of the Earth; give a dataset on "
                 "longitudes and latitudes, or axes without a projection"
             )
-            raise FieldError(msg)
         if not is_geo(ax):
             self._unit = unit_of(projection)
         surface = scene.whole.surface
@@ -291,11 +287,10 @@ class FlowImage(AxesImage):
         if (scales and scales.key) == (self._scales and self._scales.key):
             return
         if scales is not None and self._projection is not None:
-            msg = (
+            raise FieldError(
                 f"ax is {'polar' if scales.polar else f'with scales {scales.names}'}, but the data "
                 "are of the Earth; expected linear axes, or those of cartopy"
             )
-            raise FieldError(msg)
         flow = self._flow
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
@@ -479,11 +474,10 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
 def _in_projection(mesh: Any, options: Options, name: str) -> Options:
     """Return options with which data are drawn in a projection, and lines if requested."""
     if options.field.projection is not None or options.field.globe is not None:
-        msg = (
+        raise FieldError(
             "projection and globe are those of the axes, which are of a map; leave them out, or "
             "give axes without a projection"
         )
-        raise FieldError(msg)
     look = options.appearance
     look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
     several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
@@ -498,9 +492,8 @@ def _in_projection(mesh: Any, options: Options, name: str) -> Options:
 
 def _frame(surface: Surface) -> Floats:
     if surface.frame is None:
-        msg = (
+        raise FieldError(
             "the surface is curved, so its picture has no axes in data coordinates; draw it with "
             "flowtex.render, or use a flat plane of the mesh"
         )
-        raise FieldError(msg)
     return surface.frame

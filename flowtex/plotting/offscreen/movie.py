@@ -98,11 +98,10 @@ def frame_times(
     duration = _seconds(field, settings, seconds)
     count = max(round(duration * fps), 1)
     if count > MAX_FRAMES:
-        msg = (
+        raise MovieError(
             f"{duration:g} seconds at {fps:g} frames per second are {count:,} frames; expected at "
             f"most {MAX_FRAMES:,}: choose fewer seconds or fewer frames per second"
         )
-        raise MovieError(msg)
     if field.steady:
         clocks = tuple(duration * n / count for n in range(count))
         chosen, speed = (settings.speed, settings.speed_in), settings.speed

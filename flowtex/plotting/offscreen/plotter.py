@@ -188,11 +188,10 @@ def add_scenes(
     Raises a FieldError when the view has axes, which only browsers draw.
     """
     if options.view.axes is not None:
-        msg = (
+        raise FieldError(
             f"axes is {options.view.axes!r}, but only browsers draw axes; omit it, or draw a "
             "figure with flowtex.axes"
         )
-        raise FieldError(msg)
     component, changes = FlowtexComponent(plotter), options.view.beside
     scenes = [Scene.from_options(mesh, options)]
     if changes is not None:
@@ -229,25 +228,24 @@ def point_camera(
         try:
             plotter.camera_position = view.camera
         except (TypeError, ValueError, LookupError) as error:
-            msg = (
+            raise CameraError(
                 f"camera is {brief(view.camera)}; expected position, focal point and up, three "
                 "points"
-            )
-            raise CameraError(msg) from error
+            ) from error
 
 
 def _check_size(size: tuple[int, int], supersampling: int) -> None:
     if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
-        msg = f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
-        raise FieldError(msg)
+        raise FieldError(
+            f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
+        )
     size = checked_size(size, low=0)
     if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
         times = f" times {supersampling}" if supersampling > 1 else ""
-        msg = (
+        raise FieldError(
             f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
             "each side: choose a smaller size, or less supersampling"
         )
-        raise FieldError(msg)
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)

@@ -152,8 +152,9 @@ def lookup_maker(textures: TextureSet) -> LookupMaker:
 
     def make(fragments: Fragments, values: Values) -> Lookup:
         if fragments.noise is None:
-            msg = "the fragments have no noise coordinates; expected those of a noise texture"
-            raise FieldError(msg)
+            raise FieldError(
+                "the fragments have no noise coordinates; expected those of a noise texture"
+            )
         return kind(fragments.noise, images, values)
 
     return make
@@ -172,6 +173,7 @@ def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:
     if numbers.shape not in ((3,), shape) or not ((numbers >= 0) & (numbers <= 1)).all():
         shapes = " or ".join(map(str, dict.fromkeys([(3,), shape])))
         wrong = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
-        msg = f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
+        )
     return np.broadcast_to(numbers, shape)

@@ -274,8 +274,7 @@ class ClientData:
         Traces are made if necessary. Raises an IndexError when the step does not exist.
         """
         if not 0 <= step < self.steps:
-            msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
-            raise IndexError(msg)
+            raise IndexError(f"time step {step} does not exist: expected 0 to {self.steps - 1}")
         parts = self.values(step)
         if self.formula is not None:
             return parts

@@ -38,8 +38,9 @@ def align(
         dim = axes[n].pop(kind)
         if array.sizes[dim] != 1:
             listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (u, v))
-            msg = f"the components have different axes: {listed}. Select along these axes first"
-            raise FieldError(msg)
+            raise FieldError(
+                f"the components have different axes: {listed}. Select along these axes first"
+            )
         u, v = (array.isel({dim: 0}), v) if n == 0 else (u, array.isel({dim: 0}))
     _check_scalars(u, v)
     for kind, dim in axes[0].items():
@@ -63,12 +64,11 @@ def align(
                 _check_choice(choice, (dim, kind), line, kept)
             u, v = u.isel({dim: as_slice(found.one)}), v.isel({other: as_slice(found.other)})
         elif u.sizes[dim] != v.sizes[other]:
-            msg = (
+            raise FieldError(
                 f"{u.name} has {u.sizes[dim]} values along {dim} and {v.name} has "
                 f"{v.sizes[other]} along {other}, without coordinates to align them by; add these, "
                 f"as in ds.assign_coords({dim}=...)"
             )
-            raise FieldError(msg)
         v = renamed(v, {other: dim}, u)
     return u, v
 
@@ -81,10 +81,9 @@ def _check_choice(choice: Choice, names: tuple[str, str], line: AnyArray, kept: 
             continue
         wanted = np.array([float(target)])
         if len(labels.match(wanted, line).one) and not len(labels.match(wanted, kept).one):
-            msg = (
+            raise FieldError(
                 f"only one of the components has the {name} {target}; both have {labels.text(kept)}"
             )
-            raise FieldError(msg)
 
 
 def common(
@@ -93,12 +92,11 @@ def common(
     """Return the labels that two variables have in common, and record those that are left out."""
     found = labels.match(one, other)
     if not len(found.one):
-        msg = (
+        raise FieldError(
             f"{u.name} and {v.name} have no {dim} in common: {u.name} has {labels.text(one)}, and "
             f"{v.name} {labels.text(other)}. Give both at the same {dim}, as "
             "xarray's interp does"
         )
-        raise FieldError(msg)
     for array, line in ((u, one), (v, other)):
         if len(found.one) < len(np.unique(line[line == line])):
             record(
@@ -133,8 +131,7 @@ def _check_scalars(u: xr.DataArray, v: xr.DataArray) -> None:
         values = np.atleast_1d(one.values), np.atleast_1d(other.values)
         known = (values[0] == values[0]).all()
         if is_choice and known and not len(labels.match(values[0], values[1]).one):
-            msg = (
+            raise FieldError(
                 f"{u.name} is at {name} {labels.text(values[0])} and {v.name} at "
                 f"{labels.text(values[1])}; give both at the same {name}"
             )
-            raise FieldError(msg)

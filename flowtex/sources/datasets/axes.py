@@ -115,8 +115,7 @@ class Drawn:
             axis = known.get(kind)
             if axis is None:
                 if array.sizes[dim] > 1:
-                    msg = f"{array.name} has the axis {dim}, which the velocity lacks"
-                    raise FieldError(msg)
+                    raise FieldError(f"{array.name} has the axis {dim}, which the velocity lacks")
                 array = array.isel({dim: 0})
                 continue
             picks = _same_labels(array, dim, axis)
@@ -132,14 +131,16 @@ def _same_labels(array: xr.DataArray, dim: str, axis: Axis) -> int | list[int]:
     length = count if axis.line is None else len(axis.line)
     if own is None or axis.line is None:
         if count != length:
-            msg = f"{array.name} has {count} values along {dim}, and the velocity {length}"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{array.name} has {count} values along {dim}, and the velocity {length}"
+            )
         return axis.drawn
     wanted = axis.line[np.atleast_1d(axis.drawn)]
     found = labels.match(wanted, own)
     if len(found.one) < len(wanted):
-        msg = f"{array.name} has {labels.text(own)} along {dim}, without {labels.text(wanted)}"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{array.name} has {labels.text(own)} along {dim}, without {labels.text(wanted)}"
+        )
     numbers = [int(n) for n in found.other]
     return numbers if isinstance(axis.drawn, list) else numbers[0]
 
@@ -219,19 +220,19 @@ def further_axes(array: xr.DataArray) -> dict[str, str]:
             for d in dims
         }
     if len(kinds) < len(dims):
-        msg = f"{array.name} has the axes {', '.join(dims)}, of one kind; select along one first"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{array.name} has the axes {', '.join(dims)}, of one kind; select along one first"
+        )
     return kinds
 
 
 def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
     """Choose along the axes of the first component, which the second one has as well."""
     if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
-        msg = (
+        raise FieldError(
             f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "
             "they were cut out, the axis may run the other way: slice(high, low)"
         )
-        raise FieldError(msg)
     kinds, axes = further_axes(array), []
     times: AnyArray | None = None
     level = unit = ""
@@ -269,8 +270,7 @@ def _steps(
         record("align", f"{dim}: {unknown.sum()} steps without a time are left out", notable=True)
     chosen, times = chosen[~unknown], times[~unknown]
     if not len(times):
-        msg = f"{dim} has no valid time; expected dates or numbers"
-        raise FieldError(msg)
+        raise FieldError(f"{dim} has no valid time; expected dates or numbers")
     order = np.argsort(times, kind="stable")
     if (order != np.arange(len(order))).any():
         record("align", f"{dim}: steps sorted by time")
@@ -371,15 +371,17 @@ def _drawn(
             choice.used.add(name)
             number = choice.isel[name]
             if not isinstance(number, (int, np.integer)) or not -count <= number < count:
-                msg = f"{name} has index {number!r} of {count}; expected 0 to {count - 1}"
-                raise FieldError(msg)
+                raise FieldError(
+                    f"{name} has index {number!r} of {count}; expected 0 to {count - 1}"
+                )
             return int(number) % count
         if name in choice.sel:
             choice.used.add(name)
             target = choice.sel[name]
             if line is None:
-                msg = f"{name} has no coordinate values; select by index: isel={{{name!r}: 0}}"
-                raise FieldError(msg)
+                raise FieldError(
+                    f"{name} has no coordinate values; select by index: isel={{{name!r}: 0}}"
+                )
             if kind == TIME and isinstance(target, slice):
                 return _within(target, line, name)
             is_longitude = dim.lower().startswith("lon") or _unit(array, dim).endswith("_east")
@@ -387,11 +389,10 @@ def _drawn(
     if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
         return list(range(count))
     if kind == TIME and line is not None and count > 1:
-        msg = (
+        raise FieldError(
             f"{dim} has the texts {labels.text(line)}, which are not dates; expected dates such as "
             f"2024-01-31T06:00, or numbers. Set them, as in ds.assign_coords({dim}=...)"
         )
-        raise FieldError(msg)
     if count == 1:
         return 0
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
@@ -476,8 +477,7 @@ def _within(target: slice, line: AnyArray, name: str) -> list[int]:
         at, low, begin, end = np.zeros(1), 1.0, 0.0, 0.0
     numbers = np.flatnonzero((at >= low) & ((at <= begin) | (at < end)))[:: target.step]
     if not numbers.size:
-        msg = f"{name} is {target!r}; expected a range within {ends[0]} to {ends[1]}"
-        raise FieldError(msg)
+        raise FieldError(f"{name} is {target!r}; expected a range within {ends[0]} to {ends[1]}")
     return [int(number) for number in numbers]
 
 

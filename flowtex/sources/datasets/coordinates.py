@@ -137,19 +137,17 @@ def find_places(
         return _of_lines(lines[1], lines[0])
     if not EARTHLY.search(f"{array.attrs} {array.name} {dims} {list(array.coords)}"):
         lacking = [d for d, line in zip(dims, lines, strict=True) if line is None]
-        msg = (
+        raise FieldError(
             f"{array.name!r} has no coordinates along {' and '.join(lacking)}; add them, as in "
             f"ds.assign_coords({lacking[0]}=...), or open the file that has them with this one"
         )
-        raise FieldError(msg)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
-    msg = (
+    raise FieldError(
         f"{array.name!r} with the dimensions {', '.join(dims)} has neither longitude and latitude "
         f"nor x and y; the coordinates are {', '.join(names) or 'none'}. Add them, as in "
         f"ds.assign_coords(lon=({dims!r}, ...), lat=({dims!r}, ...)), or open the file that has "
         "them together with this one"
     )
-    raise FieldError(msg)
 
 
 def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
@@ -178,12 +176,11 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
             keys = (values - start - 1e-9) % 360.0
         order = np.argsort(keys, kind="stable")
         if (np.diff(keys[order]) <= 0).any():
-            msg = (
+            raise FieldError(
                 f"{dim} increases and decreases along its axis and repeats values "
                 f"({labels.text(line.values)}); expected each value once, as after "
                 f"ds.drop_duplicates({dim!r})"
             )
-            raise FieldError(msg)
         record(step, f"{array.name}: sorted by {dim}", notable=step == "coordinates")
         array = array.isel({dim: order})
     return array
@@ -205,11 +202,10 @@ def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
     for ds in datasets:
         if dim in ds.sizes:
             return int(ds.sizes[dim])
-    msg = (
+    raise FieldError(
         f"{array.name!r} has the dimensions {', '.join(map(str, array.dims))}; expected {dim!r} "
         "among them, as in the velocity; open only files of one model"
     )
-    raise FieldError(msg)
 
 
 def _pairs(
@@ -308,18 +304,16 @@ def _check_rest(c: xr.DataArray, dim: str) -> None:
         size = float(np.nanmax(first, initial=-np.inf) - np.nanmin(first, initial=np.inf))
     if moved > AT_REST * size / max(c.shape):
         unit = str(c.attrs.get("units", ""))
-        msg = (
+        raise FieldError(
             f"positions vary in time: {c.name} changes by up to {moved:.4g} {unit}".rstrip()
             + f" along {dim}. Series on moving surfaces are not supported; draw one step, as in "
             f"isel={{{dim!r}: 0}}"
         )
-        raise FieldError(msg)
 
 
 def _numbers(c: xr.DataArray) -> Floats:
     if c.dtype.kind not in "fiu":
-        msg = f"the coordinate {c.name!r} has type {c.dtype}; expected numbers"
-        raise FieldError(msg)
+        raise FieldError(f"the coordinate {c.name!r} has type {c.dtype}; expected numbers")
     return np.asarray(values_in(c), dtype=float)
 
 
@@ -345,8 +339,9 @@ def _in_degrees(
     finite = np.isfinite(a), np.isfinite(b)
     usable = (finite[0] & finite[1]).any() if lon.ndim > 1 else all(f.any() for f in finite)
     if not usable:
-        msg = f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
+        )
     spans = [float(np.ptp(part[np.isfinite(part)])) for part in (a, b)]
     by_span = all(low <= s <= high for s, (low, high) in zip(spans, RADIANS, strict=True))
     if (by_span and not any(map(units.parsed, given))) or all(
@@ -358,11 +353,10 @@ def _in_degrees(
         wide = np.nanmax(np.abs(a), initial=0.0)
     if far > 90.001 or wide > 720:
         if all(units.parsed(unit) is not None for unit in given):
-            msg = (
+            raise FieldError(
                 f"{lat.name} reaches {far:g} and {lon.name} reaches {wide:g} in magnitude; "
                 "expected degrees, up to 90 and 360"
             )
-            raise FieldError(msg)
         return None
     return a, b
 

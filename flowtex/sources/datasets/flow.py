@@ -119,11 +119,10 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
         return one or other, (1.0, 1.0)
     factor = units.factor(other, one)
     if factor is None:
-        msg = (
+        raise FieldError(
             f"the units of {pair.u.name!r} and {pair.v.name!r} are {one!r} and {other!r}, of which "
             "neither can be converted to the other"
         )
-        raise FieldError(msg)
     if factor != 1.0:
         record("units", f"{pair.v.name} converted from {other} to {one}")
     return one, (1.0, factor)
@@ -135,17 +134,15 @@ def orientation(
     """Return the directions of components by the rules of this module."""
     if wanted is not None and wanted not in DIRECTIONS:
         expected = ", ".join(f"{key!r} ({words})" for key, words in DIRECTIONS.items())
-        msg = f"components is {wanted!r}; expected {expected}"
-        raise FieldError(msg)
+        raise FieldError(f"components is {wanted!r}; expected {expected}")
     found = _orientation(pair, places, staggered=staggered, wanted=wanted)
     if not places.is_earth and found.along == "earth":
         found = Orientation("plane", "positions in a plane")
     if places.is_earth and found.along == "plane":
-        msg = (
+        raise FieldError(
             "components is 'plane', but the positions are longitude and latitude; expected 'earth' "
             "or 'grid'"
         )
-        raise FieldError(msg)
     record("components", str(found))
     return found
 
@@ -284,11 +281,10 @@ def read_flow(
     if mesh is None:
         one, two = ordered(one, record, "coordinates"), ordered(two, record, "align")
     elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
-        msg = (
+        raise FieldError(
             f"{one.name!r} has {', '.join(map(str, one.dims))} and {two.name!r} "
             f"{', '.join(map(str, two.dims))}; expected both at nodes, or both in faces"
         )
-        raise FieldError(msg)
     one, two = align(one, two, choice, record)
     drawn = choose(one, choice, record)
     one, two = drawn.of(one), drawn.of(two)
@@ -390,8 +386,7 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
             text = f"{mask.array.name} lies at other positions or times, and is not used as a mask"
             record("mask", text, notable=mask.array.ndim > 1)
         if part_of is None and wanted is not None:
-            msg = f"mask is {wanted!r}, which lies at other positions than the velocity"
-            raise FieldError(msg)
+            raise FieldError(f"mask is {wanted!r}, which lies at other positions than the velocity")
         if flow.mesh is not None and part_of is not None and flow.cells[0] not in part_of.dims:
             continue
         if part_of is not None and _applies(flow, mask, part_of, wanted):

@@ -69,8 +69,9 @@ def numbers(one: AnyArray, other: AnyArray) -> tuple[Floats, Floats]:
         joined, _, _ = as_seconds(np.concatenate([one, other]), "")
         seconds: Floats = np.ma.filled(np.ma.asarray(joined, dtype=float), np.nan)
     except (TypeError, ValueError) as error:
-        msg = f"times {text(one)} and {text(other)} cannot be compared: {error}"
-        raise FieldError(msg) from error
+        raise FieldError(
+            f"times {text(one)} and {text(other)} cannot be compared: {error}"
+        ) from error
     return seconds[: len(one)], seconds[len(one) :]
 
 

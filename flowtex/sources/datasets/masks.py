@@ -82,8 +82,7 @@ def find_masks(
             if mask is not None:
                 yield mask
     if wanted is not None and wanted not in names:
-        msg = f"mask is {wanted!r}; {near_names(str(wanted), names)}, or False for none"
-        raise FieldError(msg)
+        raise FieldError(f"mask is {wanted!r}; {near_names(str(wanted), names)}, or False for none")
 
 
 def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:

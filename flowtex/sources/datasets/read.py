@@ -81,8 +81,7 @@ def read_datasets(
 ) -> GridArrays | TriangleArrays | Regions:
     """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself."""
     if globe and projection not in (None, GLOBE):
-        msg = f"globe=True and projection={projection!r} are given; omit one of them"
-        raise FieldError(msg)
+        raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
     projection = GLOBE if globe else projection
     sel, record = {**(sel or {}), **selection}, Record()
     datasets = as_datasets(data, record)
@@ -104,11 +103,10 @@ def read_datasets(
         for note in other_velocities(datasets, flow.pair) if u is None else ():
             record("select", note, notable=True)
         if not flow.places.is_earth and projection is not None:
-            msg = (
+            raise FieldError(
                 f"projection is {projection!r}, but the positions are {flow.places.why}, not "
                 "longitude and latitude; omit projection"
             )
-            raise FieldError(msg)
         scalars = _scalars(flow)
         caption = ", ".join(filter(None, (name, record.reading.caption)))
         words: dict[str, Any] = {"name": caption, **_scalar_texts(scalars)}
@@ -214,10 +212,9 @@ def _averaged(
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
         raise FieldError(msg + near_names(dim, names))
     if dim in chosen:
-        msg = (
+        raise FieldError(
             f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
         )
-        raise FieldError(msg)
     members = [
         read_flow(
             datasets, str(u.name), str(v.name), record, **{**options, "isel": {**isel, dim: number}}
@@ -279,8 +276,7 @@ def _units(flow: Flow) -> dict[str, str]:
             record("units", f"{names} have no unit; {length}/{time} is assumed", notable=True)
         return {"length_unit": length, "time_unit": time}
     if unit and units.factor(unit, "m/s") is None:
-        msg = f"the unit of {names} is {unit!r}; expected one such as m/s on the Earth"
-        raise FieldError(msg)
+        raise FieldError(f"the unit of {names} is {unit!r}; expected one such as m/s on the Earth")
     if not unit:
         record("units", f"{names} have no unit; m/s is assumed", notable=True)
     if not time and flow.drawn.steps > 1:

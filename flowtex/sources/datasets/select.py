@@ -75,8 +75,7 @@ class Pair:
 def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
     """Return the velocity that is named, or the only one that is likely."""
     if (u is None) != (v is None):
-        msg = f"u is {u!r} and v is {v!r}; name both components, or neither"
-        raise FieldError(msg)
+        raise FieldError(f"u is {u!r} and v is {v!r}; name both components, or neither")
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
         one, other = (variable(datasets, name) for name in (u, v))
@@ -94,11 +93,10 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     if len(likely) > 1:
         listed = "; ".join(map(str, pairs))
         first = likely[0]
-        msg = (
+        raise FieldError(
             f"several pairs of variables may be the velocity: {listed}. Name one of them, as in "
             f'u="{first.u.name}", v="{first.v.name}"'
         )
-        raise FieldError(msg)
     return likely[0]
 
 
@@ -108,8 +106,9 @@ def two_names(vectors: str | None) -> dict[str, str]:
         return {}
     names = [word.strip() for word in vectors.split(",")]
     if len(names) != 2 or not all(names):
-        msg = f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
-        raise FieldError(msg)
+        raise FieldError(
+            f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
+        )
     return dict(zip("uv", names, strict=True))
 
 
@@ -194,11 +193,10 @@ def velocity_unit(array: xr.DataArray) -> str:
     if unit.lower() in units.NONE:
         return ""
     if not units.measures(unit, units.VELOCITIES):
-        msg = (
+        raise FieldError(
             f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity, such as "
             f"m/s, cm/s or knots. If it is wrong, set {array.name}.attrs['units']"
         )
-        raise FieldError(msg)
     return unit
 
 
@@ -286,8 +284,9 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
         if name in ds.data_vars:
             return ds[name]
     names = ", ".join(str(n) for ds in datasets for n, a in ds.data_vars.items() if a.ndim >= 2)
-    msg = f"the variable {name!r} does not exist; expected one of {names or 'none with two axes'}"
-    raise FieldError(msg)
+    raise FieldError(
+        f"the variable {name!r} does not exist; expected one of {names or 'none with two axes'}"
+    )
 
 
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:

@@ -141,11 +141,10 @@ def find_grid(
     (row_u, column_u), (_, column_v) = dims
     if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
-            msg = (
+            raise FieldError(
                 f"{u.name} and {v.name} differ in size, {_sizes(u)} and {_sizes(v)}; expected "
                 "components of one grid"
             )
-            raise FieldError(msg)
         places = find_places(u, dims[0], [*own[:1], *datasets], drawn)
         return Grid(u, v, places, None, None, "both components at the same position")
     return _by_names(u, v, (row_u, column_v), datasets, drawn, record)
@@ -352,11 +351,10 @@ def _by_names(
     }
     for name, (sides, middle) in counts.items():
         if abs(sides - middle) > 1:
-            msg = (
+            raise FieldError(
                 f"{u.name} has {_sizes(u)} and {v.name} {_sizes(v)}; along a {name} they differ "
                 "by more than one, so they cannot be components of one staggered grid"
             )
-            raise FieldError(msg)
     firsts = [
         first_side(row_v, row_u, counts["row"], datasets),
         first_side(column_u, column_v, counts["column"], datasets),

@@ -51,8 +51,9 @@ def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
     """Return the values of a variable as float64; missing data are NaN."""
     values = values_in(array)
     if values.dtype.kind not in "fiub":
-        msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
+        )
     values = values.astype(float)
     # Fill values that no attribute names.
     values[np.abs(values) > LARGEST_VALUE] = np.nan

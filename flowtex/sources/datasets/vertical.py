@@ -72,11 +72,10 @@ def read_section(
     one, two = variable(datasets, u), variable(datasets, v)
     if set(one.dims) != set(two.dims):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
-        msg = (
+        raise FieldError(
             f"the components have different axes: {listed}. Interpolate one to the levels of the "
             "other, as in ds.w.interp(...)"
         )
-        raise FieldError(msg)
     level, along = _axes(one, {*sel, *isel})
     for dim in (level, along):
         lines = line_of(one, dim), line_of(two, dim)
@@ -148,11 +147,10 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
     preferred = LATITUDE if northward else LONGITUDE
     others.sort(key=lambda dim: bool(preferred.match(dim)))
     if not levels or not others:
-        msg = (
+        raise FieldError(
             f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more for a "
             "vertical section"
         )
-        raise FieldError(msg)
     return levels[0], others[-1]
 
 
@@ -161,8 +159,7 @@ def _coordinate(array: xr.DataArray, dim: str) -> xr.DataArray:
     along: list[xr.DataArray] = [c for c in array.coords.values() if c.dims == (dim,)]
     along = [c for c in along if c.dtype.kind in "fiu"]
     if not along:
-        msg = f"{dim} has no coordinate; add it, as in ds.assign_coords({dim}=...)"
-        raise FieldError(msg)
+        raise FieldError(f"{dim} has no coordinate; add it, as in ds.assign_coords({dim}=...)")
     along.sort(key=lambda c: c.name != dim)
     return along[0]
 
@@ -176,19 +173,17 @@ def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, floa
     if LONGITUDE.match(name):
         latitudes = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
         if not latitudes:
-            msg = (
+            raise FieldError(
                 f"the latitude of a section along {across.name} is not known; add it, as in "
                 "ds.assign_coords(lat=45.0)"
             )
-            raise FieldError(msg)
         return values, 1 / (DEGREE * math.cos(math.radians(float(latitudes[0])))), "longitude (°)"
     length = units.factor(unit, "m")
     if length is None:
-        msg = (
+        raise FieldError(
             f"the unit of {across.name} is {unit!r}; expected degrees, or one of length such as m "
             "or km: set its units"
         )
-        raise FieldError(msg)
     return values, 1 / length, f"{across.name} ({unit})"
 
 
@@ -202,11 +197,10 @@ def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
         return numbers_in(up), -factor if downward else factor, text
     if factor is not None and units.measures(unit, units.PRESSURES):
         return numbers_in(up), factor, text
-    msg = (
+    raise FieldError(
         f"{up.name} is in {unit!r} and {w.name} in {str(w.attrs.get('units', ''))!r}; expected m "
         "and m/s, or hPa and Pa/s"
     )
-    raise FieldError(msg)
 
 
 def _is_downward(up: xr.DataArray) -> bool:

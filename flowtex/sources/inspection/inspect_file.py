@@ -49,8 +49,7 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
         except FieldError as error:
             if file == path:
                 raise
-            msg = f"{file}: {error}"
-            raise FieldError(msg) from error
+            raise FieldError(f"{file}: {error}") from error
         for member in members:
             if len(seen) < MOST_MEMBERS and member.resolve() not in seen:
                 seen.add(member.resolve())
@@ -71,8 +70,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         netcdf.check_netcdf(path, whole=whole)
     elif suffix in netcdf.SUFFIXES and not is_hdf5:
         beginning = f"it begins with {head[:8]!r}" if head else "it is empty"
-        msg = f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5"
-        raise FieldError(msg)
+        raise FieldError(f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5")
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         check_grib(path)
     if suffix == ".vtk":
@@ -188,6 +186,5 @@ def _points(stream: BinaryIO, at: int, edition: int, end: int, label: str) -> in
     # ecCodes reads for ever where sections do not lead to the end.
     stream.seek(place)
     if place + 4 != end or stream.read(4) != b"7777":
-        msg = f"the sections of {label} do not match its length; the file is corrupt"
-        raise FieldError(msg)
+        raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
     return most

@@ -80,13 +80,15 @@ class _Header:
         self._fits(ranks, 4)
         numbers = [self._number() for _ in range(ranks)]
         if any(number >= len(self._dimensions) for number in numbers):
-            msg = f"the file is damaged: the variable {name} has an undeclared dimension"
-            raise FieldError(msg)
+            raise FieldError(
+                f"the file is damaged: the variable {name} has an undeclared dimension"
+            )
         self._attributes()
         kind = self._unpack(">I")
         if kind not in SIZES:
-            msg = f"the file is damaged: the variable {name} has the unknown type {kind}"
-            raise FieldError(msg)
+            raise FieldError(
+                f"the file is damaged: the variable {name} has the unknown type {kind}"
+            )
         self._number()  # its size again, with too few bits for a large one
         begin = self._unpack(self._offset)
         shape = tuple(self._dimensions[number] for number in numbers)
@@ -130,11 +132,10 @@ class _Header:
     def _fits(self, count: int, nbytes: int) -> None:
         """Raise a FieldError if the rest of the file is too short for a count of entries."""
         if count * nbytes > self._left:
-            msg = (
+            raise FieldError(
                 f"the file is truncated or damaged: its header needs {count * nbytes:,} more "
                 f"bytes, but the file has {self._left:,}; write or copy it again"
             )
-            raise FieldError(msg)
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
@@ -164,8 +165,9 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
         if ends:
             size, base, declared = map(int, ends.groups())
             check_count(size, base + declared, "the header")
-        msg = f"the file is damaged: HDF5 reports: {error}; write or copy it again"
-        raise FieldError(msg) from error
+        raise FieldError(
+            f"the file is damaged: HDF5 reports: {error}; write or copy it again"
+        ) from error
 
 
 def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
@@ -191,8 +193,7 @@ def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
 
 
 def _refuse(link: str, target: str) -> NoReturn:
-    msg = (
+    raise FieldError(
         f"{link} in the file {target!r}, but only data in the file itself are read; copy "
         "everything into one file, for example with ds.to_netcdf"
     )
-    raise FieldError(msg)

@@ -336,16 +336,16 @@ class _Legacy:
     def _count(self, label: bytes) -> int:
         count = self._number()
         if count < 0:
-            msg = f"the file is damaged: {label.decode()} declares {count}; write or copy it again"
-            raise FieldError(msg)
+            raise FieldError(
+                f"the file is damaged: {label.decode()} declares {count}; write or copy it again"
+            )
         return count
 
 
 def _refuse(word: bytes, expected: str) -> NoReturn:
     text = word[:40].decode(errors="replace")
     fault = f"has {text!r}" if word else "ends"
-    msg = (
+    raise FieldError(
         f"the file is truncated or damaged: it {fault} where {expected} was expected; write or "
         "copy it again"
     )
-    raise FieldError(msg)

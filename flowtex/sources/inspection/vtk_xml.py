@@ -43,8 +43,7 @@ def check_vtk_xml(path: Path) -> list[Path]:
     """Return the files that a file names, if its arrays fit into it and into memory."""
     with path.open("rb") as stream:
         if b"\0" in stream.read(4):
-            msg = "the file is in UTF-16, which VTK does not write; convert it to UTF-8"
-            raise FieldError(msg)
+            raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
         stream.seek(0)
         document = _Document()
         document.parse(stream)
@@ -122,8 +121,7 @@ class _Document:
             endings = "no element found", "unclosed token", "unclosed CDATA"
             cut = any(word in str(error) for word in endings)
             fault = "is truncated: its XML ends early" if cut else "is not valid XML"
-            msg = f"the file {fault} ({error}); write or copy it again"
-            raise FieldError(msg) from error
+            raise FieldError(f"the file {fault} ({error}); write or copy it again") from error
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._stop()
@@ -352,5 +350,6 @@ def _whole(word: str) -> int:
 
 
 def _refuse_entity(name: str, *_: object) -> None:
-    msg = f"the file declares the XML entity {name}, so it is refused: VTK files have no entities"
-    raise FieldError(msg)
+    raise FieldError(
+        f"the file declares the XML entity {name}, so it is refused: VTK files have no entities"
+    )

@@ -63,8 +63,7 @@ class Slice:
         if not cut.n_cells:
             ends = zip("xyz", np.reshape(mesh.bounds, (3, 2)), strict=True)
             spans = ", ".join(f"{axis} from {low:g} to {high:g}" for axis, (low, high) in ends)
-            msg = f"slice is {self.text}, which does not cut the mesh; it has {spans}"
-            raise FieldError(msg)
+            raise FieldError(f"slice is {self.text}, which does not cut the mesh; it has {spans}")
         return cut
 
 
@@ -82,8 +81,7 @@ class Contour:
         if not cut.n_cells:
             low, high = mesh.get_data_range(self.name)
             span = f"expected a value of {self.name} from {low:g} to {high:g}"
-            msg = f"contour is {self.text}; {span}"
-            raise FieldError(msg)
+            raise FieldError(f"contour is {self.text}; {span}")
         return cut
 
 
@@ -93,8 +91,7 @@ Cut = Slice | Contour
 def find_cut(slice: Any, contour: Any) -> Cut | None:
     """Return the requested cut, or ``None``."""
     if slice is not None and contour is not None:
-        msg = f"slice is {slice!r} and contour is {contour!r}; choose one of the two"
-        raise FieldError(msg)
+        raise FieldError(f"slice is {slice!r} and contour is {contour!r}; choose one of the two")
     if slice is not None:
         return _slice(slice)
     return None if contour is None else _contour(contour)
@@ -115,12 +112,11 @@ def _slice(raw: Any) -> Slice:
             normal = np.arange(3) == "xyz".index(normal)
     direction, middle = _vector(normal), None if point is None else _vector(point)
     if direction is None or not any(direction) or (point is not None and middle is None):
-        msg = (
+        raise FieldError(
             f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
             '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
             "point) of three numbers each"
         )
-        raise FieldError(msg)
     return Slice(direction, middle, repr(raw))
 
 
@@ -139,8 +135,7 @@ def _contour(raw: Any) -> Contour:
         if name and math.isfinite(value):
             return Contour(name, value, repr(raw))
     expected = 'expected an array and its value, as in contour="pressure=101325"'
-    msg = f"contour is {brief(raw)}; {expected}"
-    raise FieldError(msg)
+    raise FieldError(f"contour is {brief(raw)}; {expected}")
 
 
 def _vector(raw: Any) -> Vector | None:
@@ -187,11 +182,10 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
-        msg = (
+        raise FieldError(
             f"its cells refer to points {triangles.min()} to {triangles.max()}, but there are "
             f"{len(points):,}; write or copy it again"
         )
-        raise FieldError(msg)
     areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
 
     def nodes(array: MeshArray) -> Floats:
@@ -278,8 +272,7 @@ def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
     mesh.point_data[HIDDEN] = hidden.astype(np.float64)
     shown = (np.asarray(ghosts) & _NOT_DRAWN) == 0
     if not shown.any():
-        msg = "all cells of the mesh are hidden; show some of them"
-        raise FieldError(msg)
+        raise FieldError("all cells of the mesh are hidden; show some of them")
     if shown.all():
         return mesh
     return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)

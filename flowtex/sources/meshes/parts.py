@@ -63,8 +63,7 @@ def time_steps(
         yield from _read(source, block, **options)
     elif isinstance(source, (list, tuple)):
         if not source:
-            msg = "the list of meshes is empty; expected one mesh for each time step"
-            raise FieldError(msg)
+            raise FieldError("the list of meshes is empty; expected one mesh for each time step")
         for n, item in enumerate(source):
             if isinstance(item, TimeStep):
                 yield item if block is None else replace(item, grid=pick(item.grid, block))
@@ -193,8 +192,7 @@ def pick(mesh: Any, block: int | str) -> pv.DataSet:
     if not parts:
         raise FieldError(_no_mesh(mesh, "the mesh"))
     listed = ", ".join(f"{number} ({name})" for number, name in enumerate(parts))
-    msg = f"block is {block!r}; the blocks of the file are: {listed}"
-    raise FieldError(msg)
+    raise FieldError(f"block is {block!r}; the blocks of the file are: {listed}")
 
 
 def _steps(
@@ -289,18 +287,16 @@ def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
         for grid in (step.grid, first.grid)
     ]
     if is_structured(first.grid) and sizes[0] != sizes[1]:
-        msg = (
+        raise FieldError(
             f"{step.label} has {sizes[0]} and the first step has {sizes[1]}; expected the same "
             f"nodes in every step. {PARTS}"
         )
-        raise FieldError(msg)
     if missing := missing_arrays(step.grid, velocity):
         arrays = ", ".join(map(str, catalogue(step.grid))) or "none"
-        msg = (
+        raise FieldError(
             f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
             f"every step. Its arrays, with their numbers of components: {arrays}"
         )
-        raise FieldError(msg)
 
 
 def aligned(step: TimeStep, first: TimeStep) -> TimeStep:
@@ -374,21 +370,19 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
     """Raise a FieldError for a step with another surface, or with nodes that moved."""
     before, after = first.points, sheet.points
     if before.shape != after.shape or not np.array_equal(first.triangles, sheet.triangles):  # type: ignore[arg-type]
-        msg = (
+        raise FieldError(
             f"{label} has a surface of {_size(sheet)} and the first step has one of "
             f"{_size(first)}; expected the same nodes and cells in every step: sample all steps "
             f"onto one mesh with mesh.sample(step), or draw one of the times. {PARTS}"
         )
-        raise FieldError(msg)
     compared: Bools = first.shown & sheet.shown & np.isfinite(before + after).all(-1)
     moved = float(np.max(np.abs(after[compared] - before[compared]), initial=0.0))
     if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[compared], axis=0).max()):
-        msg = (
+        raise FieldError(
             f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
             f"meshes are not supported: sample all steps onto one mesh with mesh.sample(step). "
             f"{PARTS}"
         )
-        raise FieldError(msg)
 
 
 def _size(sheet: Sheet) -> str:
@@ -412,11 +406,10 @@ def ordered_times(steps: Sequence[TimeStep], record: Record) -> tuple[list[int],
         record("align", "the steps are sorted by their times", notable=True)
     for n, following in pairwise(order):
         if times[n] == times[following]:
-            msg = (
+            raise FieldError(
                 f"{steps[n].label} and {steps[following].label} both have the time {times[n]:g}; "
                 "expected different times: leave out one of them, or give times=[...]"
             )
-            raise FieldError(msg)
     moments = [times[n] for n in order]
     lengths = np.diff(moments)
     if len(lengths) > 1 and lengths.max() > GAP_STEPS * (usual := float(np.median(lengths))) > 0:

@@ -118,11 +118,10 @@ def find_solution(grid: Path) -> Path:
     for name in names:
         if (grid.parent / name).is_file():
             return grid.parent / name
-    msg = (
+    raise FieldError(
         f"{grid} is a PLOT3D grid, but its solution, which contains the velocity, is not in the "
         f"same folder (tried {', '.join(names)}); put it there under one of these names"
     )
-    raise FieldError(msg)
 
 
 def find_grid(solution: Path) -> Path | None:
@@ -154,12 +153,11 @@ def _check_solution(layout: Layout, solution: Path) -> None:
         sizes = _dimensions(words, rank, **form)
         other = sizes and replace(layout, dimensions=sizes).length(solution=True)
         if sizes and sizes != layout.dimensions and (rank == axes or size == other):
-            msg = (
+            raise FieldError(
                 f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has "
                 f"{layout.dimensions[:3]}; the grid file is truncated, or the solution belongs to "
                 "another grid"
             )
-            raise FieldError(msg)
         check_count(size, whole, solution.name)
         if size == whole:
             return

@@ -72,13 +72,11 @@ def read_meshes(
     """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
     record = Record()
     if preference not in (None, "point", "cell"):
-        msg = f'preference is {preference!r}; expected "point" or "cell"'
-        raise FieldError(msg)
+        raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
         option = "slice" if slice is not None else "contour"
-        msg = f"plane is {plane!r} and {option} is {cut.text}; choose one of the two"
-        raise FieldError(msg)
+        raise FieldError(f"plane is {plane!r} and {option} is {cut.text}; choose one of the two")
     steps = time_steps(mesh, block, cut=cut is not None, record=record)
     first = next(steps)
     on_grid = is_structured(first.grid) and cut is None
@@ -111,12 +109,11 @@ def _refuse(choices: dict[str, Any]) -> None:
         plane = choices["plane"]
         cut_here = plane if plane and plane[0] in "xyz" else "x=0.5"
         remedy = f'to cut it, use slice="{cut_here}"; otherwise ' if plane is not None else ""
-        msg = (
+        raise FieldError(
             f"{', '.join(refused)} applies to structured meshes, and this one is not; {remedy}omit "
             "it, or sample the mesh onto a structured one, as in "
             "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
         )
-        raise FieldError(msg)
 
 
 def choose(
@@ -241,11 +238,10 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
     elif solid or not _is_flat(points):
         axes = [0, 1]
     else:
-        msg = (
+        raise FieldError(
             f"the velocity {name!r} has two components, and the mesh lies in a plane across the "
             "axes, where their directions are unknown; expected three components"
         )
-        raise FieldError(msg)
     along = " and ".join("xyz"[axis] for axis in axes)
     if sorted(axes) == in_plane:
         record("components", f"{name}: two components, along {along} in the plane of the mesh")

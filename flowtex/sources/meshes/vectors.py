@@ -116,11 +116,10 @@ def with_array(mesh: pv.DataSet, name: str, values: AnyArray) -> pv.DataSet:
         if values.shape == (count,):
             data_of(mesh, where)[name] = values
             return mesh
-    msg = (
+    raise FieldError(
         f"scalars is an array of the shape {values.shape}; expected the name of an array, "
         f"({mesh.n_points},) for the points of the mesh, or ({mesh.n_cells},) for its cells"
     )
-    raise FieldError(msg)
 
 
 def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:

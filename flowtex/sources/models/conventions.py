@@ -83,12 +83,11 @@ def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         missing = [name for name in missing if name not in variables]
         names = str(attrs.get("node_coordinates", "")).split()
         if missing or len(names) != 2:
-            msg = (
+            raise FieldError(
                 f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
                 "data do not contain; expected two coordinates of the nodes and the nodes of "
                 "each face. Open the file that has them together with this one"
             )
-            raise FieldError(msg)
         corners = variables[attrs["face_node_connectivity"]]
         x, y = (variables[name] for name in names)
         if _is_latitude(x):
@@ -197,12 +196,11 @@ def _check_classes(datasets: Sequence[xr.Dataset]) -> None:
         and re.search("speed|direction", str(array.attrs.get("standard_name", "")))
     }
     if classes and not any(pair.rank <= NAMED for pair in find_pairs(datasets)):
-        msg = (
+        raise FieldError(
             f"{' and '.join(classes)} store classes of the speed and the direction, not their "
             f"values; their bounds are in {' and '.join(classes.values())}. Replace each number "
             "by the middle of its class, compute the components, and pass the dataset with both"
         )
-        raise FieldError(msg)
 
 
 def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
@@ -317,12 +315,11 @@ def join_faces(
     if not face:
         return None
     if (wanted or pair.along) != "earth":
-        msg = (
+        raise FieldError(
             f"{u.name} and {pair.v.name} lie along the rows and columns of each of {sizes[face]} "
             f"faces ({face}), as no standard name says eastward and northward; compute these "
             f"components, or select one face, as in isel={{{face!r}: 0}}"
         )
-        raise FieldError(msg)
     for lon, _ in _pairs([ds[name] for ds in datasets for name in ds.variables]):
         dims = {str(d) for d in lon.dims}
         if lon.ndim == 3 and face in dims:
@@ -362,12 +359,11 @@ def _with_centres(ds: xr.Dataset) -> xr.Dataset:
         or not 0 < len(cells) <= 12 * nside**2
         or cells.max() >= 12 * nside**2
     ):
-        msg = (
+        raise FieldError(
             f"the grid mapping {dict(grids[0].attrs)} does not fit {len(cells):,} cells along "
             f"{dim!r}; expected healpix_nside, healpix_order 'ring' or 'nested', and 12 nside² "
             "cells, or an integer coordinate with the numbers of the cells"
         )
-        raise FieldError(msg)
     lon, lat = healpix_centres(cells.astype(np.int64), nside, nested=order != "ring")
     return ds.assign_coords(
         lon=(dim, lon, {"units": "degrees_east"}), lat=(dim, lat, {"units": "degrees_north"})

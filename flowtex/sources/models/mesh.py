@@ -238,11 +238,10 @@ def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
     values = values - first
     present &= (values >= 0) & (values < count)
     if not present.any():
-        msg = (
+        raise FieldError(
             f"{corners.name!r} has no node numbers from {first} to {first + count - 1}; expected "
             "numbers of nodes"
         )
-        raise FieldError(msg)
     if mesh.kind == "MPAS" and values.shape[1] == 3:
         present &= present.all(axis=1, keepdims=True)  # at the border of a region
     return _corners_first(np.where(present, values, -1))
@@ -292,11 +291,10 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
     used = np.flatnonzero(np.isfinite(p).all(axis=1))
     p = p[used]
     if len(p) < FEWEST:
-        msg = (
+        raise FieldError(
             f"there are {len(p)} points with a position; expected at least {FEWEST} points, "
             "between which triangles make a surface. Interpolate the values of stations to a grid"
         )
-        raise FieldError(msg)
     p = p / np.linalg.norm(p, axis=1, keepdims=True) if on_sphere else p
     triangles = _on_sphere(p) if on_sphere else _in_plane(p[:, :2])
     if len(triangles):
@@ -305,12 +303,11 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
             triangles = triangles[~_across_gaps(triangles, radii, len(p))]
             if 2 * len(np.unique(triangles)) > len(p):
                 return used[triangles]
-    msg = (
+    raise FieldError(
         f"the {len(p):,} points lie along lines, or in groups far from each other, so no triangles "
         "between neighbours make a surface. Flowtex draws surfaces, not trajectories or "
         "stations; interpolate the values to a grid"
     )
-    raise FieldError(msg)
 
 
 def _on_sphere(p: Floats) -> Indices:

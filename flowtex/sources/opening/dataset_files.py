@@ -136,8 +136,7 @@ def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:
     if len(groups) > 1 and groups[0] != tree.path:
         listed = ", ".join(groups)
         example = f"tree[{groups[0]!r}]" if file is None else repr(f"{file}{groups[0]}")
-        msg = f"the groups {listed} have a velocity; give one, as in {example}"
-        raise FieldError(msg)
+        raise FieldError(f"the groups {listed} have a velocity; give one, as in {example}")
     return parts[groups[0] if groups else tree.path]
 
 
@@ -278,10 +277,9 @@ def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.D
         ).sortby(name)
         return series
     except (ValueError, KeyError) as error:
-        msg = (
+        raise FieldError(
             f"the files are not steps of one series: {error}. Give only files that belong together"
-        )
-        raise FieldError(msg) from error
+        ) from error
 
 
 def _chunked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
@@ -344,8 +342,7 @@ def dataset_paths(path: Any) -> list[Path]:
     """Return the paths of data of the Earth, or of groups as ``model.nc/ocean``; else none."""
     items = path if isinstance(path, (list, tuple)) else [path]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
-        msg = f"path is {brief(path)}; expected the path of a file, or a list of paths"
-        raise FieldError(msg)
+        raise FieldError(f"path is {brief(path)}; expected the path of a file, or a list of paths")
     paths = [Path(item).expanduser() for item in items]
     files = [file_and_group(p)[0] for p in paths]
     all_exist = paths and all(map(is_dataset_file, files)) and all(file.exists() for file in files)
@@ -408,8 +405,7 @@ def open_files(path: Path) -> Opened:
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
-            msg = f"the group {group!r} does not exist; expected {groups}"
-            raise FieldError(msg)
+            raise FieldError(f"the group {group!r} does not exist; expected {groups}")
         return Opened.of([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
 
 
@@ -424,9 +420,9 @@ def import_cfgrib() -> Any:
         if not absent and "ecCodes" not in str(error):
             raise
         until = ".".join(map(str, ECCODES_UNTIL))
-        msg = (
+        raise ModuleNotFoundError(
             "reading GRIB needs the library ecCodes, which is missing: its wheels support Python "
             f"up to {until}. Use such a Python, or cfgrib from conda-forge, which includes the "
-            "library"
-        )
-        raise ModuleNotFoundError(msg, name="cfgrib") from error
+            "library",
+            name="cfgrib",
+        ) from error

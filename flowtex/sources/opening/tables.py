@@ -66,11 +66,10 @@ def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
         return of_array(item, several=several)
     if is_dataset(item):
         return of_table(item)
-    msg = (
+    raise FieldError(
         f"data has type {type(item).__name__}; expected an xarray Dataset, DataTree or DataArray, "
         "a pandas DataFrame, or a list of them"
     )
-    raise FieldError(msg)
 
 
 def of_table(table: Any) -> xr.Dataset:
@@ -79,11 +78,10 @@ def of_table(table: Any) -> xr.Dataset:
     columns = [str(c) for c in frame.columns]
     pair = _pair(columns, LONGITUDE, LATITUDE) or _pair(columns, ACROSS, UPWARD)
     if pair is None:
-        msg = (
+        raise FieldError(
             f"the table has the columns {', '.join(columns)}; expected lon and lat, or x and y, "
             "beside the components; rename the columns, as in df.rename(columns=...)"
         )
-        raise FieldError(msg)
     x, y = pair
     frame = frame.dropna(subset=[x, y])
     planar = [c for c in columns if (ACROSS.match(c) or UPWARD.match(c)) and c not in pair]
@@ -115,8 +113,7 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
     elif hasattr(table, "to_crs"):
         if not (table.geometry.geom_type == "Point").all():
             kinds = ", ".join(map(str, table.geometry.geom_type.unique()))
-            msg = f"the geometries are {kinds}; expected points"
-            raise FieldError(msg)
+            raise FieldError(f"the geometries are {kinds}; expected points")
         on_earth = table.crs is not None
         at = (table.to_crs(4326) if on_earth else table).geometry
         names = ("lon", "lat") if on_earth else ("x", "y")
@@ -151,8 +148,9 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
         try:
             dates = pandas.to_datetime(frame[time], utc=True).dt.tz_convert(None)
         except (ValueError, TypeError) as error:
-            msg = f"the column {time!r} has {frame[time].iloc[0]!r}; expected dates or numbers"
-            raise FieldError(msg) from error
+            raise FieldError(
+                f"the column {time!r} has {frame[time].iloc[0]!r}; expected dates or numbers"
+            ) from error
         frame = frame.assign(**{time: dates})
     for axes in ([], [time], [level], [time, level]):
         if None not in axes and not frame.duplicated([*axes, y, x]).any():
@@ -162,19 +160,17 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
         same = frame[frame.duplicated(names, keep=False)]
         first = same[(same[names] == same[names].iloc[0]).all(axis=1)]
         place = ", ".join(f"{name} {first[name].iloc[0]}" for name in names)
-        msg = (
+        raise FieldError(
             f"{len(same):,} rows repeat a position; the rows {first.index[0]} and "
             f"{first.index[1]} both have {place}. Average them, as in "
             f"df.groupby({names!r}).mean(), or draw a part of the table"
         )
-        raise FieldError(msg)
     if not axes and time is not None and frame[time].nunique() > max(len(frame) / 2, 1):
-        msg = (
+        raise FieldError(
             f"nearly each of {len(frame):,} rows has its own {time} and position: a trajectory, or "
             "points that move. Flowtex draws the flow on a surface; interpolate the values to "
             "a grid, or drop the column"
         )
-        raise FieldError(msg)
     return frame, [str(axis) for axis in axes]
 
 
@@ -193,11 +189,10 @@ def _points(frame: Any, points: Any, axes: list[str], x: str, y: str) -> xr.Data
     """Return points along one dimension, and times and levels along others."""
     places = len(points) * int(np.prod([frame[axis].nunique() for axis in axes]))
     if len(frame) < FEWEST_ROWS * places:
-        msg = (
+        raise FieldError(
             f"{len(points):,} positions differ along {' and '.join(axes)}: points that move. "
             f"Choose rows of one {axes[0]}, or interpolate the values to a grid"
         )
-        raise FieldError(msg)
     number = frame.groupby([x, y], sort=False).ngroup()
     at = {name: ("point", points[name].to_numpy()) for name in (x, y)}
     rows = frame.drop(columns=[x, y]).assign(point=number)
@@ -212,8 +207,9 @@ def of_features(collection: dict[str, Any]) -> xr.Dataset:
     for feature in collection.get("features", []):
         geometry = feature.get("geometry") or {}
         if geometry.get("type") != "Point":
-            msg = f"a feature has the geometry {geometry.get('type')!r}; expected points"
-            raise FieldError(msg)
+            raise FieldError(
+                f"a feature has the geometry {geometry.get('type')!r}; expected points"
+            )
         lon, lat, *_ = geometry["coordinates"]
         rows.append({**(feature.get("properties") or {}), "lon": lon, "lat": lat})
     return of_table(pandas.DataFrame(rows))
@@ -229,8 +225,9 @@ def read_csv(path: Path) -> xr.Dataset:
     options = {"sep": separator if separator in header else r"\s+", "comment": "#"}
     names = next(csv.reader([header.strip()], delimiter=separator), [])
     if not names or any(re.fullmatch(r"[-+.\deE]+", name.strip()) for name in names):
-        msg = f"its first line is {header.strip()[:60]!r}; expected the names of columns"
-        raise FieldError(msg)
+        raise FieldError(
+            f"its first line is {header.strip()[:60]!r}; expected the names of columns"
+        )
     return of_table(pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options))
 
 
@@ -243,8 +240,9 @@ def read_vec(path: Path) -> xr.Dataset:
     _, found, columns = header.partition("VARIABLES=")
     names = VEC_COLUMN.findall(columns.partition("DATASETAUXDATA")[0].partition("ZONE")[0])
     if not found or len(names) < 4:
-        msg = f"its first line is {header[:60]!r}; expected VARIABLES= with X, Y, U and V"
-        raise FieldError(msg)
+        raise FieldError(
+            f"its first line is {header[:60]!r}; expected VARIABLES= with X, Y, U and V"
+        )
     labels = [name if not unit else f"{name} [{unit.strip()}]" for name, unit in names]
     frame = pandas.read_csv(path, skiprows=1, header=None, names=labels, skipinitialspace=True)
     if VEC_FLAG in frame:
@@ -267,16 +265,14 @@ def read_winds(path: Path) -> xr.Dataset:
     except FieldError:
         raise
     except (ValueError, RecursionError) as error:
-        msg = f"it is not valid JSON ({error})"
-        raise FieldError(msg) from error
+        raise FieldError(f"it is not valid JSON ({error})") from error
     if isinstance(records, dict) and records.get("type") == "FeatureCollection":
         return of_features(records)
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
-        msg = (
+        raise FieldError(
             "it is not a list of records with header and data, as used by leaflet-velocity and "
             "earth"
         )
-        raise FieldError(msg)
     components: dict[str, Any] = {}
     for record in records:
         header = record.get("header")
@@ -286,13 +282,13 @@ def read_winds(path: Path) -> xr.Dataset:
             components[name] = _component(xarray, header, record.get("data"), name)
     if len(components) < 2:
         missing = " and ".join(n for n in WORDS if n not in components)
-        msg = f"the record of the component {missing} is missing (parameterNumber 2 and 3)"
-        raise FieldError(msg)
+        raise FieldError(
+            f"the record of the component {missing} is missing (parameterNumber 2 and 3)"
+        )
     try:
         merged: xr.Dataset = xarray.merge(list(components.values()), join="exact")
     except ValueError as error:
-        msg = f"the two components have different grids ({error})"
-        raise FieldError(msg) from error
+        raise FieldError(f"the two components have different grids ({error})") from error
     return merged
 
 
@@ -301,8 +297,9 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
     try:
         columns, rows = int(header["nx"]), int(header["ny"])
         if min(columns, rows) < 1:
-            msg = f"nx is {columns} and ny {rows} of the component {name}; expected 1 or more"
-            raise FieldError(msg)
+            raise FieldError(
+                f"nx is {columns} and ny {rows} of the component {name}; expected 1 or more"
+            )
         check_count(len(data), columns * rows, f"the component {name}", "numbers")
         lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
         south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
@@ -312,8 +309,7 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
     except FieldError:
         raise
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        msg = f"the record of the component {name} is damaged ({error})"
-        raise FieldError(msg) from error
+        raise FieldError(f"the record of the component {name} is damaged ({error})") from error
     coordinates: dict[str, Any] = {
         "latitude": ("latitude", lat, {"units": "degrees_north"}),
         "longitude": ("longitude", lon, {"units": "degrees_east"}),
@@ -337,11 +333,10 @@ def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:
     if dim is None:
         if not several or array.name is None:
             dims = ", ".join(f"{name}: {size}" for name, size in array.sizes.items())
-            msg = (
+            raise FieldError(
                 f"data is the DataArray {array.name!r} ({dims}) of one scalar; expected an axis of "
                 "two or three components, such as 'component', or a Dataset with both components"
             )
-            raise FieldError(msg)
         return array.to_dataset()
     named = array.rename("flow").to_dataset()
     return _split(named, "flow", dim, prefix="")
@@ -384,11 +379,10 @@ def _split(ds: xr.Dataset, name: str, dim: str, prefix: str) -> xr.Dataset:
         places = drawn
     if not set(drawn) <= set(places):
         axes = " and ".join("xyz"[n] for n in drawn)
-        msg = (
+        raise FieldError(
             f"{name!r} has the components {', '.join(labels)} along {dim!r} on the axes {axes}; "
             "expected components along these axes"
         )
-        raise FieldError(msg)
     words = EARTHWARD if all(map(EARTH.search, labels[:2])) and labels else "uvw"
     order = [*drawn, *(n for n in range(3) if n in places and n not in drawn)]
     parts: dict[str, Any] = {}

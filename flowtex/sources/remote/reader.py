@@ -92,8 +92,7 @@ class Reader:
     @property
     def _opened(self) -> Source:
         if self._source is None:
-            msg = "no file is open"
-            raise RuntimeError(msg)
+            raise RuntimeError("no file is open")
         return self._source
 
     def _keep(self, steps: LazySteps) -> int:
@@ -175,16 +174,13 @@ def _check(field: FlowField) -> None:
     if (corners := field.triangles) is not None:
         shapes["triangles"] = (corners, (len(corners), 3), "iu")
         if corners.size and not 0 <= corners.min() <= corners.max() < columns:
-            msg = f"triangles have nodes {corners.min()} to {corners.max()}"
-            raise ValueError(msg)
+            raise ValueError(f"triangles have nodes {corners.min()} to {corners.max()}")
     for name, array in field.scalars.items():
         count = len(corners) if corners is not None and name in field.on_cells else columns
         shapes[name] = (array, (len(array), rows, count), "biuf")
     for name, (array, shape, kinds) in shapes.items():
         if isinstance(array, LazySteps):
             if len(array) != shape[0]:
-                msg = f"{name} has {len(array)} steps; expected {shape[0]}"
-                raise ValueError(msg)
+                raise ValueError(f"{name} has {len(array)} steps; expected {shape[0]}")
         elif array.shape != shape or array.dtype.kind not in kinds:
-            msg = f"{name} is {array.dtype} of shape {array.shape}; expected {shape}"
-            raise ValueError(msg)
+            raise ValueError(f"{name} is {array.dtype} of shape {array.shape}; expected {shape}")

@@ -122,8 +122,9 @@ class _OpenFile:
     def check(self) -> None:
         """Raise a FieldError if the file has changed since it was opened."""
         if file_identity(self.paths) != self.identity:
-            msg = f"{self.paths[0]}: the file has changed since it was opened; open it again"
-            raise FieldError(msg)
+            raise FieldError(
+                f"{self.paths[0]}: the file has changed since it was opened; open it again"
+            )
 
     def forget(self, number: int) -> None:
         """Let the other process forget steps, with the next request."""
@@ -171,8 +172,7 @@ def open_remote(paths: Sequence[Path]) -> RemoteSource:
         if file_identity(paths) == source.identity:
             return source
         source.close()
-    msg = f"{paths[0]}: the file changed while it was read; open it when it is complete"
-    raise FieldError(msg)
+    raise FieldError(f"{paths[0]}: the file changed while it was read; open it when it is complete")
 
 
 def prepare_readers() -> None:

@@ -52,8 +52,9 @@ class Clusters:
         """Return the finest level, in which each node represents itself."""
         surface = field.surface
         if not isinstance(surface, TriangleSurface):
-            msg = "this field has no triangles; expected one of FlowField.from_triangles"
-            raise FieldError(msg)
+            raise FieldError(
+                "this field has no triangles; expected one of FlowField.from_triangles"
+            )
         triangles, beside = surface.triangles, surface.neighbours
         open_sides = (beside < 0) | ~surface.cells[beside]
         open_sides[~surface.cells] = False

@@ -215,8 +215,9 @@ class Pyramid:
         first = [at * TILE_CELLS for at in key[1:]]
         shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
         if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
-            msg = f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
-            raise KeyError(msg)
+            raise KeyError(
+                f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+            )
         last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
         points, valid = self._positions(
             key.level, *(np.arange(a, b + 1) for a, b in zip(first, last, strict=True))

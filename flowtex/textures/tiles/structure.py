@@ -141,10 +141,10 @@ def check_structure(field: FlowField, settings: Settings) -> None:
         if not (value := getattr(settings, name)):
             continue
         if field.sign_free:
-            msg = (
+            raise SettingsError(
                 f"{name} is {value}; expected {TABLE[name].default}, because the field is sign-free"
             )
-            raise SettingsError(msg)
         if name == "nullclines" and field.surface.frame is None:
-            msg = "nullclines is True; expected False: the surface is curved and has no x and y"
-            raise SettingsError(msg)
+            raise SettingsError(
+                "nullclines is True; expected False: the surface is curved and has no x and y"
+            )

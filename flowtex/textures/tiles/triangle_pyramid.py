@@ -116,8 +116,9 @@ class TrianglePyramid(Pyramid):
         """Return the textures of a tile, as for structured surfaces."""
         count = 2 ** (self._steps(key.level) - 1)
         if not (0 <= key.level < self.depth and all(0 <= at < count for at in key[1:])):
-            msg = f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
-            raise KeyError(msg)
+            raise KeyError(
+                f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+            )
         level = self._clusters[key.level]
         members, masks = self._triangles(key)
         if not len(members):

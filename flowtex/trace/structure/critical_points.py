@@ -75,8 +75,9 @@ class Records(ABC):
         """
         geometries, features = self._geometries(), []
         if None in geometries:
-            msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
-            raise FieldError(msg)
+            raise FieldError(
+                "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
+            )
         for geometry, row in zip(geometries, self.records(), strict=True):
             properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
             features.append({"type": "Feature", "geometry": geometry, "properties": properties})
@@ -178,8 +179,9 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         """Return the points of the given kinds."""
         for kind in kinds:
             if kind not in KINDS:
-                msg = f"kind {kind!r} does not exist; expected one of {', '.join(KINDS)}"
-                raise FieldError(msg)
+                raise FieldError(
+                    f"kind {kind!r} does not exist; expected one of {', '.join(KINDS)}"
+                )
         return CriticalPoints([p for p in self._points if p.kind in kinds])
 
     def strongest(self, count: int) -> CriticalPoints:
@@ -260,8 +262,7 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
     """
     check_field(field, FlowField)
     if field.sign_free:
-        msg = "critical points need a direction, but this field is sign-free"
-        raise FieldError(msg)
+        raise FieldError("critical points need a direction, but this field is sign-free")
     points: list[CriticalPoint] = []
     for part in steady_parts(field, steps, "Finding critical points"):
         rates = formula_rates(part)

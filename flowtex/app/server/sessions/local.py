@@ -72,11 +72,10 @@ class LimitedMessages(UnChunker):
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:
             self.release_pending_messages()
-            msg = (
+            raise ValueError(
                 f"more than {OPEN_MESSAGES} messages are incomplete; expected one of them to end "
                 "first"
             )
-            raise ValueError(msg)
         return self._checked(message) if isinstance(message, dict) else message
 
     def _checked(self, message: dict[str, Any]) -> dict[str, Any] | None:
@@ -190,8 +189,7 @@ class LocalSession(Session):
                 if message.type == WSMsgType.BINARY:
                     await link.send(True, message)
                 elif message.type == WSMsgType.TEXT:
-                    msg = "received text; expected bytes"
-                    raise ValueError(msg)
+                    raise ValueError("received text; expected bytes")
         finally:
             # wslink's endpoint forgets the connection, but not the data that it holds for it.
             await self._endpoint.onClose(link.client_id)

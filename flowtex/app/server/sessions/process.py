@@ -56,10 +56,10 @@ def process_opener(
             if again and str(error) == ENDED:  # the process to fork from has died
                 return await open_session(again=False)
             if error.kind and error.kind != "FieldError":
-                msg = f"{error.kind}: {error}\n{error.trace}"
-                raise RuntimeError(msg) from error
-            msg = str(error) if error.kind else f"the process of the page {error}"
-            raise FieldError(msg) from error
+                raise RuntimeError(f"{error.kind}: {error}\n{error.trace}") from error
+            raise FieldError(
+                str(error) if error.kind else f"the process of the page {error}"
+            ) from error
         opened(about["said"])
         return ProcessSession(child, about)
 
@@ -119,8 +119,7 @@ class ProcessSession(Session):
                     if message.type == WSMsgType.BINARY:
                         await connection.send_bytes(message.data)
                     elif message.type == WSMsgType.TEXT:
-                        msg = "received text; expected bytes"
-                        raise ValueError(msg)
+                        raise ValueError("received text; expected bytes")
             except ConnectionError:  # the process has ended the connection, or itself
                 await answering
             finally:
