@@ -71,9 +71,10 @@ VALUE_SHARE = 2.0**-17
 PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3
-#: Parameters of glibc's ``mallopt``, and bytes: those of the heap that may stay free, and those of
-#: an array above which it has separate pages, which are returned when it is freed.
-TRIM, MMAP = (-1, 64 << 20), (-3, 1 << 20)
+#: Parameter of glibc's ``mallopt`` for the free heap that it keeps, and its value in bytes.
+TRIM = (-1, 64 << 20)
+#: Parameter for the size from which an array has pages of its own, and its value in bytes.
+MMAP = (-3, 1 << 20)
 #: Most bytes sent to the workers of a cluster; a larger source contains its data.
 MOST_SENT = 64_000_000
 

@@ -150,8 +150,8 @@ class Child:
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
-        Raises a ChildError when there is none in ``timeout`` seconds, and ends the child. When the
-        work was cancelled, the child stops this request, and continues.
+        Ends the child and raises a ChildError if it does not answer within ``timeout`` seconds. If
+        the work is cancelled, the child stops this request and continues.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()

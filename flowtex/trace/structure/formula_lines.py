@@ -167,7 +167,7 @@ def _step(rates: Rates, at: Floats, scale: Floats, cell: Floats) -> tuple[Floats
 
 
 def _newton(rates: Rates, start: Floats, scale: Floats, cell: Floats) -> tuple[Floats, Floats]:
-    """Return the zeros near places (N, 2), NaN where there is none, and the rates left there."""
+    """Return the nearest zero of each place (N, 2), NaN if none is near, and the rates left."""
     best, least = np.full(start.shape, np.nan), np.full(len(start), np.inf)
     at, going = start.copy(), np.arange(len(start))
     for _ in range(STEPS):
