@@ -10,10 +10,12 @@ import os
 import re
 import shutil
 import subprocess
+from collections import deque
 from collections.abc import Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from threading import Thread
 from typing import Any, TypeVar
 
 import aiohttp
@@ -28,6 +30,7 @@ T = TypeVar("T")
 
 PREFERENCES = 'user_pref("webgl.force-enabled", true);\n'
 CALL = "async (words) => JSON.stringify(await (%s)(...JSON.parse(words)) ?? null)"
+TEXT = "() => document.body.innerText"
 SIZE = {"width": 500, "height": 350}
 
 
@@ -83,7 +86,7 @@ class Firefox:
     def wait_for_function(self, function: str) -> None:
         """Wait until a function returns what is true."""
         call = f"async () => Boolean(await ({function})())"
-        wait_until(lambda: self.evaluate(call), lambda: function)
+        wait_until(lambda: self.evaluate(call), lambda: (function, self.evaluate(TEXT)))
 
     def screenshot(self) -> Bytes:
         """Return what the window shows, (H, W, 3)."""
@@ -140,6 +143,8 @@ def firefox(folder: Path) -> Iterator[Firefox]:
         address = next((match[1] for match in found if match), None)
         if address is None:
             pytest.skip("Firefox does not start")
+        # Firefox stops where nobody reads its warnings.
+        Thread(target=deque, args=(browser.stderr, 0), daemon=True).start()
         page = Firefox(address)
         stack.callback(page.close)
         yield page
