@@ -48,7 +48,7 @@ SLOW_CLIENTS, SLOW_S = 700, 60.0
 #: Seconds between two acts of a person, between two killed processes, and rows of the table.
 ACT_S, KILL_S, ROWS = (2.0, 10.0), 15.0, 6
 #: In the command of what reads files, and of the process that it is forked from.
-READER = "flowtex.sources.remote.reader"
+READER = "flowtex.sources.remote"
 #: What the table counts.
 COUNTED = ("taken", "refused", "killed", "slow")
 #: Part of the time after which the disk is full, and for which it is.

@@ -17,7 +17,7 @@ from flowtex._util.child.worker import Answer
 from flowtex._util.notices import notify
 from flowtex._util.progress import check
 from flowtex._util.temporary import TemporaryFolder
-from flowtex.sources.remote.reader import Reader
+from flowtex.sources.remote import Reader
 
 
 def is_gone(pid: int | str) -> bool:

@@ -193,7 +193,7 @@ PROTOCOLS = {
     "app/server/sessions/local.py: ValueError",
     "app/server/sessions/process.py: ValueError",
     "app/server/site.py: ValueError",
-    "sources/remote/reader.py: ValueError",
+    "sources/remote.py: ValueError",
     "field/steps.py: IndexError",  # of sequences
     "pyramid/layout.py: ValueError",
     "pyramid/objects.py: ValueError",  # of a codec of Zarr's

@@ -51,7 +51,7 @@ app.command("flowtex.cli.show:show", help="Show files or a folder in a window or
 #: Entry point of a forked session, and modules that are loaded before the fork.
 ENTRY = "flowtex.cli.commands:hosted"
 PRELOAD = (
-    "flowtex.sources.remote.source:prepare_readers",  # sessions share the processes that read files
+    "flowtex.sources.remote:prepare_readers",  # sessions share the processes that read files
     *("flowtex.cli.commands", "flowtex.cli.show", "flowtex.app.flow_app", "trame.widgets.vuetify3"),
     *("trame_client.module.vue3", "trame_vuetify.module.v3", "vtkmodules.vtkInteractionWidgets"),
     *("scipy.interpolate", "xarray", "cf_xarray", "netCDF4", "pyproj", "dask.array"),

@@ -20,8 +20,8 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
+from flowtex.field.derived import magnitude_label
 from flowtex.field.derived.methods import FieldQuantities
-from flowtex.field.derived.vectors import magnitude_label
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
 from flowtex.field.grids.arrays import grid_nodes

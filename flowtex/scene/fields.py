@@ -8,8 +8,7 @@ import numpy as np
 
 from flowtex._util.cache import WeakCache, digest
 from flowtex.field import FlowField
-from flowtex.field.derived import DERIVED
-from flowtex.field.derived.vectors import with_vector_scalar
+from flowtex.field.derived import DERIVED, with_vector_scalar
 from flowtex.field.steps import LazySteps
 from flowtex.textures.tiles.shared import has_pyramid
 

@@ -42,8 +42,7 @@ from flowtex._util.written import (
 )
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.derived import SIGNED
-from flowtex.field.derived.vectors import COMPONENTS, component_name
+from flowtex.field.derived import COMPONENTS, SIGNED, component_name
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import Camera, read_camera

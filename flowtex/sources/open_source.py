@@ -24,7 +24,7 @@ from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.files import Identity, one_path, open_file
-from flowtex.sources.maps.grid_map import projection_of
+from flowtex.sources.maps import projection_of
 from flowtex.sources.meshes.parts import (
     Parts,
     TimeStep,

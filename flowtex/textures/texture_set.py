@@ -43,8 +43,7 @@ from flowtex.settings import Settings, SettingsError
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
-from flowtex.trace.lags import typical_speed
-from flowtex.trace.slices import TraceSlices
+from flowtex.trace.slices import TraceSlices, typical_speed
 from flowtex.trace.store import SliceStore
 
 #: Most slices on each side, by the room in a shader.

@@ -19,8 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
-from flowtex.trace.lags import FIRST_CELLS, drawn_lags, longest_path
-from flowtex.trace.slices import TraceSlices
+from flowtex.trace.slices import FIRST_CELLS, TraceSlices, drawn_lags, longest_path
 from flowtex.trace.trace import trace
 
 #: Size of the slices that are cached, besides the ones in use.

@@ -29,9 +29,8 @@ from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.validation import known_nodes
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
-from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
-from flowtex.trace.slices import TraceSlices
+from flowtex.trace.slices import TraceSlices, choose_lags, lag_unit
 from flowtex.trace.triangles.trace import triangle_paths, triangle_slices
 
 A = TypeVar("A")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flowtex.field import FlowField
-from flowtex.trace.lags import choose_lags
+from flowtex.trace.slices import choose_lags
 from paper.bench import Bench
 from paper.data_sets import KILO, MEGA, PAIR_BYTES, PUBLISHED, VECTOR_BYTES
 from paper.findings import Claim, Finding, Section, Table, Text

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from flowtex import FlowField, examples
-from flowtex.examples import _flows, _shipped, delta_wing, delta_wing_field
+from flowtex.examples import _shipped, delta_wing, delta_wing_field
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -219,7 +219,7 @@ def test_pressure_lifts_the_airfoil_as_its_circulation_says() -> None:
     mean = (pressure[1:] + pressure[:-1]) / 2.0
     # Nodes run clockwise, so (-dy, dx) points out of the body, and pressure pushes inwards.
     force = -np.sum(mean[:, None] * np.stack([-steps[:, 1], steps[:, 0]], axis=-1), axis=0)
-    lift = 2.0 * _flows.CIRCULATION / _flows.CHORD
+    lift = 2.0 * examples.CIRCULATION / examples.CHORD
     angle = np.radians(8.0)
     along, across = (
         np.array([np.cos(angle), np.sin(angle)]),

@@ -11,7 +11,7 @@ from flowtex import FieldError, FlowField
 from flowtex.field import units
 from flowtex.field.steps import LazySteps
 from flowtex.scene.scene import Scene
-from flowtex.trace.lags import typical_speed
+from flowtex.trace.slices import typical_speed
 
 pytest.importorskip("pint")
 

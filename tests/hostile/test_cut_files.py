@@ -20,7 +20,7 @@ from flowtex import FlowField
 from flowtex._util.child import Child
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.remote.source import open_remote
+from flowtex.sources.remote import open_remote
 
 #: Cuts, or changes, of a file of each format.
 CASES = 24
@@ -220,7 +220,7 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], str]:
             children.append(Child(*given, **named))
         return children[-1]
 
-    monkeypatch.setattr("flowtex.sources.remote.source.Child", child)
+    monkeypatch.setattr("flowtex.sources.remote.Child", child)
 
     def digest(path: Path) -> str:
         try:

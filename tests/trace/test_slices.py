@@ -16,7 +16,7 @@ from flowtex import FieldError, FlowField, TraceSlices, trace
 from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
-from flowtex.trace.lags import choose_lags
+from flowtex.trace.slices import choose_lags
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import paths
 

@@ -18,7 +18,7 @@ import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.trace.lags import choose_lags, small_cell
+from flowtex.trace.slices import choose_lags, small_cell
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import paths
 

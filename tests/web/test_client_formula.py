@@ -14,7 +14,7 @@ from pages import COMPLETE, acted, opened_page
 from PIL import Image
 
 import flowtex
-from flowtex.trace.lags import typical_speed
+from flowtex.trace.slices import typical_speed
 from paper import quality
 
 if TYPE_CHECKING:

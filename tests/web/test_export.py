@@ -22,7 +22,7 @@ from PIL import Image
 import flowtex
 from flowtex import examples
 from flowtex.errors import FieldError
-from flowtex.examples._flows import gyre_nodes as nodes_of
+from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
 from flowtex.web.export import export

@@ -21,7 +21,7 @@ from waiting import PATIENCE_S, wait_until
 import flowtex
 from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
-from flowtex.examples._flows import gyre_nodes as nodes_of
+from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.field.earth import Projection
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE

@@ -32,7 +32,7 @@ from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.open_source import DatasetSource, FlowSource, Source
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
-from flowtex.sources.remote.source import open_remote, prepare_readers
+from flowtex.sources.remote import open_remote, prepare_readers
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.trace.store import SliceStore
 

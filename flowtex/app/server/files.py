@@ -24,7 +24,7 @@ from aiohttp import web
 from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.security import new_secret
 from flowtex.errors import FieldError
-from flowtex.sources.remote.source import prepare_readers
+from flowtex.sources.remote import prepare_readers
 
 #: Most downloads of a page; the oldest one is removed for another.
 MOST_DOWNLOADS = 4

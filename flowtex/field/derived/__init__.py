@@ -1,4 +1,10 @@
-"""Scalars that are computed from the velocity at the nodes, and its gradient along a surface."""
+"""Scalars that are computed from the velocity at the nodes, and its gradient along a surface.
+
+Magnitudes and components of vectors are scalars too, ``U`` and ``U_x`` of the vectors ``U``.
+The magnitude of a velocity is labelled as the speed, that of others ``|B|``. The unit decides where
+it is known. Otherwise vectors are a velocity if a word of their name means one, such as ``U``,
+``wind`` or ``relative_velocity``, and no other word another quantity, such as ``wind_stress``.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex._util.vectors import norm
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
-from flowtex.field.derived.vectors import vector_names, with_vector_scalar
-from flowtex.field.steps import LazySteps, Steps, map_steps
+from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
+from flowtex.field.units import NONE, VELOCITIES, measures, parsed
 from flowtex.field.validation import NO_DATA, known_nodes
 
 #: Functions of the gradient a[m, n], the change of component m along direction n.
@@ -30,6 +37,24 @@ FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
 COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 #: Long names that differ from the names.
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
+#: Letters of the components, along the axes of space.
+LETTERS = "xyz"
+COMPONENTS = {**dict(zip("012", LETTERS, strict=True)), **{x: x for x in LETTERS}}
+#: Name of vectors that have none.
+UNNAMED = "velocity"
+#: Words of a velocity, also with a number or a letter of a component or a height.
+_VELOCITY = re.compile(
+    r"vel|velo|velocit(y|ies)|winds?|currents?|flow|drift|speed|"
+    r"(vel|[uv])(\d+m?|[uvwxyzijkoa]{1,2}|as?|r|rel|theta|phi|mean|avg)?|uvw?"
+)
+#: Words of other quantities that are made with these.
+_OTHER = re.compile(
+    r"stress|shear|flux|densit(y|ies)|grad(ient)?|gradients|force|heat|mass|momentum|rho|energy|"
+    r"power|charge|electric|magnetic|curl|rot|vorticity|div|lap|laplacian|acc|acceleration|"
+    r"displacements?|disp|potential|pressure|rate|ddt"
+)
+#: Words of a name: of letters of one case with a first capital, and of digits after them.
+_WORDS = re.compile(r"[A-Z]?[a-z]+\d*|[A-Z]+(?![a-z])\d*|\d+")
 
 
 def derived_steps(name: str, field: Any) -> Steps:
@@ -91,3 +116,70 @@ def derived_unit(name: str, field: Any) -> str:
         return ""
     time = f"({time})" if "/" in time else time
     return f"1/{time}²" if name == "okubo_weiss" else f"1/{time}"
+
+
+def is_velocity(name: str, unit: str = "") -> bool:
+    """Return whether vectors are a velocity; without a name and a unit they are."""
+    if unit.strip().lower() not in NONE and parsed(unit) is not None:
+        return measures(unit, VELOCITIES)
+    words = [word.lower() for word in _WORDS.findall(name)]
+    means = any(_VELOCITY.fullmatch(word) for word in words)
+    return not name or (means and not any(_OTHER.fullmatch(word) for word in words))
+
+
+def magnitude_label(name: str, unit: str = "") -> str:
+    """Return the text for the magnitude of vectors."""
+    if is_velocity(name, unit):
+        return "speed"
+    return f"|{name}|" if name else "magnitude"
+
+
+def component_name(name: str, axis: str) -> str:
+    """Return the name of a component of vectors, by its number or letter."""
+    return f"{name}_{COMPONENTS[axis]}"
+
+
+def with_vector_scalar(field: Any, name: str) -> Any:
+    """Return a field with the magnitude or a component of its vectors among its scalars.
+
+    The names are those of the vectors that are drawn, ``speed`` for a component of these, and
+    those of other vectors of its mesh. For any other name the field is returned as it is.
+    """
+    own = field.vectors or UNNAMED
+    base, _, letter = name.rpartition("_")
+    base = own if base == "speed" else base
+    parts = [n for n in field.parts if n.rpartition("_")[0] == name]
+    long_name, unit = name, ""
+    steps: Steps
+    on_cells: tuple[str, ...] = ()
+    if name in field.scalars or field.projection is not None:
+        return field
+    if name == own or (base == own and letter and letter in LETTERS):
+        axis = LETTERS.find(letter)
+        long_name = f"{own}_{letter}"
+        if name == own:
+            long_name = magnitude_label(field.vectors, field.velocity_unit)
+        own_part = norm if name == own else lambda vectors: vectors[..., axis]
+        steps = scaled_steps(map_steps(field.velocity, own_part), field.speed_scale)
+        unit = field.speed_unit
+    elif name in field.parts:
+        steps = field.parts[name]
+    elif parts:
+        steps = np.sqrt(sum(np.square(field.parts[part]) for part in parts))
+        long_name = f"|{name}|"
+        on_cells = (name,) if parts[0] in field.on_cells else ()
+    else:
+        return field
+    return field.same_flow(
+        scalars={**field.scalars, name: steps},
+        on_cells=(*field.on_cells, *on_cells),
+        units={**field.units, **({name: unit} if unit else {})},
+        long_names={**field.long_names, name: long_name},
+    )
+
+
+def vector_names(field: Any) -> tuple[str, ...]:
+    """Return the names of the vectors of a field whose magnitudes and components are scalars."""
+    if field.projection is not None:
+        return ()
+    return tuple(dict.fromkeys([field.vectors or UNNAMED, *(n[:-2] for n in field.parts)]))

@@ -14,8 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import DEGREE, EARTH_RADIUS, Projection
-from flowtex.field.earth.projection import MOST_LINES, STEPS
+from flowtex.field.earth import DEGREE, EARTH_RADIUS, MOST_LINES, STEPS, Projection
 
 #: Leading digits of ticks in degrees.
 DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]

@@ -28,8 +28,8 @@ from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
-from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
+from flowtex.trace.slices import drawn_lags
 from flowtex.trace.structure.formula_lines import formula_rates
 
 #: Least size of a cell in typical ones.

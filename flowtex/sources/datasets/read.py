@@ -38,7 +38,7 @@ from flowtex.sources.datasets.select import (
 )
 from flowtex.sources.datasets.values import Regions, Words, read_step, region_lines
 from flowtex.sources.datasets.vertical import is_section, read_section
-from flowtex.sources.maps.grid_map import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
+from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 

@@ -24,7 +24,7 @@ from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
-from flowtex.sources.maps.grid_map import (
+from flowtex.sources.maps import (
     CYLINDERS,
     lines_on_map,
     projection_of,

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
-from flowtex.field.derived.vectors import component_name
+from flowtex.field.derived import component_name
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.parts import (
     TimeStep,

@@ -33,7 +33,7 @@ from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
-from flowtex.trace.lags import FIRST_CELLS, small_cell, typical_speed
+from flowtex.trace.slices import FIRST_CELLS, small_cell, typical_speed
 from flowtex.trace.store import SliceStore
 
 #: Most nodes, of one time, of a field that is traced whole.

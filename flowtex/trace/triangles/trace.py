@@ -14,8 +14,7 @@ from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
-from flowtex.trace.lags import small_cell
-from flowtex.trace.slices import TraceSlices
+from flowtex.trace.slices import TraceSlices, small_cell
 from flowtex.trace.triangles.integrate import TrianglePaths, all_shares, begin, integrate
 from flowtex.trace.triangles.motion import (
     BEHIND,

@@ -123,7 +123,7 @@ async def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("xarray")
-    monkeypatch.setattr("flowtex.sources.remote.source.READER", "child_handler:TrickyReader")
+    monkeypatch.setattr("flowtex.sources.remote.READER", "child_handler:TrickyReader")
     daily(12).to_netcdf(tmp_path / "winds.nc")
     app, streamer = FlowApp(tmp_path / "winds.nc", lines="streamlines"), Streamer()
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})

@@ -200,7 +200,7 @@ def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:
 def test_a_source_whose_process_has_died_is_opened_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.sources.remote.source.READER", "child_handler:TrickyReader")
+    monkeypatch.setattr("flowtex.sources.remote.READER", "child_handler:TrickyReader")
     gyre(tmp_path / "flow.vts", 0.0)
     library = Library.of(tmp_path)
     source = library.source("flow.vts")

@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS, MapLines, Projection, coastlines, graticule
-from flowtex.field.earth.projection import COASTS, STEPS_PER_DEGREE
+from flowtex.field.earth import (
+    COASTS,
+    EARTH_RADIUS,
+    STEPS_PER_DEGREE,
+    MapLines,
+    Projection,
+    coastlines,
+    graticule,
+)
 
 NAMES = ("platecarree", "mercator", "north", "south", "lambert", "robinson", "equalearth")
 CENTERS = ((0.0, 0.0), (150.0, 40.0), (-100.0, -35.0))

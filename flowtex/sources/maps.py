@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.field.earth import GLOBE, NAMES, Projection
-from flowtex.field.earth.projection import between, tears
+from flowtex.field.earth import GLOBE, NAMES, Projection, between, tears
 from flowtex.field.grids.arrays import find_closure
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.models.mesh import Mesh

@@ -27,8 +27,14 @@ from flowtex._util.progress import Stopped, stoppable
 from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
 from flowtex.sources.open_source import open_source
-from flowtex.sources.remote.reader import Reader, describe_source, pack_field, unpack_field
-from flowtex.sources.remote.source import RemoteSource, open_remote
+from flowtex.sources.remote import (
+    Reader,
+    RemoteSource,
+    describe_source,
+    open_remote,
+    pack_field,
+    unpack_field,
+)
 
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
 
@@ -132,7 +138,7 @@ def test_levels_are_found_and_several_files_are_one_series(tmp_path: Path) -> No
 
 
 def tricky(path: Path, monkeypatch: pytest.MonkeyPatch, kind: str = "Tricky") -> RemoteSource:
-    monkeypatch.setattr("flowtex.sources.remote.source.READER", f"child_handler:{kind}Reader")
+    monkeypatch.setattr("flowtex.sources.remote.READER", f"child_handler:{kind}Reader")
     return open_remote([path])
 
 
@@ -148,7 +154,7 @@ def test_a_reader_that_dies_is_told_of(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(FieldError, match=fault):
         source.field()
     assert not source.alive and field.speed.max() > 1
-    monkeypatch.setattr("flowtex.sources.remote.source.REQUEST_TIMEOUT_S", 20.0)
+    monkeypatch.setattr("flowtex.sources.remote.REQUEST_TIMEOUT_S", 20.0)
     source = tricky(path, monkeypatch)
     pid = source.plane_of("")
     source._file._timeout = 0.2

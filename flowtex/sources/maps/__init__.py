@@ -1,1 +1,0 @@
-"""Nodes of longitude and latitude on maps."""

@@ -1,1 +1,0 @@
-"""Files that are read in a separate process."""
