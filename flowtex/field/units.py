@@ -91,7 +91,9 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
     if not velocity or velocity == speed_unit(length, time):
         return 1.0, time, velocity
     if length and not time:
-        time = _unit_of_time(velocity)
+        unit = parsed(velocity)
+        parts = [] if unit is None else [name for name, _ in (1 * unit).unit_items()]
+        time = next((symbol(name) for name in parts if measures(name, TIMES)), "s")
     own = speed_unit(length, time)
     scale = factor(velocity, own) if own else 1.0
     if scale is None:
@@ -100,10 +102,3 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
             "the positions per unit of time; expected a unit of the same kind"
         )
     return scale, time, symbol(velocity)
-
-
-def _unit_of_time(velocity: str) -> str:
-    """Return the unit of time in one of velocity, such as ``"d"`` of ``"m/day"``; else s."""
-    unit = parsed(velocity)
-    parts = [] if unit is None else [name for name, _ in (1 * unit).unit_items()]
-    return next((symbol(name) for name in parts if measures(name, TIMES)), "s")

@@ -68,6 +68,8 @@ GZIP_LEVEL, ZSTD_LEVEL = 4, 3
 VELOCITY_BITS = 11
 FLOW, VALUES, SURFACE = "flow", "values", "surface"
 DIGESTS, DIGEST_BYTES = "digests", 16
+#: Texts of a field that a store keeps.
+TEXTS = ("name", "length_unit", "time_unit", "velocity_unit", "vectors", "uncertainty")
 CONVENTION = {
     "schema_url": (
         "https://raw.githubusercontent.com/zarr-conventions/multiscales/refs/tags/v1/schema.json"
@@ -141,11 +143,7 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "version": __version__,
-        "name": field.name,
-        "length_unit": field.length_unit,
-        "time_unit": field.time_unit,
-        "velocity_unit": field.velocity_unit,
-        "vectors": field.vectors,
+        **{name: getattr(field, name) for name in TEXTS},
         "times": field.times.tolist(),
         "start": written_date(field.start),
         "projection": field.projection and field.projection.written,
@@ -163,7 +161,6 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "has_position": source.has_position is not None,
         "scalars": dict(source.scalars),
         "on_cells": list(field.on_cells),
-        "uncertainty": field.uncertainty,
         "units": dict(field.units),
         "long_names": dict(field.long_names),
         "fingerprint": "",
@@ -287,16 +284,11 @@ def empty_field(about: About) -> FlowField:
         times=np.array(about["times"], dtype=float),
         valid=np.zeros((1, 1), dtype=bool),
         periodic=(about["periodic"][0], about["periodic"][1]),
-        name=about["name"],
-        length_unit=about["length_unit"],
-        time_unit=about["time_unit"],
-        velocity_unit=about.get("velocity_unit") or "",
-        vectors=about.get("vectors") or "",
+        **{name: about.get(name) or "" for name in TEXTS},
         units=about["units"],
         long_names=about["long_names"],
         start=date_of(about["start"]),
         projection=Projection.of(about["projection"]),
-        uncertainty=about.get("uncertainty", ""),
         on_cells=tuple(about.get("on_cells") or ()),
     )
 
@@ -348,10 +340,6 @@ def _by_name(check: Check) -> Check:
     )
 
 
-def _rising(check: Check) -> Check:
-    return lambda v: check(v) and all(a < b for a, b in pairwise(v))
-
-
 def _date(value: Any) -> bool:
     parts = _list(_whole(0, 100_000), 7)
     return isinstance(value, list) and len(value) == 2 and parts(value[0]) and _text(value[1])
@@ -376,7 +364,7 @@ _ABOUT: dict[str, Check] = {
     **dict.fromkeys(("axes", "late", "has_position"), _flag),
     "levels_done": _or_none(_flag),
     "nodes": _list(_whole(2, MOST_NODES), 2),
-    "times": _rising(_list(_number, 1, MOST_STEPS)),
+    "times": lambda v: _list(_number, 1, MOST_STEPS)(v) and all(a < b for a, b in pairwise(v)),
     "start": _or_none(_date),
     "projection": _or_none(_projection),
     "periodic": _list(_flag, 2),

@@ -7,7 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -158,18 +158,18 @@ class RegionSource(Source):
     choice: str = ""
 
     def __init__(self, regions: Regions) -> None:
-        words, lines = regions.words, regions.lines
+        lines, steps = regions.lines, len(regions.words["times"])
         self.regions, self.shape = regions, lines.shape
-        self.scalars = dict.fromkeys(regions.names, len(words.times))
+        self.scalars = dict.fromkeys(regions.names, steps)
         self.flat = lines.projection is None or not lines.projection.is_globe
-        self.rectilinear, self.late = self.flat, len(words.times) > 1
+        self.rectilinear, self.late = self.flat, steps > 1
         self.field = FlowField(
             points=np.zeros((1, 1, 3)),
-            velocity=np.zeros((len(words.times), 1, 1, 3)),
+            velocity=np.zeros((steps, 1, 1, 3)),
             valid=np.zeros((1, 1), dtype=bool),
             periodic=(False, lines.closed),
             projection=lines.projection,
-            **{n.name: getattr(words, n.name) for n in fields(words) if n.name != "reading"},
+            **regions.words,
         )
 
     def points(self, rows: Lines, columns: Lines) -> Floats:

@@ -136,7 +136,10 @@ class StoredPyramid(Pyramid):
         parameter: str | None = None,
         lines: str | None = None,
     ) -> None:
-        self._stored, about = levels, levels.about
+        self._stored = levels
+        #: The description of the field and its pyramid.
+        self.about: About = levels.about
+        about = self.about
         super().__init__(
             field,
             parameter or about["parameter"],
@@ -150,11 +153,6 @@ class StoredPyramid(Pyramid):
             for robust, ends in zip((False, True), both, strict=True)
         }
 
-    @property
-    def about(self) -> About:
-        """The description of the field and its pyramid."""
-        return self._stored.about
-
     @cached_property
     def root(self) -> FlowField:
         """The field at the coarsest level."""
@@ -163,7 +161,7 @@ class StoredPyramid(Pyramid):
     @cached_property
     def periods(self) -> tuple[Floats, Floats]:
         """Vectors from the first line of an axis to the last, (3,), for both axes."""
-        rows, columns = map(np.array, self._stored.about["periods"])
+        rows, columns = map(np.array, self.about["periods"])
         return rows, columns
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:

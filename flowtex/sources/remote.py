@@ -266,12 +266,13 @@ class _OpenFile:
         self.identity = file_identity(paths)
         size = sum(size for _, _, size, _ in self.identity)
         self._timeout = REQUEST_TIMEOUT_S + size / BYTES_PER_S
-        self._forgotten: deque[int] = deque()
+        #: Steps that the other process forgets with the next request.
+        self.forgotten: deque[int] = deque()
         self.child = Child(READER, preload=PRELOAD)
 
     def ask(self, do: str, **request: Any) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request, and issue its warnings; errors start with the path."""
-        forgotten = [self._forgotten.popleft() for _ in range(len(self._forgotten))]
+        forgotten = [self.forgotten.popleft() for _ in range(len(self.forgotten))]
         message = {"do": do, "forgotten": forgotten, **request}
         try:
             answer, arrays = self.child.request(message, timeout=self._timeout)
@@ -298,10 +299,6 @@ class _OpenFile:
                 f"{self.paths[0]}: the file has changed since it was opened; open it again"
             )
 
-    def forget(self, number: int) -> None:
-        """Let the other process forget steps, with the next request."""
-        self._forgotten.append(number)
-
     def _fault(self, error: ChildError) -> str:
         path, text = self.paths[0], str(error)
         if error.kind == "FieldError":
@@ -327,7 +324,7 @@ class _RemoteSteps:
 
     def __init__(self, file: _OpenFile, number: int) -> None:
         self._file, self._number = file, number
-        weakref.finalize(self, file.forget, number).atexit = False
+        weakref.finalize(self, file.forgotten.append, number).atexit = False
 
     def __call__(self, step: int) -> Floats:
         """Return a step, (J, I, ...)."""

@@ -17,7 +17,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.written import UnreadableError, numbers
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.field.formula.flow import KNOWN, Formula
+from flowtex.field.formula import KNOWN, Formula
 
 #: Nodes along the longer side of a plane, and of a surface, whose poles slow down tracing.
 NODES, SURFACE_NODES = 257, 129

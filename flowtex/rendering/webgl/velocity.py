@@ -19,8 +19,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex._util.vectors import norm
-from flowtex.field.formula import Formula
-from flowtex.field.formula.flow import gradient_trees
+from flowtex.field.formula import Formula, gradient_trees
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS

@@ -36,7 +36,7 @@ from flowtex.sources.datasets.select import (
     other_velocities,
     variable,
 )
-from flowtex.sources.datasets.values import Regions, Words, read_step, region_lines
+from flowtex.sources.datasets.values import Regions, read_step, region_lines
 from flowtex.sources.datasets.vertical import is_section, read_section
 from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.notices import Record
@@ -302,21 +302,10 @@ def _regions(
     if lines.projection is None:
         words["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
     factor, time, own = units.velocity_units(named["length_unit"], named["time_unit"], flow.unit)
-    return Regions(
-        Words(
-            length_unit=named["length_unit"],
-            time_unit=time,
-            velocity_unit="" if flat else own,
-            times=np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
-            start=start,
-            reading=flow.record.reading,
-            **words,
-        ),
-        lines,
-        flow.values,
-        factor,
-        others,
-    )
+    words |= {"length_unit": named["length_unit"], "time_unit": time, "start": start}
+    words["times"] = np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float)
+    words["velocity_unit"] = "" if flat else own
+    return Regions(words, lines, flow.values, factor, others)
 
 
 def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ for bit. Only names of files, and arrays that are read late, are sent to it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -16,7 +16,6 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
-from flowtex.field.arrays import Reading
 from flowtex.field.earth import Projection
 from flowtex.field.grids.arrays import find_closure
 from flowtex.field.steps import Nodes, typical_steps
@@ -208,27 +207,11 @@ class RegionLines:
         return self.projection.vectors(a, b, u, v)
 
 
-@dataclass(frozen=True)
-class Words:
-    """Names, units and times as in a :class:`FlowField`."""
-
-    name: str
-    length_unit: str
-    time_unit: str
-    velocity_unit: str
-    times: Floats
-    start: Any
-    reading: Reading
-    units: Mapping[str, str] = field(default_factory=dict)
-    long_names: Mapping[str, str] = field(default_factory=dict)
-    vectors: str = ""
-
-
 @dataclass(frozen=True, eq=False)
 class Regions:
     """A dataset on lines of coordinates."""
 
-    words: Words
+    words: Mapping[str, Any]  #: Names, units and times, as arguments of a :class:`FlowField`.
     lines: RegionLines  #: Places of the nodes.
     values: Values  #: The velocity.
     factor: float  #: From its unit to that of length and time.
@@ -248,7 +231,7 @@ class Regions:
         finite = np.isfinite(velocity).all(axis=-1)
         if valid is None:
             valid = np.zeros_like(finite)
-            for other in typical_steps(len(self.words.times)):
+            for other in typical_steps(len(self.words["times"])):
                 if valid.all():  # the others are read only where a step has gaps
                     break
                 if other != step:

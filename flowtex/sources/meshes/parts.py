@@ -230,8 +230,9 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
 def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
     """Return blocks that all have the scalars of each, which are NaN where a block lacks them."""
     blocks = {name: part.copy(deep=False) for name, part in parts.items()}
+    scalars = [a for b in blocks.values() for a in catalogue(b) if a.numeric and a.components == 1]
     for where in ("points", "cells"):
-        arrays = {a.name for b in blocks.values() for a in catalogue(b) if _is_scalar(a, where)}
+        arrays = {scalar.name for scalar in scalars if scalar.where == where}
         for array in sorted(arrays):
             lacking = [name for name, block in blocks.items() if array not in data_of(block, where)]
             for block in blocks.values():
@@ -243,10 +244,6 @@ def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
             if lacking:
                 record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
     return list(blocks.values())
-
-
-def _is_scalar(array: MeshArray, where: str) -> bool:
-    return array.where == where and array.numeric and array.components == 1
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:

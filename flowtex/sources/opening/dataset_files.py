@@ -247,12 +247,6 @@ def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
     return str(axes[0][0]) if axes[0] and axes[0] == axes[-1] else "time"
 
 
-def are_steps(datasets: Sequence[xr.Dataset]) -> bool:
-    """Return whether datasets may be steps of one series: with the same variables."""
-    same = {frozenset(ds.data_vars) for ds in datasets}
-    return len(same) == 1 and bool(find_pairs([datasets[0]]))
-
-
 def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
     """Join steps of a series in the order of their times, on the positions that all have."""
     xarray, record = import_extra("xarray", "xarray"), record or Record()
@@ -360,7 +354,8 @@ def common_name(paths: Sequence[Path]) -> str:
 def belong_together(paths: Sequence[Path]) -> bool:
     """Return whether files are read together: steps of a series, or parts without a pair."""
     opened = [open_files(path) for path in paths]
-    series = all(len(parts) == 1 for parts in opened) and are_steps([ds for (ds, *_) in opened])
+    alike = len({frozenset(ds.data_vars) for parts in opened for ds in parts}) == 1
+    series = alike and all(len(parts) == 1 for parts in opened) and bool(find_pairs(opened[0]))
     return series or not all(find_pairs(parts) for parts in opened)
 
 

@@ -18,7 +18,7 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
-from flowtex.field.formula.flow import Rates
+from flowtex.field.formula import Rates
 from flowtex.field.grids.poles import Pole
 from flowtex.field.locate import surface_point
 from flowtex.field.triangles.surface import TriangleSurface
@@ -171,9 +171,6 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
 
     def __len__(self) -> int:
         return len(self._points)
-
-    def __iter__(self) -> Iterator[CriticalPoint]:
-        return iter(self._points)
 
     def of_kind(self, *kinds: str) -> CriticalPoints:
         """Return the points of the given kinds."""

@@ -17,7 +17,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.formula.flow import Rates
+from flowtex.field.formula import Rates
 from flowtex.trace.integrate import Paths
 from flowtex.trace.trace import paths
 
@@ -457,24 +457,19 @@ def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     for k in range(2):
         known = np.isfinite(values[corners, k]).all(axis=1)
         sides = _zero_pieces(points[corners[known]], values[corners[known], k])[1]
-        rate = partial(_rate, rates, k)
-        ends, vanishes = zip(*(_crossing(rate, sides[:, m]) for m in range(2)), strict=True)
+        ends, vanishes = zip(*(_crossing(rates, k, sides[:, m]) for m in range(2)), strict=True)
         lines.append(np.stack(ends, axis=1)[vanishes[0] & vanishes[1]])
     return lines[0], lines[1]
 
 
-def _rate(rates: Rates, component: int, points: Floats) -> Floats:
-    return rates.at(points[:, :2])[:, component]
-
-
-def _crossing(rate: Callable[[Floats], Floats], sides: Floats) -> tuple[Floats, Bools]:
+def _crossing(rates: Rates, component: int, sides: Floats) -> tuple[Floats, Bools]:
     """Return where a rate changes sign along sides (S, 2, 3), or ends at 0, and without a jump."""
     ends = [sides[:, 0], sides[:, 1]]
-    values = [rate(end) for end in ends]
+    values = [rates.at(end[:, :2])[:, component] for end in ends]
     first = np.maximum(*np.abs(values))
     for _ in range(HALVINGS):
         middle = 0.5 * (ends[0] + ends[1])
-        value = rate(middle)
+        value = rates.at(middle[:, :2])[:, component]
         like_first = (value > 0) == (values[0] > 0)
         for n, moves in enumerate((like_first, ~like_first)):
             ends[n] = np.where(moves[:, None], middle, ends[n])

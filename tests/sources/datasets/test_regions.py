@@ -75,10 +75,10 @@ def assert_same(field: FlowField, regions: Regions) -> None:
     derived = set() if "speed" in regions.names else {"speed"}
     assert regions.names == tuple(n for n in field.scalars if n not in {NO_DATA, *derived})
     for name in ("name", "length_unit", "start", "long_names"):
-        assert getattr(regions.words, name) == getattr(field, name)
+        assert regions.words[name] == getattr(field, name)
     units = {name: unit for name, unit in field.units.items() if name not in derived}
-    assert regions.words.units == units
-    np.testing.assert_array_equal(regions.words.times, field.times)
+    assert regions.words["units"] == units
+    np.testing.assert_array_equal(regions.words["times"], field.times)
     some: list[tuple[Any, Any]] = [
         (slice(0, 20), slice(0, 30)),
         (slice(17, rows), slice(30, columns)),
