@@ -293,7 +293,7 @@ def _regions(
         return None
     times = flow.drawn.times
     seconds, _, start = as_seconds(times, "s" if times is None else "")
-    named = _units(flow)
+    words |= _units(flow)
     others = {key: scalar.array.variable for key, scalar in scalars.items()}
     flat = lines.projection is not None and not lines.projection.is_globe
     if flat:
@@ -301,10 +301,10 @@ def _regions(
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
     if lines.projection is None:
         words["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
-    factor, time, own = units.velocity_units(named["length_unit"], named["time_unit"], flow.unit)
-    words |= {"length_unit": named["length_unit"], "time_unit": time, "start": start}
+    length, time = words["length_unit"], words["time_unit"]
+    factor, words["time_unit"], own = units.velocity_units(length, time, flow.unit)
+    words |= {"start": start, "velocity_unit": "" if flat else own}
     words["times"] = np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float)
-    words["velocity_unit"] = "" if flat else own
     return Regions(words, lines, flow.values, factor, others)
 
 
