@@ -22,7 +22,7 @@ import flowtex
 from flowtex._util.arguments import brief, checked_number
 from flowtex._util.terminal import plain_text
 from flowtex.field import FlowField
-from flowtex.field.point_values import PointValues
+from flowtex.field.quantities import PointValues
 from flowtex.sources.datasets.read import recognised
 
 if TYPE_CHECKING:

@@ -21,12 +21,12 @@ from flowtex.errors import FieldError
 from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived import magnitude_label
-from flowtex.field.derived.methods import FieldQuantities
 from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
+from flowtex.field.quantities import FieldQuantities
 from flowtex.field.steps import (
     LazySteps,
     Steps,

@@ -278,13 +278,14 @@ def to_write(store: Store) -> Arrays:
 
 def empty_field(about: About) -> FlowField:
     """Return a field without nodes, with all that describes it."""
+    texts: dict[str, Any] = {name: about.get(name) or "" for name in TEXTS}
     return FlowField(
         points=np.zeros((1, 1, 3)),
         velocity=np.zeros((1, 1, 1, 3)),
         times=np.array(about["times"], dtype=float),
         valid=np.zeros((1, 1), dtype=bool),
         periodic=(about["periodic"][0], about["periodic"][1]),
-        **{name: about.get(name) or "" for name in TEXTS},
+        **texts,
         units=about["units"],
         long_names=about["long_names"],
         start=date_of(about["start"]),

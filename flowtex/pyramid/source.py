@@ -34,9 +34,10 @@ from flowtex.pyramid.places import (
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.select import find_pairs
-from flowtex.sources.datasets.values import Lines, Regions
+from flowtex.sources.datasets.values import Regions
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.sources.inspection.inspect_file import check_zarr
+from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of
@@ -167,7 +168,7 @@ class RegionSource(Source):
             points=np.zeros((1, 1, 3)),
             velocity=np.zeros((steps, 1, 1, 3)),
             valid=np.zeros((1, 1), dtype=bool),
-            periodic=(False, lines.closed),
+            periodic=(False, lines.periodic == "i"),
             projection=lines.projection,
             **regions.words,
         )

@@ -19,7 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field import Surface
 from flowtex.field.interpolation import bracket
 from flowtex.field.locate import SurfacePoint, locate, locator, surface_point
-from flowtex.field.point_values import PointValues, values_at
+from flowtex.field.quantities import PointValues, values_at
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments, footprint, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips

@@ -133,7 +133,8 @@ class OpenFile:
 def open_file(path: str | Path) -> OpenFile:
     """Open a file; callers name errors by :func:`errors_of`."""
     file = one_path(path)
-    _check_path(file)
+    if problem := _path_problem(file):
+        raise FieldError(problem)
     inspect_file(file)
     require_pyvista("its format")
     grid = plot3d.find_grid(file) or file
@@ -156,13 +157,8 @@ def open_file(path: str | Path) -> OpenFile:
         raise FieldError(f"unknown format ({reason}); expected {_KNOWN_FORMATS}") from error
 
 
-def _check_path(file: Path) -> None:
-    """Raise a FieldError for a path to nothing readable, before any reader opens it."""
-    if problem := _path_problem(file):
-        raise FieldError(problem)
-
-
 def _path_problem(file: Path) -> str:
+    """Return why nothing can be read from a path, before any reader opens it; empty otherwise."""
     if _ADDRESS.match(str(file)) and not file.exists():
         return (
             "this address has no flowtex pyramid, and files are read only from folders; open the "
@@ -238,7 +234,8 @@ def read_files(
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
         return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
     file = one_path(path)
-    _check_path(file)
+    if problem := _path_problem(file):
+        raise FieldError(problem)
     refuse(chosen, "datasets, but this is a mesh")
     if isinstance(time, str):
         raise FieldError(f"time is {time!r}; expected a number, one of the times of the file")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from flowtex.field.grids.arrays import find_closure
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.models.mesh import Mesh
 
+#: Rows or columns, by numbers or as a slice.
+Lines: TypeAlias = Indices | slice
 #: The default flat map, and the maps on which an axis around the Earth continues periodically.
 FLAT = "platecarree"
 CYLINDERS = (FLAT, "mercator")
@@ -121,15 +123,37 @@ class MapNodes:
 
 
 @dataclass(frozen=True, eq=False)
-class MapLines:
-    """Lines of longitude (I,) and latitude (J,) in the order of a map, NaN between parts."""
+class NodeLines:
+    """Two lines of coordinates of nodes, in the order of a map; NaN between parts of it."""
 
-    lon: Floats
-    lat: Floats
-    rows: Indices  #: Numbers of the latitudes in the data, (J,).
-    columns: Indices  #: Numbers of the longitudes between which the columns lie, (2, I).
+    a: Floats  #: Longitude of each column, (I,), or x.
+    b: Floats  #: Latitude of each row, (J,), or y.
+    rows: Indices  #: Numbers of the rows in the data, (J,).
+    columns: Indices  #: Numbers in the data between which each column lies, (2, I).
     share: Floats  #: Share of the way from the first to the second, (I,).
+    projection: Projection | None  #: The map; ``None`` in a plane.
     periodic: str | None  #: As in :class:`MapNodes`.
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of nodes (J, I)."""
+        return len(self.rows), len(self.share)
+
+    def points(self, rows: Lines, columns: Lines) -> Floats:
+        """Return positions (J, I, 3) of some rows and columns."""
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
+        if self.projection is None:
+            return np.stack([a, b, np.zeros(a.shape)], axis=-1)
+        if self.projection.is_globe:
+            return self.projection.positions(a, b)
+        return shown_positions(self.projection, a, b)
+
+    def vectors(self, u: Floats, v: Floats, rows: Lines, columns: Lines) -> Floats:
+        """Return vectors (J, I, 3) of components at some rows and columns."""
+        if self.projection is None:
+            return np.stack([u, v, np.zeros(u.shape)], axis=-1)
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
+        return self.projection.vectors(a, b, u, v)
 
     @property
     def chosen(self) -> Chosen:
@@ -148,7 +172,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
     is_flat, is_line, periodic = not projection.is_globe, places.is_line, None
     if is_line:
         lines = lines_on_map(places, projection)
-        lon, lat = np.broadcast_arrays(lines.lon, lines.lat[:, None])
+        lon, lat = np.broadcast_arrays(lines.a, lines.b[:, None])
         choices, periodic = [lines.chosen], lines.periodic
     else:
         columns = np.arange(places.a.shape[1])
@@ -176,7 +200,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
     return MapNodes(projection, points[kept], choices, periodic, lon[kept], lat[kept])
 
 
-def lines_on_map(places: Places, projection: Projection) -> MapLines:
+def lines_on_map(places: Places, projection: Projection) -> NodeLines:
     """Return the lines of places in the order of a map.
 
     If the data are around the Earth, the first column comes again at the end. At the edge of a map
@@ -232,7 +256,7 @@ def lines_on_map(places: Places, projection: Projection) -> MapLines:
     periodic = "i" if closed and (not has_edge or projection.family in CYLINDERS) else ""
     missing = np.repeat(np.flatnonzero(_gaps(np.diff(lat))) + 1, blank)
     rows, lat = np.insert(np.arange(len(lat)), missing, missing), np.insert(lat, missing, np.nan)
-    return MapLines(lon[~near], lat, rows, ends[:, ~near], share[~near], periodic)
+    return NodeLines(lon[~near], lat, rows, ends[:, ~near], share[~near], projection, periodic)
 
 
 def _has_edge(projection: Projection) -> bool:

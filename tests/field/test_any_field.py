@@ -12,7 +12,7 @@ from strategies import field_arguments, field_of, property_test
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.locate import locate
-from flowtex.field.point_values import values_at
+from flowtex.field.quantities import values_at
 
 PLANE = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0)), axis=-1)
 WIND = np.ones((4, 4, 2))

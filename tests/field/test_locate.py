@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.field.locate import locate, locator, surface_point
-from flowtex.field.point_values import values_at
+from flowtex.field.quantities import values_at
 
 Floats = NDArray[np.float64]
 

@@ -24,6 +24,8 @@ from flowtex.field.formula.grammar import (
     parse,
 )
 
+__all__ = ["KNOWN", "Formula", "FormulaError", "Parameter"]
+
 RANGE = (-5.0, 5.0)
 #: Greatest speed and length; values beyond are blanked.
 MOST = 1e30
@@ -169,7 +171,7 @@ class Expression:
         """Read a text, a number, an expression of sympy's or a function of some of the names."""
         if isinstance(source, str) or is_number(source):
             tree = parse(str(source), names)
-        elif is_symbolic(source):
+        elif type(source).__module__.startswith("sympy.") and hasattr(source, "args"):
             tree = tree_of(source, names)
         elif callable(source):
             return cls._function(source, names)
@@ -351,13 +353,8 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
     return low, high
 
 
-def is_symbolic(expression: object) -> bool:
-    """Return whether this is an expression of sympy's."""
-    return type(expression).__module__.startswith("sympy.") and hasattr(expression, "args")
-
-
 def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
-    """Return the tree of an expression with these names.
+    """Return the tree of an expression of sympy's with these names.
 
     Raises a FormulaError for operations that formulas do not have.
     """

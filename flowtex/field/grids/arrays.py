@@ -139,7 +139,9 @@ def _extent(points: Floats) -> float:
 
 def _coincide(points: Floats, extent: float) -> bool:
     """Return whether the last line lies on the first one, and the lines between do not."""
-    middle = _greatest_length(points[len(points) // 2] - points[0])
+    across = np.linalg.norm(points[len(points) // 2] - points[0], axis=-1)
+    across = across[np.isfinite(across)]
+    middle = float(across.max()) if len(across) else np.inf
     gap = np.linalg.norm(points[-1] - points[0], axis=-1)
     ends = np.stack([points[1] - points[0], points[-1] - points[-2]])
     steps = np.linalg.norm(ends, axis=-1).max(axis=0)
@@ -184,12 +186,6 @@ def _longitude(points: Floats) -> Closure | None:
     if not (same and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
         return None
     return Closure(periodic=True, line=None if repeats else 2 * points[-1:] - points[-2:-1])
-
-
-def _greatest_length(difference: Floats) -> float:
-    lengths = np.linalg.norm(difference, axis=-1)
-    lengths = lengths[np.isfinite(lengths)]
-    return float(lengths.max()) if len(lengths) else float("inf")
 
 
 def _repeat_first(a: A, axis: int) -> A:

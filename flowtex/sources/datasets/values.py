@@ -16,7 +16,6 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex.errors import FieldError
-from flowtex.field.earth import Projection
 from flowtex.field.grids.arrays import find_closure
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.sources.datasets.coordinates import Places
@@ -25,6 +24,8 @@ from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import (
     CYLINDERS,
+    Lines,
+    NodeLines,
     lines_on_map,
     projection_of,
     shown_positions,
@@ -42,8 +43,6 @@ Chosen: TypeAlias = tuple[Indices, Indices] | None
 MOST_EXAMINED, PART_LINES = 4_000_000, 200
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
-#: Rows or columns, by numbers or as a slice.
-Lines: TypeAlias = Indices | slice
 
 
 def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
@@ -174,45 +173,11 @@ class Values:
 
 
 @dataclass(frozen=True, eq=False)
-class RegionLines:
-    """Places of the nodes: two lines of coordinates, and their numbers in the data."""
-
-    a: Floats  #: Longitude of each column, (I,), or x.
-    b: Floats  #: Latitude of each row, (J,), or y.
-    rows: Indices  #: Numbers in the data.
-    columns: Indices  #: Numbers in the data between which each column lies, (2, I).
-    share: Floats  #: Share of the way from the first to the second, (I,).
-    projection: Projection | None  #: The map; ``None`` in a plane.
-    closed: bool  #: Whether the last column repeats the first.
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of nodes (J, I)."""
-        return len(self.rows), len(self.share)
-
-    def points(self, rows: Lines, columns: Lines) -> Floats:
-        """Return positions (J, I, 3) of some rows and columns."""
-        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
-        if self.projection is None:
-            return np.stack([a, b, np.zeros(a.shape)], axis=-1)
-        if self.projection.is_globe:
-            return self.projection.positions(a, b)
-        return shown_positions(self.projection, a, b)
-
-    def vectors(self, u: Floats, v: Floats, rows: Lines, columns: Lines) -> Floats:
-        """Return vectors (J, I, 3) of components at some rows and columns."""
-        if self.projection is None:
-            return np.stack([u, v, np.zeros(u.shape)], axis=-1)
-        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
-        return self.projection.vectors(a, b, u, v)
-
-
-@dataclass(frozen=True, eq=False)
 class Regions:
     """A dataset on lines of coordinates."""
 
     words: Mapping[str, Any]  #: Names, units and times, as arguments of a :class:`FlowField`.
-    lines: RegionLines  #: Places of the nodes.
+    lines: NodeLines  #: Places of the nodes.
     values: Values  #: The velocity.
     factor: float  #: From its unit to that of length and time.
     scalars: Mapping[str, xr.Variable]
@@ -274,7 +239,7 @@ class Regions:
         return parts
 
 
-def region_lines(places: Places, name: str | None) -> RegionLines | None:
+def region_lines(places: Places, name: str | None) -> NodeLines | None:
     """Return the places of nodes; ``None`` where regions cannot be read separately."""
     if not places.is_line or not all(_is_ordered(line) for line in places.lines):
         return None
@@ -285,18 +250,17 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
         if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
             return None
         columns = np.tile(np.arange(len(a)), (2, 1))
-        return RegionLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, closed=False)
+        return NodeLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, "")
     projection, _ = projection_of(places, name)
     if not (projection.is_globe or projection.family in CYLINDERS):
         return None
     lines = lines_on_map(places, projection)
-    if not (np.isfinite(lines.lon).all() and np.isfinite(lines.lat).all()):
+    if not (np.isfinite(lines.a).all() and np.isfinite(lines.b).all()):
         return None
-    kept = slice(None)
-    if not projection.is_globe:
-        kept = shown_rows(shown_positions(projection, lines.lon[:1], lines.lat[:, None]))
-    closed, chosen = lines.periodic == "i", (lines.columns, lines.share)
-    return RegionLines(lines.lon, lines.lat[kept], lines.rows[kept], *chosen, projection, closed)
+    if projection.is_globe:
+        return lines
+    kept = shown_rows(shown_positions(projection, lines.a[:1], lines.b[:, None]))
+    return replace(lines, b=lines.b[kept], rows=lines.rows[kept])
 
 
 def _is_ordered(line: Floats) -> bool:

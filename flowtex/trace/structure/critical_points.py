@@ -450,6 +450,7 @@ def _points(
         kind = _kind(value, 0.0 if found is None else float(found.growth[n]))
         if found is not None and found.is_degenerate[n]:
             kind = "degenerate"
+        usual = {"saddle": -1, "degenerate": 0}.get(kind, 1)
         result.append(
             CriticalPoint(
                 position=position[n],
@@ -459,7 +460,7 @@ def _points(
                 time=float(field.times[0]),
                 index=(float(index[n, 1]), float(index[n, 0])),
                 lonlat=place,
-                poincare_index=_sign(kind) if found is None else int(found.indices[n]),
+                poincare_index=usual if found is None else int(found.indices[n]),
             )
         )
     return result
@@ -475,10 +476,6 @@ def _kind(values: AnyArray, growth: float = 0.0, error: float = 0.0) -> str:
     if abs(real[0]) > max(error, ROUNDING * size):
         growth = float(real[0])
     return "spiral source" if growth > 0 else "spiral sink" if growth < 0 else "centre"
-
-
-def _sign(kind: str) -> int:
-    return {"saddle": -1, "degenerate": 0}.get(kind, 1)
 
 
 def gradient_and_error(field: FlowField) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ from triangle_meshes import cube, random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex.field.locate import locate, locator, surface_point
-from flowtex.field.point_values import values_at
+from flowtex.field.quantities import values_at
 
 
 def rotating(mesh: tuple[np.ndarray, np.ndarray]) -> FlowField:

@@ -70,7 +70,7 @@ def both(data: Any, **options: Any) -> tuple[FlowField, Regions]:
 def assert_same(field: FlowField, regions: Regions) -> None:
     rows, columns = field.shape
     assert regions.lines.shape == field.shape
-    assert (False, regions.lines.closed) == field.periodic
+    assert (False, regions.lines.periodic == "i") == field.periodic
     assert regions.lines.projection == field.projection
     derived = set() if "speed" in regions.names else {"speed"}
     assert regions.names == tuple(n for n in field.scalars if n not in {NO_DATA, *derived})
@@ -168,7 +168,7 @@ def test_the_largest_models_are_recognised_by_their_lines() -> None:
     )
     regions = read_datasets(data, regions=True)
     assert isinstance(regions, Regions)
-    assert regions.lines.shape == (50_000, 200_001) and regions.lines.closed
+    assert regions.lines.shape == (50_000, 200_001) and regions.lines.periodic == "i"
     nodes = regions.nodes(0, slice(49_000, 49_100), slice(199_990, 200_001))
     assert nodes.velocity.shape == (100, 11, 3) and not nodes.velocity.any()
 

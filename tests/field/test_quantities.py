@@ -14,7 +14,7 @@ from scipy.spatial import Delaunay
 
 from flowtex import FieldError, FlowField
 from flowtex.field.earth import Projection
-from flowtex.field.point_values import values_at
+from flowtex.field.quantities import values_at
 
 Floats = NDArray[np.float64]
 
