@@ -101,7 +101,8 @@ def _lines(field: Any, size: tuple[int, int], make: Callable[[Any, float], Any])
     """Draw lines that ``make`` gives of a mesh and its height."""
     import pyvista as pv
 
-    from flowtex.plotting.vtk_camera import look
+    from flowtex.plotting.vtk_camera import point_camera
+    from flowtex.scene.options import ViewOptions
 
     rows, columns = field.shape
     grid = pv.StructuredGrid()
@@ -113,7 +114,7 @@ def _lines(field: Any, size: tuple[int, int], make: Callable[[Any, float], Any])
     plotter.add_mesh(make(grid, float(np.ptp(field.points[..., 1]))), color="black")
 
     def draw(view: Any) -> Any:
-        look(plotter, field, **place(view))
+        point_camera(plotter, field.surface, ViewOptions(**place(view)))
         plotter.render()
         return np.asarray(plotter.screenshot(return_img=True))
 

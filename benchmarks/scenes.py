@@ -127,11 +127,13 @@ class Stage:
         self, zoom: float = 1.0, focus: Any = None, roll: float = 0.0, **state: float
     ) -> NDArray[Any]:
         """Draw one frame; ``state`` sets the handle's ``time`` or ``clock``."""
-        from flowtex.plotting.vtk_camera import look
+        from flowtex.plotting.vtk_camera import point_camera
+        from flowtex.scene.options import ViewOptions
 
         for name, value in state.items():
             setattr(self.handle, name, value)
-        look(self.plotter, self.field, zoom=zoom, focus=focus)
+        view = ViewOptions(zoom=zoom, focus=focus)
+        point_camera(self.plotter, self.field.surface, view)
         self.plotter.camera.roll += roll
         self.plotter.render()
         return np.asarray(self.plotter.screenshot(return_img=True))

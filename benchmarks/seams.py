@@ -11,8 +11,9 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.plotting.vtk_camera import look, read_camera
+from flowtex.plotting.vtk_camera import point_camera, read_camera
 from flowtex.rendering.cpu.render import render
+from flowtex.scene.options import ViewOptions
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 
@@ -102,7 +103,9 @@ def _lines(field: flowtex.FlowField, options: Any, size: tuple[int, int], axis: 
         plotter.camera_position = options["camera"]
         plotter.camera.parallel_projection = False
     else:
-        look(plotter, field, zoom=options["zoom"], focus=options["focus"])
+        point_camera(
+            plotter, field.surface, ViewOptions(zoom=options["zoom"], focus=options["focus"])
+        )
     seen = render(textures, settings, read_camera(plotter.camera), size)
     plotter.close()
     lines = (textures.geometry.rows, textures.geometry.columns)[axis]

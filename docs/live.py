@@ -37,7 +37,8 @@ from sphinx.util.docutils import SphinxDirective
 
 import flowtex
 from flowtex.field import FlowField
-from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
+from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
+from flowtex.plotting.vtk_camera import point_camera
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
 from flowtex.scene.signatures import accepts_options
 from flowtex.web.export import page_text
@@ -85,8 +86,7 @@ class View:
     def pictures(self) -> list[Image.Image]:
         """Pictures of the sizes, without ground, so that they lie on light and dark pages."""
         options = Options.split(**{**self.look, "show_scalar_bar": False})
-        two = options.view.beside is not None
-        plotter = new_plotter(STILL, two_views=two, off_screen=True, lighting="light kit")
+        plotter = new_plotter(STILL, options.view, off_screen=True, lighting="light kit")
         try:
             plotter.enable_anti_aliasing("msaa", multi_samples=4)
             handles = add_scenes(plotter, self.mesh, options, labels=False)
@@ -97,7 +97,7 @@ class View:
                     handle.settings.grain *= coarser
                     if self.time is not None:
                         handle.time = self.time
-                point_camera(plotter, handles[0].scene, options.view)
+                point_camera(plotter, handles[0].scene.whole.surface, options.view)
                 result.append(_without_ground(plotter))
         finally:
             plotter.close()

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 import flowtex
-from flowtex.plotting.vtk_camera import look
+from flowtex.plotting.vtk_camera import point_camera
+from flowtex.scene.options import ViewOptions
 
 #: Address of a page as it is announced.
 ADDRESS = re.compile(r"http://\S+")
@@ -311,7 +312,7 @@ def streaming() -> list[Picture]:
     handle = plotter.flowtex.add(
         field, motion="speed", speed=26.0, period=2.0, show_scalar_bar=False
     )
-    look(plotter, field, zoom=9.0, focus=(0.5, 0.0))
+    point_camera(plotter, field.surface, ViewOptions(zoom=9.0, focus=(0.5, 0.0)))
     frames = []
     for frame in range(FRAMES):
         handle.clock = 2.0 * frame / FRAMES

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from flowtex import examples, pyramid
     from flowtex.app.display import show
     from flowtex.field.formula.make import formula
-    from flowtex.plotting.offscreen.dynamic import dynamic_map
-    from flowtex.plotting.offscreen.figure import axes, extent
+    from flowtex.plotting.offscreen.figure import axes, dynamic_map, extent
     from flowtex.plotting.offscreen.movie import movie
     from flowtex.plotting.offscreen.plotter import render
     from flowtex.rendering.camera import Camera
@@ -68,7 +67,7 @@ _LAZY = {
     "axes": "plotting.offscreen.figure",
     "closed_orbits": "trace.structure.orbits",
     "critical_points": "trace.structure.critical_points",
-    "dynamic_map": "plotting.offscreen.dynamic",
+    "dynamic_map": "plotting.offscreen.figure",
     "export": "web.export",
     "extent": "plotting.offscreen.figure",
     "formula": "field.formula.make",

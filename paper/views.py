@@ -13,7 +13,7 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Bools, Bytes, Floats
-from flowtex._util.blocks import block_means
+from flowtex._util.arrays import block_means
 from flowtex.field import FlowField
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex import FlowField
-from flowtex.plotting.vtk_camera import look
+from flowtex.plotting.vtk_camera import point_camera
 
 
 def off_colours(picture: Any, mesh: Any, field: FlowField, **options: Any) -> float:
@@ -20,7 +20,7 @@ def off_colours(picture: Any, mesh: Any, field: FlowField, **options: Any) -> fl
     reference: Any = pv.Plotter(off_screen=True, window_size=[width, height])
     reference.disable_anti_aliasing()
     reference.add_mesh(mesh, lighting=False, **options)
-    look(reference, field)
+    point_camera(reference, field.surface)
     expected = reference.screenshot(return_img=True)
     reference.close()
     inner = (slice(height // 3, height // 2), slice(width // 4, 3 * width // 4))

@@ -80,13 +80,11 @@ LIBRARIES = (
         ("matplotlib",),
         on_load=(
             "plotting.offscreen.figure",
-            "plotting.offscreen.earth_axes",
-            "plotting.offscreen.scaled_axes",
+            "plotting.offscreen.axes_kinds",
         ),
         in_functions=(
             "_util.colours",
             "scene.annotations",
-            "plotting.offscreen.dynamic",
             "xarray",
         ),
     ),

@@ -43,7 +43,7 @@ MEMORY = {
     "plotting/offscreen/plotter.py: self._plotter.screenshot",
     "app/jupyter_backend.py: plotter.screenshot",
     "app/streaming/stream.py: Image.fromarray(pixels).save",
-    "web/preview.py: reduced.save",
+    "web/still.py: reduced.save",
     "widget/flow_widget.py: Image.fromarray(np.hstack(columns)).save",
     "widget/flow_widget.py: Image.fromarray(picture).save",
 }

@@ -88,8 +88,7 @@ def ended_by_signals() -> Iterator[None]:
     # Python tests the folder once with a file, which a signal in between would leave there.
     tempfile.gettempdir()
 
-    def end(number: int, frame: FrameType | None) -> None:
-        del frame
+    def end(number: int, _: FrameType | None) -> None:
         if not received:
             received.append(number)
             announce_end(number)

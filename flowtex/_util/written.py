@@ -35,14 +35,6 @@ def number_or_text(text: str) -> float | str:
         return text
 
 
-def finite_number(text: str) -> float:
-    """Return a number."""
-    value = number_or_text(text)
-    if isinstance(value, str) or not math.isfinite(value):
-        raise UnreadableError("a number")
-    return value
-
-
 def numbers(*counts: int, expected: str) -> Callable[[str], tuple[float, ...]]:
     """Return a function that reads numbers with commas between them, in one of these counts."""
 
@@ -85,7 +77,8 @@ def _read_switch(text: str) -> bool:
     return text == "on"
 
 
+_read_number = numbers(1, expected="a number")
 #: Texts as they are, numbers, and what is on or off.
 PLAIN = Form()
-NUMBER = Form(read=finite_number, write=lambda value: repr(float(value)))
+NUMBER = Form(read=lambda text: _read_number(text)[0], write=lambda value: repr(float(value)))
 SWITCH = Form(read=_read_switch, write=lambda value: "on" if value else "off")

@@ -96,15 +96,15 @@ def _refuse_vtk(options: dict[str, Any]) -> None:
 
 
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
-    from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
+    from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
+    from flowtex.plotting.vtk_camera import point_camera
 
     bar_options = options.pop("scalar_bar_args", None)
     arguments = Options.split(mesh=mesh, **options)
-    plotter = new_plotter(checked_size(size), two_views=arguments.view.beside is not None)
+    plotter = new_plotter(checked_size(size), arguments.view)
     plotter.disable_anti_aliasing()
-    plotter.set_background(arguments.view.ground)
     handles = add_scenes(plotter, mesh, arguments, bar_options)
-    point_camera(plotter, handles[0].scene, arguments.view)
+    point_camera(plotter, handles[0].scene.whole.surface, arguments.view)
     plotter.show()
 
 

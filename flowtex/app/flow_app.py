@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -12,13 +11,18 @@ from typing import Any
 from trame.app import get_server
 from trame.ui.vuetify3 import VAppLayout
 
-from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import ANOTHER_FILE, ANOTHER_TIME, BACKGROUNDS
-from flowtex.app.controllers.context import Context, State
+from flowtex.app.controllers.appearance import (
+    ANOTHER_FILE,
+    ANOTHER_TIME,
+    BACKGROUNDS,
+    Appearance,
+)
+from flowtex.app.controllers.context import Context, Controller, State
+from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.controllers.sharing import FORMATS
+from flowtex.app.controllers.sharing import FORMATS, Sharing
 from flowtex.app.server.files import UPLOAD_SUFFIXES
-from flowtex.app.server.page import PageState
+from flowtex.app.server.page import PageState, name_among
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions.local import MakeApp, opener
 from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
@@ -60,6 +64,15 @@ WORDS = {
     "SLIDER": 'density="compact" color="primary" hide-details thumb-size="14" track-size="3"',
     "SWITCH": 'density="compact" color="primary" hide-details inset class="flowtex-switch"',
     "TOGGLE": 'density="compact" color="primary" variant="text" mandatory class="flowtex-toggle"',
+}
+#: Directions of view onto a surface, and their directions up.
+VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    "from +x": ((1, 0, 0), (0, 0, 1)),
+    "from -x": ((-1, 0, 0), (0, 0, 1)),
+    "from +y": ((0, 1, 0), (0, 0, 1)),
+    "from -y": ((0, -1, 0), (0, 0, 1)),
+    "from +z": ((0, 0, 1), (0, 1, 0)),
+    "from -z": ((0, 0, -1), (0, 1, 0)),
 }
 
 
@@ -165,25 +178,73 @@ class FlowApp:
         self.server.state.trame__title = f"{self.field.name or 'flow'} - flowtex"
 
 
+class Viewpoint(Controller):
+    """The camera and the time of a page."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.state.set(views=self.views)
+        context.field_changed.connect(lambda: self.state.set(views=self.views))
+
+    @property
+    def views(self) -> list[str]:
+        """Names of the directions of view; none for a flat surface."""
+        return [] if self.viewport.flat else list(VIEWS)
+
+    def look_from(self, name: object) -> None:
+        """Look at the whole of a curved surface from a side."""
+        if name_among(name, VIEWS):
+            toward, up = VIEWS[name]
+            self.viewport.home(toward=toward, up=up)
+            self.area.moved()
+
+    def describe(self) -> State:
+        """Return the camera, and the time where it makes a difference."""
+        time = {} if self.viewport.field.steady else {"time": self.area.player.time}
+        return {"camera": self.viewport.camera.to_dict(), **time}
+
+    def restore(self, saved: State) -> None:
+        """Look from a saved camera, at a saved time."""
+        if saved.get("camera"):
+            self.area.look(saved["camera"])
+        if "time" in saved and not self.viewport.field.steady:
+            self.area.player.go_to(float(saved["time"]))
+
+
+class Controllers:
+    """All controllers of a page; ``restore_state`` is called with the state that a link holds."""
+
+    def __init__(
+        self, context: Context, name: str, choice: Choice, restore_state: Callable[[State], None]
+    ) -> None:
+        self.context = context
+        self.data = Data(context, name, choice)
+        self.beside = FileBeside(context, self.data)
+        self.appearance = Appearance(context, self.beside)
+        self.viewpoint = Viewpoint(context)
+        self.sharing = Sharing(context, self.data, self.beside, restore_state)
+
+    def cancel_opening(self) -> None:
+        """Stop opening files, in either pane."""
+        self.data.cancel()
+        self.beside.cancel()
+
+
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
     """Return the first flow that can be shown and its chosen part, or raise the first error."""
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )
-    name, *others = library.names
-    try:
-        choice = library.complete(name, partial_choice)
-        if others:
-            library.field(name, choice)  # whether it can be drawn
-        return name, choice
-    except (FieldError, OSError):
-        # Other files of a folder can be shown even if the first one cannot.
-        for other in others:
-            with suppress(FieldError, OSError):
-                choice = library.complete(other, partial_choice)
-                library.field(other, choice)
-                return other, choice
-        raise
+    names, errors = library.names, list[Exception]()
+    for name in names:
+        try:
+            choice = library.complete(name, partial_choice)
+            if len(names) > 1:
+                library.field(name, choice)  # whether it can be drawn
+            return name, choice
+        except (FieldError, OSError) as error:
+            errors.append(error)
+    raise errors[0]
 
 
 def serve(

@@ -35,11 +35,9 @@ def in_flags(text: str) -> str:
     names = "|".join([*flag_names(), "fresh", "seconds", "fps", "quality", "memory"])
 
     def flag(match: re.Match[str]) -> str:
-        return f"--{match['name'].replace('_', '-')} {match['value']}"
-
-    def quoted_flag(match: re.Match[str]) -> str:
-        quote = match["quote"] if " " in match["value"] else ""
-        return f"--{match['name'].replace('_', '-')} {quote}{match['value']}{quote}"
+        found = match.groupdict()
+        quote = found.get("quote", "") if " " in found["value"] else ""
+        return f"--{found['name'].replace('_', '-')} {quote}{found['value']}{quote}"
 
     text = re.sub(r"\b(i?sel)=\{'(\w+)': ([^{}]+)\}", r"--\1 \2=\3", text)
     text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is |applies )", flag, text)
@@ -47,7 +45,7 @@ def in_flags(text: str) -> str:
         rf"\b(?P<name>{names})=True\b", lambda m: f"--{m['name'].replace('_', '-')}", text
     )
     start = rf"(?<!--beside )\b(?P<name>{names})="
-    text = re.sub(rf"""{start}(?P<quote>["'])(?P<value>[^"']+)(?P=quote)""", quoted_flag, text)
+    text = re.sub(rf"""{start}(?P<quote>["'])(?P<value>[^"']+)(?P=quote)""", flag, text)
     return re.sub(rf"""{start}(?P<value>[^\s"';,)]+)""", flag, text)
 
 
@@ -56,6 +54,11 @@ def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
     from rich.text import Text
 
     terminal(stderr=stderr).print(Text.assemble(*parts), soft_wrap=True)
+
+
+def report(output: object, text: str, figures: str) -> None:
+    """Print what was written, and its size or the time that it took."""
+    say((str(output), "bold"), f"  {text}  ", (figures, "dim"))
 
 
 def announcer(

@@ -159,6 +159,7 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.field.dates import expected_times
     from flowtex.field.derived import DERIVED
     from flowtex.textures.tiles.shared import has_pyramid
+    from flowtex.trace.store import changing_share, chosen_lines
 
     table = _pairs(
         "What would be drawn by default" if has_pyramid(field) else "What would be drawn"
@@ -175,7 +176,9 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
         ends = expected_times(field.start, field.times)
     table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
     if not field.steady:
-        table.add_row("lines", _lines(field))
+        share = f"{changing_share(field):.0%} of the nodes)"
+        text = f"{chosen_lines(field)} (within a streak, the flow changes by half at {share}"
+        table.add_row("lines", text)
     if field.triangles is None:
         closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
         table.add_row("periodic", " and ".join(sorted(closed)) or "no")
@@ -191,13 +194,3 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     for step in () if has_reading else field.reading:
         table.add_row(step.step, step.text)
     return table
-
-
-def _lines(field: FlowField) -> str:
-    """Describe the lines along which the flow is drawn, with the reason."""
-    from flowtex.trace.store import changing_share, chosen_lines
-
-    share = f"{changing_share(field):.0%}"
-    return (
-        f"{chosen_lines(field)} (within a streak, the flow changes by half at {share} of the nodes)"
-    )

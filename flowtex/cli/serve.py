@@ -19,6 +19,7 @@ from flowtex.cli.console import (
     describe,
     drawing,
     notices,
+    report,
     require_app,
     say,
     writing,
@@ -176,11 +177,9 @@ def pyramid(
         built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
     kept = f", {built.kept:,} kept" if built.kept else ""
     rows, columns = source.shape
-    say(
-        (str(output), "bold"),
-        f"  {columns} × {rows} nodes, {built.depth + 1} levels  ",
-        (f"{built.made:,} shards built{kept}, {time.perf_counter() - start:.1f} s", "dim"),
-    )
+    seconds = time.perf_counter() - start
+    text = f"{columns} × {rows} nodes, {built.depth + 1} levels"
+    report(output, text, f"{built.made:,} shards built{kept}, {seconds:.1f} s")
     return 0
 
 

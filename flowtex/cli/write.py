@@ -21,6 +21,7 @@ from flowtex.cli.console import (
     describe,
     drawing,
     load_field,
+    report,
     say,
     writing,
 )
@@ -82,16 +83,10 @@ def render(
     from flowtex import render as draw
 
     write_picture(draw(field, **shown, **options), output)
-    lost = (
-        f", {field.normal_share:.0%} of the flow is normal to the surface"
-        if field.normal_share > NOTABLE_LOSS
-        else ""
-    )
-    say(
-        (str(output), "bold"),
-        f"  {describe(field)}{lost}  ",
-        (f"{_size(options)}, {time.perf_counter() - start:.1f} s", "dim"),
-    )
+    share = field.normal_share
+    lost = f", {share:.0%} of the flow is normal to the surface" if share > NOTABLE_LOSS else ""
+    seconds = time.perf_counter() - start
+    report(output, f"{describe(field)}{lost}", f"{_size(options)}, {seconds:.1f} s")
     _print_clipped(field, drawing(look, settings))
     return 0
 
@@ -147,7 +142,7 @@ def movie(
         f"{_size(options)}, {result.frames} frames in {result.seconds:g} s, "
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
-    say((str(output), "bold"), f"  {describe(field)}{loop}  ", (figures, "dim"))
+    report(output, f"{describe(field)}{loop}", figures)
     _print_clipped(field, drawing(look, settings))
     return 0
 
@@ -193,8 +188,7 @@ def export(
         page = write_page(field, output, **options)
     seconds = time.perf_counter() - start
     selected = "" if page.steps == len(field.times) else f", {page.steps} of them"
-    size = f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s"
-    say((str(output), "bold"), f"  {describe(field)}{selected}  ", (size, "dim"))
+    report(output, f"{describe(field)}{selected}", f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s")
     return 0
 
 
@@ -317,10 +311,9 @@ def formula(
     else:
         from flowtex import render
 
-        frames = {**vars(frame), "size": pixels(frame.size)}
-        write_picture(render(field, **options, **frames), output)
+        write_picture(render(field, **_drawing(look, frame, settings)), output)
         result = frame.size
-    say((str(output), "bold"), f"  {describe(field)}  ", (result, "dim"))
+    report(output, describe(field), result)
     return 0
 
 

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.blocks import bounds, row_blocks
-from flowtex._util.vectors import dot, norm
+from flowtex._util.arrays import bounds, dot, norm, row_blocks
 from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.steps import Steps
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Floats
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import fill_blanked
 from flowtex.field.steps import LazySteps, Steps, map_steps

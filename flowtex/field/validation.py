@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.blocks import bounds
+from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps, map_steps, typical_steps

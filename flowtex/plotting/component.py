@@ -19,7 +19,7 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import look, read_camera
+from flowtex.plotting.vtk_camera import point_camera, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.options import Appearance, FieldOptions, Options
 from flowtex.scene.scene import Scene
@@ -140,7 +140,7 @@ class FlowtexComponent:
         handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args, **actor_options)
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
-            look(self._plotter, scene.whole)
+            point_camera(self._plotter, scene.whole.surface)
         return handle
 
     def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
@@ -287,14 +287,17 @@ def _bodies(actor: Any) -> Iterator[Body]:
 
 def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     """Return the surface of a mesh with no other arrays than colours and normals."""
-    colours = _colours(mesh, mapper)
+    plain = vtkDataSetMapper()
+    plain.ShallowCopy(mapper)
+    plain.InterpolateScalarsBeforeMappingOff()  # else it maps to a texture
+    mapped = plain.MapScalars(mesh, 1.0)  # at points or cells; none without scalars
     copy = mesh.copy(deep=False)
     normals = mesh.point_data.active_normals if isinstance(mesh, pv.PolyData) else None
     copy.clear_data()
-    if colours is None:
+    if mapped is None:
         colours = np.tile(_bytes((*prop.GetColor(), 1.0)), (mesh.n_points, 1))
     else:
-        colours = colours.copy()
+        colours = np.array(pv.convert_array(mapped))
     opacity = prop.GetOpacity() * colours[:, 3]
     colours[:, 3] = np.where(opacity < 255, np.minimum(np.rint(opacity), 254), 255)
     on_points = len(colours) == mesh.n_points
@@ -302,15 +305,6 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     if normals is not None and prop.GetInterpolation():
         copy.point_data.active_normals = normals
     return copy if isinstance(copy, pv.PolyData) else copy.extract_surface(algorithm=None)
-
-
-def _colours(mesh: pv.DataSet, mapper: Any) -> Bytes | None:
-    """Return the colours (N, 4) of scalars at points or cells; ``None`` without scalars."""
-    plain = vtkDataSetMapper()
-    plain.ShallowCopy(mapper)
-    plain.InterpolateScalarsBeforeMappingOff()  # else it maps to a texture
-    mapped = plain.MapScalars(mesh, 1.0)
-    return None if mapped is None else pv.convert_array(mapped)
 
 
 def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:

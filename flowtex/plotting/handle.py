@@ -18,9 +18,9 @@ from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import Ends
-from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import Appearance, FieldOptions
 from flowtex.scene.scene import Change, Scene, share_field
+from flowtex.scene.signatures import AppearanceAttributes
 from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
@@ -320,7 +320,7 @@ class FlowHandle(AppearanceAttributes):
         else:
             self._surface.set_textures(self.scene.textures, self.scene.pyramid)
             if self._map is not None:
-                self._map.show()
+                self._map.show(self.scene)
         self._draw()
 
     def _show_appearance(self, *anew: str) -> None:
@@ -345,7 +345,7 @@ class FlowHandle(AppearanceAttributes):
                 setattr(prop, name, value if is_lit else getattr(theme_lighting, name))
         on_map = ("coastlines", "graticule", "land", "lighting", "opacity")
         if self._map is not None and differs(*on_map):
-            self._map.show()
+            self._map.show(self.scene)
         if differs("color"):
             prop.color = new.color
         if differs("scalars", "cmap", "log_scale", "norm", *COLOURS):

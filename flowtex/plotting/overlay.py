@@ -77,12 +77,19 @@ class Overlay:
     The ``surface`` has the number of pixels for one of the settings.
     """
 
-    def __init__(self, actor: pv.Actor, renderer: pv.Renderer, surface: FlowSurface) -> None:
+    def __init__(
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+    ) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
         callback = weak_callback(self._before_frame)
         self._observed = renderer.AddObserver("StartEvent", callback, LAST)
+        self.show(scene)
+
+    def show(self, scene: Scene) -> None:
+        """Follow the appearance, the settings and the time of a scene."""
+        raise NotImplementedError
 
     def close(self) -> None:
         """Remove everything from the renderer."""
@@ -188,21 +195,16 @@ def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
 class MapOverlay(Overlay):
     """The Earth behind one flow whose field has a projection."""
 
-    def __init__(
-        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
-    ) -> None:
-        super().__init__(actor, renderer, surface)
-        self._scene, self._field = scene, scene.whole
-        self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
-        self._radius: float | None
-        self.show()
+    _field: Any = None  #: Of which the lines were made.
+    _radius: float | None = None
 
-    def show(self) -> None:
+    def show(self, scene: Scene) -> None:
         """Follow the appearance, and the coarsest level of a large field."""
-        if self._field is not self._scene.whole:
-            self._field, self._lines = self._scene.whole, {}
+        if self._field is not scene.whole:
+            self._field = scene.whole
+            self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._clear()
-        self._radius, appearance = None, self._scene.appearance
+        self._scene, self._radius, appearance = scene, None, scene.appearance
         if appearance.land is not None:
             self._add_land(appearance.land)
         for option, stroke in STROKES.items():
@@ -287,16 +289,10 @@ def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
 class StructureOverlay(Overlay):
     """The structure of one flow, as the settings request it."""
 
-    def __init__(
-        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
-    ) -> None:
-        super().__init__(actor, renderer, surface)
-        self._shown: tuple[object, ...] = ()
-        self._notify: Callable[[], None] | None = None
-        self._request: tuple[object, ...] = ()
-        self._found: Future[None] | None = None
-        self._scene = scene
-        self.show(scene)
+    _shown: tuple[object, ...] = ()
+    _notify: Callable[[], None] | None = None
+    _request: tuple[object, ...] = ()
+    _found: Future[None] | None = None
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
         """Show the structure when it is found, and notify from a thread; else a change waits."""

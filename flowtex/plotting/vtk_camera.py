@@ -6,10 +6,13 @@ from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
 
-from flowtex.field import FlowField
+from flowtex.field import Surface
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
+from flowtex.scene.options import ViewOptions
 
-__all__ = ["apply_camera", "look", "read_camera", "subplot_aspect"]
+__all__ = ["apply_camera", "point_camera", "read_camera"]
+#: A view of the whole surface.
+WHOLE = ViewOptions()
 
 
 def apply_camera(camera: Camera, vtk_camera: vtkCamera) -> None:
@@ -24,24 +27,20 @@ def apply_camera(camera: Camera, vtk_camera: vtkCamera) -> None:
     vtk_camera.SetViewAngle(camera.view_angle)
 
 
-def look(
-    plotter: Any,
-    field: FlowField,
-    *,
-    zoom: float = 1.0,
-    focus: tuple[float, ...] | None = None,
-    margin: float = CAMERA_LIMITS.margin,
+def point_camera(
+    plotter: Any, surface: Surface, view: ViewOptions = WHOLE, margin: float = CAMERA_LIMITS.margin
 ) -> None:
-    """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters.
+    """Point a plotter's camera at a surface as a view requests.
 
     PyVista does not change a camera that is set, even if it clips objects that are added later; so
-    the clipping range follows the bounds of the objects, and otherwise stays.
+    the clipping range follows the bounds of the objects, and otherwise stays. Raises a FieldError
+    when the view's camera, zoom or focus, or the margin, is invalid.
     """
-    aspect = subplot_aspect(plotter)
-    camera = Camera.fit(field.surface, aspect, zoom=zoom, focus=focus, margin=margin)
-    apply_camera(camera, plotter.camera)
+    (width, height), renderer = plotter.window_size, plotter.renderer
+    left, bottom, right, top = renderer.GetViewport()
+    aspect = float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
+    apply_camera(view.first_camera(surface, aspect, margin), plotter.camera)
     plotter.camera_set = True
-    renderer = plotter.renderer
     bounds = renderer.ComputeVisiblePropBounds()
 
     def follow_bounds(caller: vtkRenderer, _: str) -> None:
@@ -53,10 +52,3 @@ def look(
 
     renderer.reset_camera_clipping_range()
     renderer.AddObserver("StartEvent", follow_bounds)
-
-
-def subplot_aspect(plotter: Any) -> float:
-    """Return width over height of the part of the window that the present subplot fills."""
-    width, height = plotter.window_size
-    left, bottom, right, top = plotter.renderer.GetViewport()
-    return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)

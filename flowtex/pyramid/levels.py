@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.blocks import even_runs
+from flowtex._util.arrays import even_runs, norm
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
-from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps, Nodes, typical_steps
 from flowtex.pyramid.layout import (

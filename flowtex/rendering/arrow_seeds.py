@@ -22,7 +22,7 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import norm
 from flowtex.rendering.constants import HASH_FACTORS, HASH_SHIFT, OCTAVE_PRIME, SEED_PRIME
 from flowtex.rendering.tile_choice import TileView
 from flowtex.textures.geometry import SurfaceGeometry

@@ -8,8 +8,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.blocks import bounds
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import bounds, norm
 from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
-from flowtex._util.vectors import dot, norm
+from flowtex._util.arrays import dot, norm
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, block_places
 from flowtex.textures.triangle_geometry import TriangleGeometry

@@ -45,7 +45,7 @@ from flowtex.field import FlowField, Surface
 from flowtex.field.derived import COMPONENTS, SIGNED, component_name
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.field.validation import with_gaps
-from flowtex.rendering.camera import Camera, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.select import two_names
@@ -509,9 +509,11 @@ class ViewOptions:
         """Colour behind the surface, outside a page."""
         return "white" if self.background is None else self.background
 
-    def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
-        """Return the initial camera of a picture with this width over height."""
-        whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
+    def first_camera(
+        self, surface: Surface, aspect: float = 1.5, margin: float = CAMERA_LIMITS.margin
+    ) -> Camera:
+        """Return the initial camera; :meth:`Camera.fit` has the parameters."""
+        whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus, margin=margin)
         if self.camera is None or isinstance(self.camera, Camera):
             return self.camera or whole
         if isinstance(self.camera, Mapping):

@@ -9,7 +9,7 @@ that lie in them are the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -49,7 +49,7 @@ from flowtex.textures.tiles.structure import STRUCTURE, Structure, check_structu
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
-__all__ = ["NO_IMAGE", "Change", "Scene", "drawn_store", "follow", "lay_image", "share_field"]
+__all__ = ["NO_IMAGE", "Change", "Scene", "TracedFlow", "follow", "lay_image", "share_field"]
 
 #: The kind of a change: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
@@ -57,6 +57,9 @@ Notice = Callable[[Change], None]
 
 #: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
 SETTINGS_IN_TEXTURES = {"seed": ("texture",), "tiles": (), "resolution": ("texture", "image")}
+
+#: Memory of a field with what is derived of it, over that of its arrays.
+DERIVED_FACTOR = 4
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
@@ -549,17 +552,27 @@ def _is_tiled(field: FlowField, settings: Settings) -> bool:
     return settings.noise == "procedural" and not field.sign_free
 
 
-def drawn_store(field: FlowField, settings: Settings) -> tuple[SliceStore, Pyramid | None]:
-    """Return the traces from which scenes of a field draw their first picture, and its pyramid.
+@dataclass(frozen=True)
+class TracedFlow:
+    """A field, its traces and its tiles; of a large field the traces of its coarsest level."""
 
-    For a large field they belong to the coarsest level, :attr:`Scene.whole`, and the pyramid must
-    be kept with them.
-    """
-    lines, pyramid = chosen_lines(field, settings.lines), None
-    if _is_tiled(field, settings):
-        pyramid = shared_pyramid(field, settings.parameter, lines)
-    whole = pyramid.root if pyramid is not None and pyramid.depth else field
-    return shared_store(whole, settings.parameter, lines), pyramid
+    field: FlowField
+    store: SliceStore
+    pyramid: Pyramid | None
+
+    @classmethod
+    def of(cls, field: FlowField, settings: Settings) -> TracedFlow:
+        """Return the traces from which scenes of a field draw their first picture."""
+        lines, pyramid = chosen_lines(field, settings.lines), None
+        if _is_tiled(field, settings):
+            pyramid = shared_pyramid(field, settings.parameter, lines)
+        whole = pyramid.root if pyramid is not None and pyramid.depth else field
+        return cls(field, shared_store(whole, settings.parameter, lines), pyramid)
+
+    @property
+    def nbytes(self) -> int:
+        """Size in memory, in bytes, with what is derived of the field."""
+        return DERIVED_FACTOR * self.field.nbytes + self.store.nbytes
 
 
 def _shared_textures(

@@ -23,7 +23,7 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Floats32, Ints
-from flowtex._util.blocks import block_means
+from flowtex._util.arrays import block_means
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line, between_nodes, fill_blanked, inverse_along_line

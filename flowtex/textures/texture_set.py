@@ -33,8 +33,8 @@ from functools import cached_property
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats32, Halves
+from flowtex._util.arrays import dot, norm
 from flowtex._util.progress import pool
-from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.uncertainty import unknown_share

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
-from flowtex._util.blocks import bounds
+from flowtex._util.arrays import bounds
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import normals_at_corners

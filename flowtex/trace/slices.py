@@ -23,7 +23,7 @@ import numpy as np
 
 from flowtex._util.arguments import checked_count, checked_number, checked_path
 from flowtex._util.array_types import AnyArray, Floats, Indices
-from flowtex._util.blocks import block_means
+from flowtex._util.arrays import block_means
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
 from flowtex.field import FlowField

@@ -39,7 +39,7 @@ from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.scene.signatures import accepts_options
 from flowtex.textures.tiles.shared import shared_pyramid
-from flowtex.web import preview
+from flowtex.web import still
 from flowtex.web.view import TileSource, WebView, asset, browser_options, client_script, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
@@ -183,7 +183,7 @@ def write_page(
     path = checked_target(path)
     if basemap is not None:
         check_basemap(basemap, path, views)
-    contents = _contents(views, store, **options)
+    contents = contents_of(views, store, **options)
     suffix = path.suffix.lower()
     pieces = module_pieces if suffix in MODULES else page_pieces
     if basemap is not None:
@@ -197,13 +197,7 @@ def write_page(
 
 def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
     """Return views as the text of a page; the arguments are those of :func:`write_page`."""
-    return "".join(page_pieces(_contents(views, store, **options)))
-
-
-def _contents(views: Sequence[WebView], store: str | None, **options: Any) -> Contents:
-    link = None if store is None else StoreLink.of(store)
-    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
-    return contents_of(views, scenes, link, **options)
+    return "".join(page_pieces(contents_of(views, store, **options)))
 
 
 def page_data(views: Sequence[WebView]) -> list[ClientData]:
@@ -251,8 +245,7 @@ class Contents:
 
 def contents_of(
     views: Sequence[WebView],
-    scenes: Sequence[ClientData],
-    link: StoreLink | None = None,
+    store: str | None,
     *,
     title: str | None = None,
     axes: str | None = None,
@@ -264,9 +257,10 @@ def contents_of(
 
     ``axes`` is that of :class:`~flowtex.scene.options.ViewOptions`. Camera, time and clock are
     those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
-    has drawn, by default a preview. ``link`` is the store that has the rest; ``scenes`` are then
-    those of :func:`linked_data`.
+    has drawn, by default a preview. ``store`` is the address of the store that has the rest.
     """
+    link = None if store is None else StoreLink.of(store)
+    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
     headers = []
     for view, scene in zip(views, scenes, strict=True):
         header = scene.header(view.scene.settings, time=time, **shown)
@@ -342,7 +336,7 @@ def _values(contents: Contents) -> dict[str, str]:
     headers, link, picture = contents.headers, contents.link, contents.picture
     ground = headers[0]["background"]
     if picture is None:
-        picture = preview.preview_png(
+        picture = still.preview_png(
             contents.view, PREVIEW, camera=headers[0]["camera"], time=contents.time, coarser=1
         )
     # A browser has its own colour for light and for dark pages.
@@ -352,9 +346,16 @@ def _values(contents: Contents) -> dict[str, str]:
     opened = "" if link is None else "flowtexStore.open"
     client = f"{client_script(with_store=link is not None)}\nflowtex.openPage({opened});\n"
     script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
+    # One script by its digest, inline styles, and at most a store's server.
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    policy = (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        + ("" if link is None else f"connect-src {link.source}; ")
+        + "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
     look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
     return {
-        "policy": _policy(script, link),
+        "policy": policy,
         "version": __version__,
         "title": html.escape(contents.title),
         "style": look,
@@ -363,16 +364,6 @@ def _values(contents: Contents) -> dict[str, str]:
         "headers": zipped(headers_text(headers).encode()),
         "script": script,
     }
-
-
-def _policy(script: str, link: StoreLink | None) -> str:
-    """Return the policy: one script by digest, inline styles, and at most a store's server."""
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    return (
-        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
-        + ("" if link is None else f"connect-src {link.source}; ")
-        + "img-src data: blob:; base-uri 'none'; form-action 'none'"
-    )
 
 
 def json_text(value: object) -> str:
@@ -388,11 +379,11 @@ def _packed(
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
-        steps = track(range(scene.steps), scene.steps, "Packing time steps")
-        parts = chain(
-            [scene.surface()], map(scene.step, steps), TileSource(scene, budget=0).tiles()
-        )
-        if link is not None:
+        if link is None:
+            steps = track(range(scene.steps), scene.steps, "Packing time steps")
+            tiles = TileSource(scene, budget=0).tiles()
+            parts = chain([scene.surface()], map(scene.step, steps), tiles)
+        else:
             parts = chain([first_parts(scene, time)])
         for name, array in chain.from_iterable(part.items() for part in parts):
             if name in names:  # values of all times are parts of each step

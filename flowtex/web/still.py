@@ -1,23 +1,38 @@
-"""A still of a view in a browser, with axes, legend and marks, where no browser draws it."""
+"""Pictures of a view where no browser draws it: a preview, and a still with axes, legend and marks.
+
+The renderer in NumPy draws a preview from few nodes and samples, so that it takes a fraction of a
+second, needs no OpenGL, and can be made in any thread.
+"""
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.colours import rgb
+from flowtex.field.interpolation import steps_around
 from flowtex.rendering.arrow_seeds import ArrowSeeds
-from flowtex.rendering.camera import Camera
-from flowtex.rendering.cpu.render import Picture
-from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
+from flowtex.rendering.camera import Camera, CameraValues
+from flowtex.rendering.cpu.render import Picture, render
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
+    map_lines,
+)
 from flowtex.rendering.tile_choice import TileView
-from flowtex.rendering.uniforms import arrow_distance, has_arrows
+from flowtex.rendering.uniforms import ViewState, arrow_distance, has_arrows
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import (
     KIND_MARKS,
@@ -27,7 +42,7 @@ from flowtex.rendering.webgl.marks import (
     strokes,
 )
 from flowtex.scene.annotations import annotate, difference_text, layout, write_ticks
-from flowtex.web import preview
+from flowtex.settings import Settings
 from flowtex.web.view import WebView
 
 #: Returns the camera for a ratio of width to height.
@@ -47,6 +62,15 @@ INSIDE = 0.9
 SMOOTHING_PX = 2.0
 #: Distance of a seed from the surface in the picture, in heights of the view, that hides it.
 HIDDEN = 0.05
+#: Nodes and samples of a small picture; more make no visible difference.
+NODES, SAMPLES = 3_000, 17
+#: Greatest spacing of samples in grains. Pixels side by side share no sample of a greater one, and
+#: streaks become rows of dots.
+WIDEST_SPACING = 0.7
+#: Pixels of the picture by one that NumPy draws, along each side.
+COARSER = 2
+#: Background of the preview where it is that of the surrounding page.
+WHITE = (1.0, 1.0, 1.0)
 
 
 def still_png(
@@ -67,8 +91,8 @@ def still_png(
     the view ``differs`` from another.
     """
     scene, (width, height) = view.scene, size
-    data = data or view.coarse_data(preview.NODES)
-    ground = tuple(ground or data.colours.background or preview.WHITE)
+    data = data or view.coarse_data(NODES)
+    ground = tuple(ground or data.colours.background or WHITE)
     seen = camera(width / height)
     frame = scene.whole.surface.frame if seen.parallel and not scene.field.projection else None
     if axes not in (None, "ticks") or frame is None or not np.allclose(seen.axes[:2], frame):
@@ -96,7 +120,7 @@ def still_png(
     colors = {*LINE_COLORS.values(), *NULLCLINE_COLORS.values(), RIM_COLOR, "black", "white"}
     colors |= {mark.color for mark in KIND_MARKS.values()}
     exact = [round(255 * c) for color in sorted(colors) for c in rgb(color)]
-    return preview.encoded(
+    return encoded(
         Image.fromarray(canvas), [*exact, *scene.legend_colours[::4, :3].ravel().tolist()]
     )
 
@@ -104,8 +128,8 @@ def still_png(
 def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camera) -> Image.Image:
     """Draw the flow with its arrows and marks."""
     scene = view.scene
-    coarser = max(preview.COARSER, math.ceil(math.sqrt(size[0] * size[1] / MOST_PIXELS)))
-    image, picture = preview.draw_flow(view, data, size, camera, scene.time, coarser)
+    coarser = max(COARSER, math.ceil(math.sqrt(size[0] * size[1] / MOST_PIXELS)))
+    image, picture = draw_flow(view, data, size, camera, scene.time, coarser)
     draw = ImageDraw.Draw(image)
     if has_arrows(data.textures, scene.settings):
         length = ARROW_LENGTH * arrow_distance(scene.settings)
@@ -124,7 +148,7 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
             draw.polygon(head, "black")
     wide = float(np.clip(np.sqrt(size[1] / USUAL_HEIGHT_PX), *WIDTH_RANGE))
     for pieces, color, thick, _ in strokes(scene.structure, scene.settings, scene.step):
-        for start, end in preview.pixels_of(pieces, camera, size):
+        for start, end in pixels_of(pieces, camera, size):
             if (start == end).all():
                 draw.circle(tuple(start), wide * thick / 2, color)
             else:
@@ -150,7 +174,7 @@ def _arrow_paths(
     velocity = field.velocity[view.scene.step].reshape(-1, 3)[picture.nearest]
     speed = np.maximum(np.linalg.norm(velocity, axis=-1, keepdims=True), np.finfo(float).tiny)
     moved = pixels + velocity / speed * camera.height * 1e-3
-    way = np.subtract(*(preview.pixels_of(p, camera, size) for p in (moved, pixels)))
+    way = np.subtract(*(pixels_of(p, camera, size) for p in (moved, pixels)))
     way = scipy.ndimage.gaussian_filter(np.nan_to_num(way), (SMOOTHING_PX, SMOOTHING_PX, 0))
     way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), np.finfo(float).tiny)
     scale = np.array(picture.covered.shape[::-1]) / size
@@ -160,7 +184,7 @@ def _arrow_paths(
         return scipy.ndimage.map_coordinates(values, index, order=1, mode="nearest")
 
     covered = picture.covered.astype(float)
-    start = preview.pixels_of(points, camera, size)
+    start = pixels_of(points, camera, size)
     inside = ((start >= 0) & (start < size)).all(axis=-1) & (at(covered, start) > INSIDE)
     start, points = start[inside], points[inside]
     shown = np.stack([at(np.nan_to_num(pixels[..., n]), start) for n in range(3)], axis=-1)
@@ -176,3 +200,122 @@ def _arrow_paths(
             track.append(place)
         tracks.append(track)
     yield from np.stack([*tracks[0][::-1], start, *tracks[1]], axis=1)
+
+
+def preview_png(
+    view: WebView,
+    size: tuple[int, int],
+    *,
+    camera: CameraValues | None = None,
+    time: float | None = None,
+    coarser: int = COARSER,
+) -> bytes:
+    """Draw a small picture and return it as PNG.
+
+    By default the whole surface is shown, at the first time; one pixel is computed for ``coarser``
+    along each side.
+    """
+    scene = view.coarse_data(NODES)
+    camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
+    image, _ = draw_flow(view, scene, size, Camera.from_dict(camera), time, coarser)
+    return encoded(image, is_page=scene.colours.background is None)
+
+
+def draw_flow(
+    view: WebView,
+    scene: ClientData,
+    size: tuple[int, int],
+    camera: Camera,
+    time: float | None,
+    coarser: int,
+) -> tuple[Image.Image, Picture]:
+    """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
+    before, after, between = steps_around(
+        scene.times, float(scene.times[0] if time is None else time)
+    )
+    steps = (scene.source(before), scene.source(after))
+    picture = render(
+        scene.textures,
+        _few_samples(view.scene.settings),
+        camera,
+        (max(size[0] // coarser, 1), max(size[1] // coarser, 1)),
+        view=ViewState(between=between, still=True),
+        steps=steps,
+    )
+    ground = scene.colours.background or WHITE
+    drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
+    behind = 255.0 * np.asarray(ground)
+    drawn = np.rint(behind + scene.colours.opacity * (drawn - behind)).astype(np.uint8)
+    image = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
+    _draw_lines(image, scene, camera)
+    return image, picture
+
+
+def encoded(image: Image.Image, exact: Iterable[int] = (), *, is_page: bool = False) -> bytes:
+    """Return a picture as PNG, with up to 90 ``exact`` colours in one list.
+
+    White is transparent on a page whose colour is not known.
+    """
+    picture = np.asarray(image)
+    # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
+    palette_image = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
+    palette_image.putpalette([*(palette_image.getpalette() or [])[: 3 * 160], *exact])
+    reduced = Image.fromarray(picture).quantize(palette=palette_image, dither=Image.Dither.NONE)
+    palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
+    palette[corner : corner + 3] = picture[0, 0].tolist()  # the exact background
+    reduced.putpalette(palette)
+    file = io.BytesIO()
+    is_page &= bool((picture[0, 0] == 255).all())
+    reduced.save(file, "PNG", optimize=True, **({"transparency": corner // 3} if is_page else {}))
+    return file.getvalue()
+
+
+def _few_samples(settings: Settings) -> Settings:
+    settings = settings.copy()
+    samples = min(settings.samples, SAMPLES)
+    # Streaks keep their length as far as possible.
+    spacing = settings.spacing * settings.samples / samples
+    widest = max(settings.spacing, WIDEST_SPACING * settings.grain)
+    settings.update(samples=samples, spacing=min(spacing, widest))
+    return settings
+
+
+def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None:
+    """Draw the coasts and the graticule of a map over a picture, or of the near side of a globe."""
+    field, size = scene.field, np.array(picture.size)
+    if field.projection is None:
+        return
+    draw = ImageDraw.Draw(picture, "RGBA")
+    fine = SPACING_PX * camera.height / (size[1] / 2)
+    spacing = next((s for s in SPACINGS if s <= fine), 0.0)
+    for option, lines in map_lines(field, has_globe=False).items():
+        if not getattr(scene.colours, option):
+            continue
+        lines = lines.thinned(spacing) if spacing else lines
+        pixels = pixels_of(lines.points, camera, size)
+        if field.surface.on_globe:
+            far = np.sum(lines.points * (camera.eye[:3] - camera.eye[3] * lines.points), -1) <= 0
+            pixels[far] = np.nan
+        seen: Bools = np.isfinite(pixels[..., 0])
+        stroke = STROKES[option]
+        colour = tuple(round(255 * c) for c in (*rgb(stroke.color), stroke.opacity))
+        for begin, end in pairwise(lines.starts):
+            for run in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
+                draw.line([tuple(p) for p in pixels[run][seen[run]]], fill=colour)
+
+
+def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
+    """Return the pixels (..., 2) of points, from the top left, NaN behind the camera."""
+    sides = np.asarray(size)
+    return np.asarray((camera.project(points, sides[0] / sides[1]) * [0.5, -0.5] + 0.5) * sides)
+
+
+def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
+    """Return the colour of the surface at each pixel, (H, W, 3)."""
+    colours = scene.colours
+    if colours.values is None or not len(colours.scale.table):
+        return np.asarray(colours.plain)
+    before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
+    values = before * (1 - between) + after * between
+    nearest = picture.cell if colours.flat else picture.nearest
+    return colours.scale.colours(values.ravel()[nearest])

@@ -25,10 +25,9 @@ from flowtex.field.locate import locate
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, share_field
-from flowtex.scene.signatures import accepts_options
+from flowtex.scene.signatures import AppearanceAttributes, accepts_options
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey
@@ -256,10 +255,11 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             self._announce(number, header)
         self._reading = arguments.field
         self.on_msg(self._handle_message)
-        self.observe(self._to_settings, list(TABLE))
+        self.observe(lambda c: setattr(self.settings, c["name"], c["new"]), list(TABLE))
         self.observe(self._to_time, "time")
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
-        self._views.start()
+        for feed in self._views.feeds:
+            feed.start()
         self._is_made = True
 
     @property
@@ -398,9 +398,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         is_moved = camera != self._fit(surface, PREVIEW[0] / PREVIEW[1])
         return lambda aspect: camera if is_moved else self._fit(surface, aspect)
 
-    def _to_settings(self, change: Any) -> None:
-        setattr(self.settings, change["name"], change["new"])
-
     def _to_time(self, change: Any) -> None:
         if change["new"] != self.scene.time:
             self.scene.time = change["new"]
@@ -472,11 +469,6 @@ class Views:
     def headers(self) -> list[Header]:
         """Header of each view."""
         return [self._with_own(n, feed.header) for n, feed in enumerate(self.feeds)]
-
-    def start(self) -> None:
-        """Start the feeds."""
-        for feed in self.feeds:
-            feed.start()
 
     def handle_message(self, message: Header) -> None:
         """Answer the client; invalid messages are ignored."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
-from flowtex._util.blocks import block_means
+from flowtex._util.arrays import block_means
 from flowtex.field import FlowField
 from flowtex.scene.probe import Probe, probe
 from flowtex.scene.scene import Scene

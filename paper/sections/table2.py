@@ -55,7 +55,7 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
     import pyvista as pv
 
     from flowtex.plotting.handle import FlowHandle
-    from flowtex.plotting.vtk_camera import look
+    from flowtex.plotting.vtk_camera import point_camera
     from flowtex.scene.options import Appearance
     from flowtex.scene.scene import Scene
 
@@ -64,10 +64,10 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
         plotter.disable_anti_aliasing()
         grey = Appearance(scalars=False, color="grey")
         scene = Scene(field, Settings(**PAPER, resolution=512), grey, slices=slices)
-        look(plotter, field)
+        point_camera(plotter, field.surface)
         plotter.render()
         handle = FlowHandle(plotter, scene, lambda _: None)
-        look(plotter, field)
+        point_camera(plotter, field.surface)
         first, _ = _clock(plotter.screenshot)
         frames = bench.pick(12, 4)
 

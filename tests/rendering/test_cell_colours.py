@@ -22,7 +22,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Options
-from flowtex.web.preview import _colour
+from flowtex.web.still import _colour
 from flowtex.web.view import web_views
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*normal to the surface")

@@ -17,8 +17,9 @@ from plain_pyvista import off_colours
 from scipy.ndimage import binary_erosion
 
 import flowtex
-from flowtex.plotting.vtk_camera import look
+from flowtex.plotting.vtk_camera import point_camera
 from flowtex.rendering import mesh_levels
+from flowtex.scene.options import ViewOptions
 
 SIZE = (400, 300)
 
@@ -39,7 +40,7 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
     plotter.flowtex.add(field, scalars=False)
     pictures = []
     for focus in ((0.63, 0.37), (0.63 + 3e-4, 0.37), (1.7, 0.8), (0.63, 0.37)):
-        look(plotter, field, zoom=2e4, focus=focus)
+        point_camera(plotter, field.surface, ViewOptions(zoom=2e4, focus=focus))
         plotter.render()
         pictures.append(plotter.screenshot(return_img=True).astype(float))
     assert np.sqrt(np.mean((pictures[0] - pictures[3]) ** 2)) < 2
@@ -55,7 +56,7 @@ def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
         with contextlib.closing(pv.Plotter(off_screen=True, window_size=[80, 60])) as plotter:
             handle = plotter.flowtex.add(field, scalars=False)
             for zoom in zooms:
-                look(plotter, field, zoom=zoom)
+                point_camera(plotter, field.surface, ViewOptions(zoom=zoom))
                 plotter.render()
                 picture = plotter.screenshot(return_img=True)
                 assert (handle._surface._base.view.levels == 0) == (zoom > 1)
@@ -235,7 +236,7 @@ def test_large_triangles_draw_what_small_ones_do(
             if field is globe:
                 plotter.camera.position, plotter.camera.focal_point = 4 * np.array(focus), (0, 0, 0)
             else:
-                look(plotter, flow, zoom=zoom, focus=focus)
+                point_camera(plotter, flow.surface, ViewOptions(zoom=zoom, focus=focus))
             plotter.render()
             pictures.append(np.asarray(plotter.screenshot(return_img=True), float))
             counts.append(sum(mesh.n_cells for mesh in handle.meshes))
@@ -386,13 +387,13 @@ def test_streaming_carries_the_picture_at_the_speed_asked_for(
     plotter: Any, motion: str, units: str
 ) -> None:
     field = uniform_field()
-    look(plotter, field, zoom=2)
+    point_camera(plotter, field.surface, ViewOptions(zoom=2))
     pixel = 2 * plotter.camera.parallel_scale / plotter.window_size[1]
     speed = 60.0 * (pixel if units == "units" else 1.0)
     handle = plotter.flowtex.add(
         field, scalars=False, motion=motion, speed=speed, speed_in=units, reset_camera=False
     )
-    look(plotter, field, zoom=2)
+    point_camera(plotter, field.surface, ViewOptions(zoom=2))
     frames = []
     for clock in (0.5, 0.6):
         handle.clock = clock

@@ -14,7 +14,7 @@ import pytest
 import flowtex
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene.scene import Scene
-from flowtex.web.preview import preview_png
+from flowtex.web.still import preview_png
 from flowtex.web.view import WebView, client_module
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
 from flowtex.web.export import export
-from flowtex.web.preview import preview_png
+from flowtex.web.still import preview_png
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def test_a_file_is_there_whole_or_as_it_was(
 
     with monkeypatch.context() as patch:
         patch.setattr("flowtex.rendering.webgl.client_data.ClientData.step", fail)
-        patch.setattr("flowtex.web.preview.preview_png", lambda *a, **k: b"")
+        patch.setattr("flowtex.web.still.preview_png", lambda *a, **k: b"")
         with pytest.raises(OSError, match="disk full"):
             export(gyre(), path)
     assert path.read_text() == "before"

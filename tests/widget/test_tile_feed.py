@@ -46,7 +46,8 @@ class Client:
         views = web_views(field, Options.split(samples=9, **options))
         self.views = Views(views, lambda number, header: self._take(header), self._receive)
         self.header = self.views.headers[0]
-        self.views.start()
+        for feed in self.views.feeds:
+            feed.start()
         self.views.handle_message({"kind": "ready"})
         self.wait(lambda: bool(self.header["pyramid"]))
 

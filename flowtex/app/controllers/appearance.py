@@ -7,20 +7,19 @@ from typing import Any
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import FileBeside
-from flowtex.app.server.validation import name_among, number
+from flowtex.app.server.page import name_among, number
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.scene.annotations import time_text
+from flowtex.scene.options import EARTH_LINES
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values
 
 #: The choice of no colours.
 PLAIN = "none"
-#: Lines of a map, if the field has a projection; and all fields of the appearance that the page
-#: has under their names.
-MAP_LINES = ("coastlines", "graticule")
-LOOK = ("cmap", "clim", "log_scale", "opacity", *MAP_LINES)
+#: Fields of the appearance that the page has under their names.
+LOOK = ("cmap", "clim", "log_scale", "opacity", *EARTH_LINES)
 #: Backgrounds.
 BACKGROUNDS = ("theme", "black", "white", "gray")
 #: Differences of a second pane, by label.
@@ -59,7 +58,7 @@ def comparison(name: str, time: float) -> dict[str, Any]:
 def look_shown(look: Look) -> dict[str, Any]:
     """Return the appearance of a surface as the page shows it, with all values explicit."""
     shown = {name: getattr(look, name) for name in LOOK}
-    shown |= {name: shown[name] is not False for name in MAP_LINES}
+    shown |= {name: shown[name] is not False for name in EARTH_LINES}
     # A colour map without a name is shown as the first one.
     return {**shown, "cmap": look.cmap if isinstance(look.cmap, str) else CMAPS[0]}
 

@@ -14,8 +14,7 @@ from typing import Any, TypeAlias, TypeVar
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.server.files import Routes
-from flowtex.app.server.page import PageState, Signal
-from flowtex.app.server.validation import shortened
+from flowtex.app.server.page import PageState, Signal, shortened
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError

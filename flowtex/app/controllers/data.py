@@ -24,14 +24,15 @@ from flowtex.app.controllers.context import (
     announced,
     without_folder,
 )
-from flowtex.app.controllers.library import Choice, TracedFlow
+from flowtex.app.controllers.library import Choice
 from flowtex.app.server.files import Uploads
-from flowtex.app.server.validation import clipped, name_among
+from flowtex.app.server.page import clipped, name_among
 from flowtex.app.streaming.viewport import time_in
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
+from flowtex.scene.scene import TracedFlow
 from flowtex.sources.open_source import Source
 from flowtex.textures.tiles.shared import coarsened_field
 

@@ -17,14 +17,14 @@ from typing import Any, Concatenate, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
 from flowtex._util.cache import ByteCache
-from flowtex.app.server.validation import shortened
+from flowtex.app.server.page import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, line_field, line_python
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.options import FieldOptions
-from flowtex.scene.scene import drawn_store
+from flowtex.scene.scene import TracedFlow
 from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.files import Identity, file_identity, members_of
@@ -33,8 +33,6 @@ from flowtex.sources.open_source import DatasetSource, FlowSource, Source
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
 from flowtex.sources.remote import open_remote, prepare_readers
-from flowtex.textures.tiles.pyramid import Pyramid
-from flowtex.trace.store import SliceStore
 
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(
@@ -76,21 +74,6 @@ class Choice:
     vectors: str = ""
     plane: str = ""
     block: str = ""
-
-
-@dataclass(frozen=True)
-class TracedFlow:
-    """A flow with its traces, its tiles, and the state of its files."""
-
-    field: FlowField
-    store: SliceStore
-    pyramid: Pyramid | None
-    identity: Identity
-
-    @property
-    def nbytes(self) -> int:
-        """Size in memory, in bytes."""
-        return self.field.nbytes + self.store.nbytes
 
 
 def _at_home(
@@ -301,7 +284,8 @@ class Library:
             When the file does not exist, or the choice does not contain a flow.
         """
         flow = self._flows.peek((name, choice))
-        if flow is not None and flow.identity == _identity(self._opener(name)):
+        known = None if flow is None else self._identities.get(flow.field, ())
+        if flow is not None and known == _identity(self._opener(name)):
             return flow.field
         source = self.source(name)
         with self._making.setdefault(name, threading.Lock()):
@@ -324,9 +308,8 @@ class Library:
         """
         flow = self._flows.peek((name, choice))
         if flow is None or flow.field is not field:
-            store, pyramid = drawn_store(field, settings)
-            store.at(len(field.times) - 1)
-            flow = TracedFlow(field, store, pyramid, self._identities.get(field, ()))
+            flow = TracedFlow.of(field, settings)
+            flow.store.at(len(field.times) - 1)
             self._flows.put((name, choice), flow)
         return flow
 

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
+from flowtex._util.arguments import brief
 from flowtex._util.written import NUMBER, Form, UnreadableError
 from flowtex.app.controllers.appearance import (
     ANOTHER_FILE,
@@ -38,12 +39,11 @@ from flowtex.app.controllers.appearance import (
     look_shown,
 )
 from flowtex.app.controllers.context import State
-from flowtex.app.server.validation import shortened
+from flowtex.app.server.page import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Appearance as Look
-from flowtex.scene.signatures import option_form
 from flowtex.settings import TABLE, SettingsError
 from flowtex.sources.open_source import OUTER
 from flowtex.sources.opening.dataset_files import is_dataset_file
@@ -104,9 +104,9 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
             elif name in TABLE:
                 state.setdefault("settings", {})[name] = TABLE[name].parse(value)
             elif name not in IGNORED:
-                messages.append(f"the link has the unknown name {_quoted(name)}")
+                messages.append(f"the link has the unknown name {brief(name)}")
         except UnreadableError as fault:
-            messages.append(f"the link's {name} is {_quoted(value)}; expected {fault}")
+            messages.append(f"the link's {name} is {brief(value)}; expected {fault}")
         except FieldError as fault:
             messages.append(f"error in the link: {shortened(str(fault), FAULT_LENGTH)}")
     return state
@@ -123,10 +123,6 @@ def _pairs(text: str, faults: list[str]) -> list[tuple[str, str]]:
     except ValueError:
         faults.append(f"the link has too many values; expected {MOST_VALUES} at most")
         return []
-
-
-def _quoted(text: str) -> str:
-    return repr(text if len(text) <= 60 else f"{text[:57]}...")
 
 
 def _matching(pattern: re.Pattern[str], expected: str) -> Form:
@@ -160,7 +156,7 @@ _FORMS: dict[str, Form] = {
     "time": NUMBER,
     "clock": NUMBER,
     "colour": NAME,
-    **{name: option_form(Look, name) for name in LOOK},
+    **{name: Look.__dataclass_fields__[name].metadata["form"] for name in LOOK},
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),

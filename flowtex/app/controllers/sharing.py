@@ -31,7 +31,7 @@ from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
-from flowtex.app.server.validation import number
+from flowtex.app.server.page import number
 from flowtex.app.streaming.stream import LINE_GREY, TILE_PX
 from flowtex.app.streaming.viewport import GAP_PX, Viewport
 from flowtex.errors import FieldError
@@ -254,15 +254,17 @@ class TiledPicture:
             above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
             self._rows = slice(above, size[1] - below)
 
-    def draw(self) -> Iterator[tuple[Bytes, float]]:
-        """Yield the picture so far, always the same array, and its share, after each tile."""
+    def draw(self) -> Iterator[float]:
+        """Draw a new picture, :attr:`canvas`, and yield the share that is drawn after each tile."""
         width, height = self.size[0], self._rows.stop - self._rows.start
         ground = np.rint(255 * np.array(rgb(self._viewport.background)))
-        canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
-        rows = canvas[self._rows]
+        self.canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
+        rows = self.canvas[self._rows]
         rows[:] = LINE_GREY
         panes, times = self._viewport.panes, self._supersampling
         wide = (width - (len(panes) - 1) * self._gap) // len(panes)
+        if wide < 1:
+            raise ExportError(f"the size is {width} x {height}; expected a pixel for each view")
         done, side = 0, TILE_PX // times
         for n, pane in enumerate(panes):
             first = n * (wide + self._gap)
@@ -275,7 +277,7 @@ class TiledPicture:
                 place = slice(top, top + down), slice(first + left, first + left + across)
                 rows[place] = averaged(pixels, times)
                 done += across * down
-                yield canvas, done / (width * height)
+                yield done / (width * height)
 
     def annotate(self, picture: Bytes) -> list[Layout]:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
@@ -349,18 +351,15 @@ class Job:
 
     async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
         """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
-        picture: Bytes | None = None
-        for canvas, drawn in tiled.draw():
-            picture, self.progress = canvas, before + share * drawn
+        for drawn in tiled.draw():
+            self.progress = before + share * drawn
             # Other tasks of the event loop have their turn.
             await asyncio.sleep(0)
             if self.cancelled:
                 raise Stopped
-        if picture is None:
-            raise ExportError("the size is empty; expected at least one pixel")
         if self._annotations:
-            tiled.annotate(picture)
-        return picture
+            tiled.annotate(tiled.canvas)
+        return tiled.canvas
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
         """Call a function in the job's thread, where tracing can be stopped."""

@@ -130,20 +130,13 @@ class Routes:
             return web.Response(status=400, text=str(error), headers={"Connection": "close"})
         return web.Response(text="")
 
-    def _find(self, name: str) -> Give | None:
-        stem, _, rest = name.partition(".")
-        if name in self._content or stem not in self._families:
-            return self._content.get(name)
-        try:
-            return self._families[stem](rest)
-        except (LookupError, ValueError):
-            return None
-
     async def answer(self, name: str) -> web.StreamResponse:
         """Return a file; raises ``HTTPNotFound`` if it does not exist."""
-        give = self._find(name)
-        if give is None:
-            raise web.HTTPNotFound
+        stem, _, rest = name.partition(".")
+        try:
+            give = self._content.get(name) or self._families[stem](rest)
+        except (LookupError, ValueError):
+            raise web.HTTPNotFound from None
         try:
             content = give()
             body, kind, saved_as = await content if inspect.isawaitable(content) else content

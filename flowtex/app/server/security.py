@@ -126,13 +126,18 @@ def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> Non
             _log.error("%s: %s: %s", target, type(error).__name__, error, exc_info=not expected)
             raise web.HTTPInternalServerError(text=FAULT) from None
 
-    async def add_headers(request: web.Request, response: web.StreamResponse) -> None:
-        del request
+    @web.middleware
+    async def in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
+        try:
+            async with asyncio.timeout(ANSWER_S) as request[LIMIT]:
+                return await handler(request)
+        except TimeoutError:
+            raise web.HTTPRequestTimeout from None
+
+    async def add_headers(_: web.Request, response: web.StreamResponse) -> None:
         response.headers.update({**HEADERS, "Content-Security-Policy": POLICY})
 
-    application.middlewares.append(faults_to_log)
-    limit_time(application)
-    application.middlewares.append(own_pages_only)
+    application.middlewares.extend((faults_to_log, in_time, own_pages_only))
     application.on_response_prepare.append(add_headers)
 
 
@@ -180,20 +185,6 @@ LINGER_S, SHUTDOWN_S = 2.0, 2.0
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 #: The time limit of a request.
 LIMIT = web.RequestKey("limit", asyncio.Timeout)
-
-
-def limit_time(application: web.Application) -> None:
-    """End requests that take too long, except those that are kept."""
-
-    @web.middleware
-    async def in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
-        try:
-            async with asyncio.timeout(ANSWER_S) as request[LIMIT]:
-                return await handler(request)
-        except TimeoutError:
-            raise web.HTTPRequestTimeout from None
-
-    application.middlewares.append(in_time)
 
 
 def keep(request: web.Request) -> None:

@@ -133,8 +133,7 @@ class Site:
             router.add_static(f"/{route.strip('/')}", static[route])
         return application
 
-    async def _door(self, request: web.Request) -> web.StreamResponse:
-        del request
+    async def _door(self, _request: web.Request) -> web.StreamResponse:
         return web.FileResponse(DOOR, headers={"Cache-Control": "no-store"})
 
     async def _page(self, request: web.Request) -> web.StreamResponse:

@@ -28,9 +28,9 @@ from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
-from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import FieldOptions, ViewOptions
 from flowtex.scene.scene import Change, Scene
+from flowtex.scene.signatures import AppearanceAttributes
 
 
 class FlowArea(AppearanceAttributes):

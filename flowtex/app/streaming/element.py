@@ -21,8 +21,15 @@ import numpy as np
 from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
-from flowtex.app.server.page import PageState, Signal, running_loop, start_task
-from flowtex.app.server.validation import mapping, name_among, number
+from flowtex.app.server.page import (
+    PageState,
+    Signal,
+    mapping,
+    name_among,
+    number,
+    running_loop,
+    start_task,
+)
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError

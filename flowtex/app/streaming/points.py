@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.app.server.validation import mapping, number
+from flowtex.app.server.page import mapping, number
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
 from flowtex.field.locate import CURVED_TOLERANCE, FLAT_TOLERANCE

@@ -24,8 +24,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes
-from flowtex.app.server.page import Signal
-from flowtex.app.server.validation import clipped, mapping
+from flowtex.app.server.page import Signal, clipped, mapping
 from flowtex.app.streaming.viewport import GAP_PX, Rect, Viewport
 from flowtex.errors import FieldError
 from flowtex.plotting.handle import FlowHandle

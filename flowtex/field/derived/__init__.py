@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps

@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import norm
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.grids.poles import SAME_POINT_SHARE
 from flowtex.field.surface import Surface

@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.blocks import bounds
+from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.grids.poles import Poles
 from flowtex.field.grids.surface import GridSurface, known_positions

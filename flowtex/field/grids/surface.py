@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.blocks import bounds, row_blocks
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import bounds, norm, row_blocks
 from flowtex.errors import FieldError
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.vectors import dot, norm
+from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field.surface import IndexVelocity, Surface
 from flowtex.field.triangles.arrays import SHARP, flipped, neighbours, triangle_normals

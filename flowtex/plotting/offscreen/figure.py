@@ -1,10 +1,11 @@
-"""Flat flows in data coordinates: the extent of a picture, and matplotlib axes with a flow."""
+"""Flat flows in data coordinates: the extent of a picture, matplotlib axes, and HoloViews."""
 
 from __future__ import annotations
 
 import warnings
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from PIL import Image
 
@@ -20,15 +22,16 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
-from flowtex.plotting.offscreen.earth_axes import (
+from flowtex.plotting.offscreen.axes_kinds import (
+    AxesScales,
     AxesUnit,
     is_geo,
     label_degrees,
     projection_of_axes,
     unit_of,
+    with_polar_scalars,
 )
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
-from flowtex.plotting.offscreen.scaled_axes import AxesScales, with_polar_scalars
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.annotations import time_text
@@ -49,6 +52,8 @@ LINEAR = ("rectilinear", "linear", "linear")
 USUAL_DPI = 100.0
 #: Longest side of the drawn picture where the scales of the axes differ, in pixels.
 LONGEST_SIDE_PX = 8192
+#: Width and height of a plot whose size is not known yet, in pixels.
+FIRST_SIZE = (600, 400)
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
@@ -99,9 +104,7 @@ def extent(
         raise FieldError("beside makes two views, which do not have one common extent; omit it")
     surface = Scene.from_options(mesh, chosen).whole.surface
     frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
-    camera = view.first_camera(surface, aspect)
-    if view.camera is None:
-        camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
+    camera = view.first_camera(surface, aspect, margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
         raise FieldError(
             f"camera is {brief(view.camera)}; expected one that looks straight at the surface "
@@ -178,6 +181,73 @@ def axes(
     ax.add_image(image)
     image.frame_axes()
     return image
+
+
+@accepts_options(FieldOptions, Appearance)
+def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **options: Any) -> Any:
+    """Return a flat flow as a HoloViews element that is redrawn for the range of its plot.
+
+    The flow is redrawn for each range and size of the plot, so that its texture stays sharp. A
+    field with several times has the dimension ``time``, for which HoloViews and Panel show a
+    slider. The picture is transparent outside the flow, so that it can lie over map tiles.
+
+    Parameters
+    ----------
+    mesh
+        As for :func:`flowtex.axes`. With ``projection="EPSG:3857"`` data of the Earth lie on the
+        tiles of ``holoviews.element.tiles``.
+    clock, supersampling
+        As for :func:`flowtex.render`.
+    {options}
+
+    Returns
+    -------
+    DynamicMap
+        A HoloViews ``DynamicMap`` of ``RGB`` elements, in the coordinates of :func:`flowtex.axes`.
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError
+        As for :func:`flowtex.axes`, and when HoloViews is not installed.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> flow = flowtex.dynamic_map(field, cmap="magma")  # doctest: +SKIP
+    >>> flow.opts(width=700, data_aspect=1)  # doctest: +SKIP
+    """
+    try:
+        import holoviews as hv
+        from holoviews.streams import PlotSize, RangeXY
+    except ImportError as error:
+        raise FieldError(
+            "dynamic_map needs HoloViews; install it: python -m pip install holoviews bokeh"
+        ) from error
+    # Matplotlib's axes stand for the plot of HoloViews.
+    figure = Figure()
+    ax = figure.add_axes((0, 0, 1, 1), facecolor="none")
+    image = axes(ax, mesh, clock=clock, supersampling=supersampling, **options)
+    left, right, bottom, top = image.get_extent()
+    field = image.flow
+
+    def draw(*moment: float, **plot: Any) -> Any:
+        x, y = plot["x_range"] or (left, right), plot["y_range"] or (bottom, top)
+        size = plot["width"] or FIRST_SIZE[0], plot["height"] or FIRST_SIZE[1]
+        # The pixels of a plot are the page's, of which the screen may have several.
+        figure.set_dpi(USUAL_DPI * plot["scale"])
+        figure.set_size_inches(size[0] / USUAL_DPI, size[1] / USUAL_DPI)
+        ax.set(xlim=sorted(x), ylim=sorted(y))
+        if moment:
+            image.time = float(moment[0])
+        pixels = image.make_image(None)[0]
+        bounds = (min(x), min(y), max(x), max(y))
+        return hv.RGB(pixels[::-1], bounds=bounds, label=field.name)
+
+    text = partial(time_text, field)
+    time = hv.Dimension("time", values=field.times.tolist(), value_format=text)
+    kdims = [time] if len(field.times) > 1 else []
+    return hv.DynamicMap(draw, kdims=kdims, streams=[RangeXY(), PlotSize()])
 
 
 class FlowImage(AxesImage):

@@ -5,32 +5,29 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import brief, checked_size, sized
+from flowtex._util.arguments import checked_size, sized
 from flowtex._util.array_types import Bytes
 from flowtex._util.cache import ByteCache
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
-from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
+from flowtex.plotting.vtk_camera import point_camera, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.annotations import Layout, annotate, difference_text
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
-from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.scene import Scene, TracedFlow, share_field
 from flowtex.scene.signatures import accepts_options
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
-from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import has_pyramid
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.store import SliceStore
 
 #: Longest side of a drawing, in pixels.
 LONGEST_SIDE = 16_384
@@ -42,8 +39,8 @@ NOTHING_SEEN = (
     "The surface is outside the picture; check zoom, focus and camera, which are in the mesh's "
     "own units."
 )
-#: Memory of fields and traces that are kept after a picture, and of a node of a field.
-KEPT_BYTES, NODE_BYTES = 500_000_000, 200
+#: Memory of fields and traces that are kept after a picture.
+KEPT_BYTES = 500_000_000
 
 
 class OffscreenPlotter:
@@ -84,14 +81,12 @@ class OffscreenPlotter:
         self._supersampling = supersampling
         self._view, self._annotations = options.view, annotations
         large = (size[0] * supersampling, size[1] * supersampling)
-        split = options.view.beside is not None
-        self._plotter = new_plotter(large, two_views=split, off_screen=True, lighting="light kit")
+        self._plotter = new_plotter(large, self._view, off_screen=True, lighting="light kit")
         try:
             if supersampling == 1:  # supersampling smooths outlines as well
                 self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
             else:
                 self._plotter.disable_anti_aliasing()
-            self._plotter.set_background(options.view.ground)
             self.handles = add_scenes(
                 self._plotter, field, options, scalar_bar_args, labels=not annotations
             )
@@ -99,7 +94,7 @@ class OffscreenPlotter:
             window.SetDPI(window.GetDPI() * supersampling)
             for handle in self.handles:
                 handle.density, handle.still = supersampling * density, still
-            point_camera(self._plotter, self.handles[0].scene, options.view, margin)
+            self._point_camera(margin)
             if annotations:
                 self._reserve(size, margin)
         except BaseException:
@@ -134,6 +129,9 @@ class OffscreenPlotter:
         self._annotate(canvas)
         return canvas
 
+    def _point_camera(self, margin: float) -> None:
+        point_camera(self._plotter, self.handles[0].scene.whole.surface, self._view, margin)
+
     def _reserve(self, size: tuple[int, int], margin: float) -> None:
         """Leave room for annotations above and below the flow of a small picture."""
         width, height = size
@@ -147,7 +145,7 @@ class OffscreenPlotter:
             self._rows = slice(above, height - below)
             drawn = (width, height - above - below)
             self._plotter.window_size = [self._supersampling * side for side in drawn]
-            point_camera(self._plotter, self.handles[0].scene, self._view, margin)
+            self._point_camera(margin)
 
     def _annotate(self, canvas: Bytes) -> list[Layout]:
         """Write on a picture, in place."""
@@ -167,12 +165,14 @@ class OffscreenPlotter:
         self._plotter.close()
 
 
-def new_plotter(size: tuple[int, int], *, two_views: bool, **options: Any) -> Any:
-    """Return a PyVista plotter with one view, or with two side by side."""
+def new_plotter(size: tuple[int, int], view: ViewOptions, **options: Any) -> Any:
+    """Return a PyVista plotter with the background and the one or two views of options."""
     import pyvista as pv
 
-    shape = (1, 2) if two_views else (1, 1)
-    return pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
+    shape = (1, 1) if view.beside is None else (1, 2)
+    plotter = pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
+    plotter.set_background(view.ground)
+    return plotter
 
 
 def add_scenes(
@@ -208,30 +208,6 @@ def add_scenes(
         plotter.link_views()
         plotter.subplot(0, 0)
     return handles
-
-
-def point_camera(
-    plotter: Any, scene: Scene, view: ViewOptions, margin: float = CAMERA_LIMITS.margin
-) -> None:
-    """Point a plotter's camera as a view requests.
-
-    Raises a FieldError when the view's camera, zoom or focus, or the margin, is invalid.
-    """
-    if view.camera is None:
-        look(plotter, scene.whole, zoom=view.zoom, focus=view.focus, margin=margin)
-    elif isinstance(view.camera, (Camera, Mapping)):
-        apply_camera(view.first_camera(scene.whole.surface), plotter.camera)
-        plotter.camera_set = True
-        plotter.renderer.reset_camera_clipping_range()
-    else:
-        plotter.camera.parallel_projection = False
-        try:
-            plotter.camera_position = view.camera
-        except (TypeError, ValueError, LookupError) as error:
-            raise CameraError(
-                f"camera is {brief(view.camera)}; expected position, focal point and up, three "
-                "points"
-            ) from error
 
 
 def _check_size(size: tuple[int, int], supersampling: int) -> None:
@@ -330,19 +306,7 @@ def render(
         return picture
 
 
-class _Drawn(NamedTuple):
-    """A field that was drawn, and its traces."""
-
-    field: FlowField
-    store: SliceStore
-    pyramid: Pyramid | None
-
-    @property
-    def nbytes(self) -> int:
-        return self.field.valid.size * len(self.field.times) * NODE_BYTES + self.store.nbytes
-
-
-_drawn: ByteCache[int, _Drawn | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
+_drawn: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
 
 
 def _keep(scene: Scene) -> None:
@@ -357,4 +321,4 @@ def _keep(scene: Scene) -> None:
         for slices in store.traced:
             _drawn.put(id(slices), slices)
     elif not has_pyramid(field):
-        _drawn.put(id(store), _Drawn(field, store, scene.pyramid))
+        _drawn.put(id(store), TracedFlow(field, store, scene.pyramid))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.blocks import even_runs
+from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
 from flowtex.field.grids.arrays import find_closure
 from flowtex.field.steps import Nodes, typical_steps

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex._util.blocks import row_blocks
+from flowtex._util.arrays import dot, norm, row_blocks
 from flowtex._util.cache import ByteCache
-from flowtex._util.vectors import dot, norm
 from flowtex.field.grids.arrays import axes, find_closure, products
 from flowtex.field.validation import MAGNITUDES
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice

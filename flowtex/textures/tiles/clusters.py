@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.vectors import dot, norm
+from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.vectors import norm
+from flowtex._util.arrays import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures.geometry import SurfaceGeometry

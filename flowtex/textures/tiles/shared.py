@@ -8,8 +8,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex._util.arrays import norm
 from flowtex._util.cache import WeakCache
-from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.textures.tiles import triangle_pyramid
 from flowtex.textures.tiles.clusters import levels_of

@@ -10,7 +10,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex._util.blocks import even_runs
+from flowtex._util.arrays import even_runs
 from flowtex.field.arrays import GridArrays
 from flowtex.field.validation import NO_DATA
 from flowtex.sources.datasets.read import read_datasets

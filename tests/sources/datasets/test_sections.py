@@ -11,7 +11,7 @@ import xarray as xr
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex.field.steps import LazySteps
-from flowtex.plotting.offscreen.scaled_axes import AxesScales
+from flowtex.plotting.offscreen.axes_kinds import AxesScales
 from flowtex.sources.notices import DatasetNotice
 
 #: Metres of a degree.

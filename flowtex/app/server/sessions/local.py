@@ -27,8 +27,8 @@ from trame_server.protocol import CoreServer
 from wslink.chunking import UnChunker
 
 from flowtex.app.server.files import Routes
+from flowtex.app.server.page import name_among
 from flowtex.app.server.sessions.registry import OpenSession, Session
-from flowtex.app.server.validation import name_among
 
 #: Makes an application on a trame server. An application has ``server``, ``stream`` (a
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.

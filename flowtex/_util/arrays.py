@@ -1,4 +1,4 @@
-"""Blocks of an array: their means, and work on large arrays by parts."""
+"""Arrays: means of blocks, work on large arrays by parts, and products of vectors."""
 
 from __future__ import annotations
 
@@ -49,3 +49,17 @@ def block_means(data: AnyArray, factor: int, axis: int = 0) -> AnyArray:
     before, after = data.shape[:axis], data.shape[axis + 2 :]
     blocks = data[whole].reshape(*before, rows, factor, columns, factor, *after)
     return np.asarray(blocks.mean(axis=(axis + 1, axis + 3)))
+
+
+def dot(one: Floats, other: Floats) -> Floats:
+    """Return inner products of vectors (..., C), of shape (...).
+
+    NumPy's sums over few components are slow.
+    """
+    product = one * other
+    return np.asarray(product @ np.ones(product.shape[-1], product.dtype))
+
+
+def norm(vectors: Floats) -> Floats:
+    """Return lengths of vectors (..., C), of shape (...)."""
+    return np.sqrt(dot(vectors, vectors))

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 import flowtex
 from flowtex import FieldError
-from flowtex.plotting.offscreen.earth_axes import latitude_text, longitude_text
+from flowtex.plotting.offscreen.axes_kinds import latitude_text, longitude_text
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -12,7 +12,7 @@ from strategies import junk, property_test
 
 pytest.importorskip("trame_rca")
 
-from flowtex.app.server.validation import (
+from flowtex.app.server.page import (
     clipped,
     mapping,
     name_among,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.blocks import block_means
+from flowtex._util.arrays import block_means
 
 
 def test_lines_that_fill_no_block_are_dropped() -> None:

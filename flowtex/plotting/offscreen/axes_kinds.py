@@ -1,0 +1,343 @@
+"""Kinds of matplotlib axes: maps with degrees, logarithmic and other scales, and polar axes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.field.derived import DERIVED, derived_unit
+from flowtex.field.earth import DEGREE, EARTH_RADIUS, MOST_LINES, STEPS, Projection
+from flowtex.field.steps import LazySteps
+from flowtex.scene.options import SPEED
+
+#: Leading digits of ticks in degrees.
+DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
+#: Degrees between ticks on a border.
+TICKS = (90, 60, *STEPS)
+#: Share of the ticks for which matplotlib sees room, where they are longitudes.
+WIDE = 0.85
+#: Places along a border of axes, and inwards from it, where longitude and latitude are looked up.
+ALONG, INWARDS = 241, 33
+#: Share of the axes within which a place maps back to where it was looked up.
+NEAR = 1e-3
+#: Relative step of the derivative of a scale, and least step over the range of the axis.
+STEP, LEAST_STEP = 1e-6, 1e-12
+#: Scales that matplotlib clips: the logarithm of values that are not positive is -1000.
+CLIPPED, BEYOND = ("log", "logit"), 999.0
+#: Steps in which y is stretched against x, in powers of two.
+STRETCH_STEP = 0.5
+
+#: Writes degrees.
+DegreeText = Callable[..., str]
+
+
+@dataclass(frozen=True)
+class AxesUnit:
+    """Unit of axes: a position of the map is ``scale * value + offset``, of x and y."""
+
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+
+    def on_map(self, values: Floats) -> Floats:
+        """Return positions (..., 2) on the map of values of the axes."""
+        return np.asarray(values * np.array(self.scale) + self.offset)
+
+    def on_axes(self, positions: Floats) -> Floats:
+        """Return values (..., 2) of the axes of positions on the map."""
+        return np.asarray((np.asarray(positions) - self.offset) / self.scale)
+
+
+def is_geo(ax: Axes) -> bool:
+    """Return whether axes are cartopy's."""
+    return hasattr(ax, "projection") and hasattr(ax.projection, "proj4_init")
+
+
+def projection_of_axes(ax: Any) -> tuple[str, AxesUnit]:
+    """Return the projection of cartopy's axes, as PROJ takes it, and their unit.
+
+    Axes in degrees show a plate carrée in metres.
+    """
+    text = str(ax.projection.proj4_init)
+    if ax.projection.is_projected:
+        return text, AxesUnit()
+    middle = re.search(r"\+pm=(\S+)", text)
+    text = re.sub(r"\+(pm|a|ellps|to_meter)=\S+ ?", "", text)
+    text = re.sub(r"proj=lat ?long?|proj=longlat", "proj=eqc", text)
+    if middle:
+        text += f" +lon_0={middle[1]}"
+    return f"{text} +R={EARTH_RADIUS:.12g}", AxesUnit((DEGREE, DEGREE))
+
+
+def unit_of(projection: Projection | None) -> AxesUnit:
+    """Return the unit of straight axes: degrees on a plate carrée, else that of the data."""
+    if projection is None or projection.name != "platecarree":
+        return AxesUnit()
+    lon, standard = projection.center
+    scale = DEGREE * math.cos(math.radians(standard)), DEGREE
+    return AxesUnit(scale, (-lon * scale[0], 0.0))
+
+
+def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
+    """Give straight axes ticks in degrees: of a map, where its graticule meets their border."""
+    for number, axis in enumerate((ax.xaxis, ax.yaxis)):
+        if unit == AxesUnit():
+            border = _Border(ax, projection, number)
+            axis.set_major_locator(border)
+            axis.set_major_formatter(FuncFormatter(border.text))
+        else:
+            axis.set_major_locator(_DegreeLocator(nbins="auto", steps=DEGREE_STEPS))
+            axis.set_major_formatter(FuncFormatter((longitude_text, latitude_text)[number]))
+
+
+def longitude_text(degrees: float, _position: int | None = None) -> str:
+    """Return a longitude as ``"30°E"``."""
+    turned = (degrees + 180.0) % 360.0 - 180.0
+    half = abs(abs(turned) - 180.0) < 1e-6
+    return f"{abs(turned):.6g}°{'' if half or abs(turned) < 1e-6 else 'E' if turned > 0 else 'W'}"
+
+
+def latitude_text(degrees: float, _position: int | None = None) -> str:
+    """Return a latitude as ``"60°N"``."""
+    return f"{abs(degrees):.6g}°{'' if abs(degrees) < 1e-6 else 'N' if degrees > 0 else 'S'}"
+
+
+def _room(axis: Any) -> int:
+    """Return the number of ticks for which an axis has room: longitudes are wide."""
+    share = WIDE if axis.axis_name == "x" else 1.0
+    return max(min(MOST_LINES, round(share * axis.get_tick_space())), 1)
+
+
+def _step(degrees: float, most: float) -> float:
+    """Return the degrees between ticks, of which ``most`` have room."""
+    return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
+
+
+class _Border(Locator):
+    """Crossings of meridians with the lower border of axes (0), or parallels with the left (1)."""
+
+    def __init__(self, ax: Axes, projection: Projection, number: int) -> None:
+        self._ax, self._projection, self._number = ax, projection, number
+        self._find = lru_cache(maxsize=1)(self._crossings)  # each tick asks
+
+    def crossings(self) -> tuple[Floats, Floats, DegreeText]:
+        """Return the places along the border, their degrees, and the function for their text."""
+        most = _room((self._ax.xaxis, self._ax.yaxis)[self._number])
+        return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
+
+    def __call__(self) -> list[float]:
+        """Return the places along the border."""
+        return [float(place) for place in self.crossings()[0]]
+
+    def tick_values(self, vmin: float, vmax: float) -> list[float]:
+        """Return the ticks of the axes as they are."""
+        del vmin, vmax
+        return self()
+
+    def text(self, x: float, _position: int | None = None) -> str:
+        """Return the degrees at the nearest crossing."""
+        places, values, text = self.crossings()
+        return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""
+
+    def _crossings(
+        self, axis_limits: tuple[tuple[float, float], tuple[float, float]], most: int
+    ) -> tuple[Floats, Floats, DegreeText]:
+        limits = np.array(axis_limits)
+        (start, end), (border, other) = limits[self._number], limits[1 - self._number]
+        along, inwards = np.linspace(start, end, ALONG), np.linspace(border, other, INWARDS)
+        grid = np.zeros((ALONG, INWARDS, 3))
+        grid[..., self._number], grid[..., 1 - self._number] = along[:, None], inwards
+        lon, lat = self._projection.lonlat(grid)
+        # Outside of a map with an outline, PROJ returns places of the other side.
+        mapped_back = self._projection.positions(lon, lat)
+        with np.errstate(invalid="ignore"):
+            on_map = np.linalg.norm(mapped_back - grid, axis=-1) <= NEAR * np.ptp(limits)
+        # A map with an outline begins further in.
+        first, has_place = (np.arange(ALONG), np.argmax(on_map, axis=1)), on_map.any(axis=1)
+        along, lon, lat = along[has_place], lon[first][has_place], lat[first][has_place]
+        if len(along) < 2:
+            return np.zeros(0), np.zeros(0), longitude_text
+        steps = np.diff(lat)
+        if self._number == 1 and ((steps >= 0).all() or (steps <= 0).all()):
+            degrees, text = lat, latitude_text
+        else:  # around a pole meridians meet all sides
+            degrees, text = np.unwrap(lon, period=360.0), longitude_text
+        low, high = degrees.min(), degrees.max()
+        room = most * abs(float(np.ptp(along) / np.ptp(limits[self._number])))
+        step = _step(high - low, room)
+        places, values = [], []
+        for value in np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step:
+            beyond = degrees >= value
+            for k in np.flatnonzero(beyond[1:] != beyond[:-1]):
+                share = (value - degrees[k]) / (degrees[k + 1] - degrees[k])
+                places.append(along[k] + share * (along[k + 1] - along[k]))
+                values.append(value)
+        return np.array(places), np.array(values), text
+
+
+class _DegreeLocator(MaxNLocator):
+    """Ticks at whole parts of a right angle, where the axes show more than some degrees."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Return ticks between two values, and one beyond each."""
+        low, high = sorted((vmin, vmax))
+        step = _step(high - low, _room(self.axis))
+        if step < 2 * TICKS[-1]:
+            return super().tick_values(vmin, vmax)
+        return np.arange(math.floor(low / step), math.ceil(high / step) + 1) * step
+
+
+class AxesScales:
+    """Scales of axes: of x and y, or of the angle and the radius of polar ones."""
+
+    def __init__(self, ax: Any, *, framed: bool = True) -> None:
+        self.names = ax.get_xscale(), ax.get_yscale()
+        #: Zero and sign of the angle, radius of the centre, and sign of the radius.
+        self.polar: tuple[float, ...] = ()
+        #: Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
+        self.stretch = 1.0
+        # Scaling, and the transform to the figure after it: together they are ``ax.transData``.
+        self._scale = self._scaled = ax.transScale
+        if ax.name == "polar":
+            turn = ax.get_theta_offset(), ax.get_theta_direction()
+            self.polar = *turn, ax.get_rorigin(), ax.get_rsign()
+            self._scaled = self._scale + ax.transShift + ax.transProjection
+            self._placed = ax.transProjectionAffine + ax.transWedge + ax.transAxes
+            return
+        self._placed = ax.transLimits + ax.transAxes
+        if framed:
+            spans = np.abs(np.diff(self.shown(ax.bbox.get_points()), axis=0)[0])
+            power = np.log2(np.divide(*np.divide(spans, ax.bbox.size))) / STRETCH_STEP
+            self.stretch = float(2.0 ** (STRETCH_STEP * np.round(power)))
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """Equal for axes on which a flow is the same."""
+        return *self.names, *self.polar, self.stretch
+
+    def on_map(self, values: ArrayLike) -> Floats:
+        """Return scaled positions (..., 2) of values of the axes, NaN where a scale has none."""
+        points = np.asarray(values, dtype=float)
+        with np.errstate(all="ignore"):
+            scaled = self._scaled.transform(points.reshape(-1, 2)).reshape(points.shape)
+            return (scaled if self.polar else self._within(scaled)) * (1.0, self.stretch)
+
+    def _within(self, scaled: Floats) -> Floats:
+        """Return scaled values with NaN where matplotlib clips them."""
+        beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
+        return np.where(beyond, np.nan, scaled)
+
+    def shown(self, pixels: ArrayLike) -> Floats:
+        """Return scaled positions (..., 2) of pixels of the figure."""
+        return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
+
+    def extent(self, field: FlowField, frame: Floats) -> Floats:
+        """Return the ends of the coordinates that the scales can show, (2, 2): lower, upper."""
+        values = (field.points @ frame.T).reshape(-1, 2)
+        with np.errstate(all="ignore"):
+            is_shown = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
+        if not is_shown.any():
+            raise _missed(values)
+        return np.stack([values[is_shown].min(axis=0), values[is_shown].max(axis=0)])
+
+    def _slope(self, points: Floats, step: Floats) -> Floats:
+        """Return the Jacobian of positions on the axes, (..., 2, 2), by central differences."""
+        near = points.copy()
+        if self.polar:  # at the centre the angle has no direction
+            *_, origin, sign = self.polar
+            beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
+            near[..., 1] = origin + sign * beside
+        # Column n is the derivative along coordinate n.
+        slope = np.stack(
+            [
+                (self.on_map(near + delta) - self.on_map(near - delta)) / (2 * step[..., n, None])
+                for n, delta in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
+            ],
+            axis=-1,
+        )
+        if self.polar:  # a velocity along the angle has the unit of the radius
+            with np.errstate(all="ignore"):  # undefined at radius 0
+                slope[..., 0] /= near[..., 1, None]
+        return slope
+
+    def field(self, field: FlowField, frame: Floats) -> FlowField:
+        """Return a flat field as the axes show it; nodes outside of the scales are blanked.
+
+        ``frame`` are the directions of x and y, (2, 3). The speed stays that of the field.
+        """
+        points = field.points @ frame.T
+        low, high = self.extent(field, frame)
+        scaled = self.on_map(points)
+        on_axes = np.isfinite(scaled).all(axis=-1)
+        step = np.maximum(STEP * np.abs(points), LEAST_STEP * (high - low))
+        slope = self._slope(points, step)
+        valid = field.valid & on_axes & np.isfinite(slope).all(axis=(-1, -2))
+        if not valid.any():
+            raise _missed(points)
+        slope[~valid] = 0.0
+
+        def planar(components: AnyArray, blank: AnyArray) -> Floats:
+            """Return vectors (..., 3) of two components, with others at nodes that are blanked."""
+            vectors = np.where(valid[..., None], components, blank)
+            return np.concatenate([vectors, np.zeros_like(vectors[..., :1])], axis=-1)
+
+        def transformed(steps: Any) -> Floats:
+            return planar((slope @ (steps @ frame.T)[..., None])[..., 0], np.zeros(2))
+
+        velocity: Any = field.velocity
+        if isinstance(velocity, LazySteps):  # those of a long series are read when they are drawn
+            read = velocity
+            velocity = LazySteps(len(read), lambda step: transformed(np.asarray(read[step])))
+        else:
+            velocity = transformed(velocity)
+        scalars = {SPEED: field.speed, **field.scalars}
+        shown = replace(
+            field,
+            points=planar(scaled, scaled[valid][0]),
+            velocity=velocity,
+            valid=valid,
+            has_position=valid if field.has_position is None else field.has_position & valid,
+            scalars=scalars,
+            units={SPEED: field.unit_of(SPEED), **field.units},
+            formula=None,
+            section=None,
+        )
+        if not self.polar or field.triangles is not None:
+            return shown
+        # The angle may be periodic.
+        closed = FlowField.from_arrays(
+            shown.points, shown.velocity, valid=valid, scalars=scalars, sign_free=field.sign_free
+        )
+        names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
+        return replace(shown, **{name: getattr(closed, name) for name in names})
+
+
+def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> FlowField:
+    """Return a field in polar coordinates with a derived scalar, computed in the plane."""
+    if name not in DERIVED or name in field.scalars or field.sign_free:
+        return field
+    plane = AxesScales(Figure().add_subplot(projection="polar")).field(field, frame)
+    rows, columns = field.shape  # the plane may have one more line, which closes it
+    values = np.stack([np.asarray(step)[:rows, :columns] for step in plane.derive(name)])
+    units = {**field.units, name: derived_unit(name, field)}
+    return replace(field, scalars={**field.scalars, name: values}, units=units)
+
+
+def _missed(values: Floats) -> FieldError:
+    low, high = (of(values.reshape(-1, 2), axis=0) for of in (np.min, np.max))
+    return FieldError(
+        f"x is from {low[0]:g} to {high[0]:g} and y from {low[1]:g} to {high[1]:g}; expected "
+        "values that the axes have: positive ones on a logarithmic scale, radii beyond the centre's"
+    )
