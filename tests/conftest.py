@@ -75,14 +75,19 @@ def _skipped_where_barred() -> Iterator[None]:
         raise
 
 
+#: Files that take as long as those with slow tests do, though each of their tests is quick.
+LONG = {"test_docs.py", "test_agreement.py", "test_forms.py", "test_sources.py"}
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests with a browser, and let them come last; files with slow tests come first.
+    """Mark the tests with a browser, and let them come last; the longest files come first.
 
     Playwright's event loop runs from the first one on, and meanwhile no test could run an event
     loop of its own. Processes share the files in this order: a long one at the end would keep one
     of them busy and the others idle.
     """
     slow = {item.path for item in items if item.get_closest_marker("slow")}
+    slow |= {item.path for item in items if item.path.name in LONG}
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")

@@ -126,7 +126,6 @@ def half_still(kind: str = "grid", steps: int = 1) -> FlowField:
 #: Each is another part of the shaders, or of what they are given.
 VIEWS: dict[str, View] = {
     "whole": View(),
-    "zoom 16": View(camera=straight(16)),
     "zoom 256": View(camera=straight(256)),
     "zoom 4096": View(camera=straight(4096)),
     "many cells in a pixel": View(dense_gyre),
@@ -170,7 +169,6 @@ VIEWS: dict[str, View] = {
     "centre": View(camera=straight(64, (0.5, 0.5))),
     "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),
     "triangles": View(scattered_gyre),
-    "triangles, zoom 256": View(scattered_gyre, straight(256)),
     "triangles, zoom 4096": View(scattered_gyre, straight(4096)),
     "triangles, grazing": View(scattered_gyre, GRAZING),
     "triangles, by time": View(scattered_gyre, straight(4), {"parameter": "time"}),
@@ -183,21 +181,17 @@ VIEWS: dict[str, View] = {
         scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55
     ),
     "uncertain": View(uncertain_gyre),
-    "uncertain, zoom 64": View(uncertain_gyre, straight(64, (1.4, 0.4)), {"kernel": "box"}),
     "uncertain, streaklets": View(uncertain_gyre, straight(2), STREAKLETS | MOTION, clock=1.7),
     "uncertain, centre": View(uncertain_gyre, straight(64, (0.5, 0.5))),
     "uncertain, triangles": View(lambda: uncertain(scattered_gyre())),
     "uncertain, between two steps": View(
         lambda: uncertain(swinging()), MIDDLE, {"lines": "pathlines"}, time=0.55
     ),
-    "uncertain, without a sign": View(lambda: uncertain(lines()), MIDDLE),
     "uncertain, texture": View(uncertain_gyre, settings=TEXTURE),
     "uncertain, image": View(uncertain_gyre, settings={"noise": "image", "strength": 1.0}),
     "fading": View(settings={"fade": 0.9}),
-    "fading, triangles": View(scattered_gyre, settings={"fade": 0.9}),
     "texture": View(settings=TEXTURE),
     "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
-    "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),
     "texture, curved": View(torus, ASIDE, TEXTURE),
     "texture, no lod": View(settings=TEXTURE | {"lod": False}),
     "texture in time": View(swinging, MIDDLE, TEXTURE, time=0.55),

@@ -194,6 +194,8 @@ def test_the_blocks_of_a_page_run(
         defaults = {**(draws.__kwdefaults__ or {}), "size": (160, 120)}
         monkeypatch.setattr(draws, "__kwdefaults__", defaults)
     monkeypatch.setattr(flowtex, "show", flowtex.render, raising=False)
+    few = (9, *flowtex.Settings.__init__.__defaults__[1:])  # type: ignore[index]
+    monkeypatch.setattr(flowtex.Settings.__init__, "__defaults__", few)
     monkeypatch.setitem(flowtex.formula.__kwdefaults__ or {}, "resolution", 97)
     for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):
         made = partial(getattr(flowtex.examples, name), shape=shape)

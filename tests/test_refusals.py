@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Iterator
 from contextlib import chdir
 from pathlib import Path
@@ -17,8 +16,6 @@ from flowtex.scene.options import Appearance
 from flowtex.scene.probe import locate, values_at
 from flowtex.scene.scene import Scene
 from flowtex.settings import TABLE
-
-PACKAGE = Path(__file__).resolve().parents[1] / "flowtex"
 
 #: What no argument is meant to be. Where one has a meaning nevertheless, the call succeeds.
 JUNK: tuple[Any, ...] = (
@@ -183,35 +180,6 @@ def test_a_page_is_not_served_with_junk(argument: str) -> None:
     for junk in JUNK:
         with pytest.raises(FieldError, match=argument):
             serve(field(), **{argument: junk})
-
-
-BUILT_IN = {"ValueError", "TypeError", "KeyError", "IndexError", "OverflowError"}
-#: Where such errors are part of a protocol, and are caught in the package.
-PROTOCOLS = {
-    # Messages between processes, and of pages.
-    "_util/child/worker.py: ValueError",
-    "app/server/sessions/local.py: ValueError",
-    "app/server/sessions/process.py: ValueError",
-    "app/server/site.py: ValueError",
-    "sources/remote.py: ValueError",
-    "field/steps.py: IndexError",  # of sequences
-    "pyramid/layout.py: ValueError",
-    "pyramid/objects.py: ValueError",  # of a codec of Zarr's
-    "rendering/webgl/client_data.py: IndexError",
-    "textures/tiles/pyramid.py: KeyError",
-    "textures/tiles/triangle_pyramid.py: KeyError",
-}
-
-
-def test_refusals_are_raised_as_field_errors() -> None:
-    found = set()
-    for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
-                name = ast.unparse(node.exc.func)
-                if name in BUILT_IN:
-                    found.add(f"{path.relative_to(PACKAGE).as_posix()}: {name}")
-    assert found <= PROTOCOLS
 
 
 def test_it_is_public() -> None:

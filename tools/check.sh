@@ -52,6 +52,7 @@ ended() {
 
 check style ruff check
 check format ruff format --check
+sh "$here/client.sh" "$bin" ready || failed="$failed, tools of the browser client"
 "$bin/mypy" >"$logs/types" 2>&1 &
 types=$!
 sh "$here/client.sh" "$bin" >"$logs/client" 2>&1 &

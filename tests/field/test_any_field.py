@@ -32,7 +32,7 @@ def check(field: FlowField) -> None:
     assert field.at_step(-1).steady
 
 
-@property_test(100)
+@property_test(50, fuzz=100)
 @given(field_arguments(wild=True))
 def test_any_arguments_make_a_field_or_an_error(arguments: dict[str, Any]) -> None:
     field = field_of(arguments)
@@ -40,7 +40,7 @@ def test_any_arguments_make_a_field_or_an_error(arguments: dict[str, Any]) -> No
         check(field)
 
 
-@property_test(100)
+@property_test(50, fuzz=100)
 @given(field_arguments())
 def test_a_field_is_made_of_finite_numbers(arguments: dict[str, Any]) -> None:
     field = field_of(arguments)

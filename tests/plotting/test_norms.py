@@ -19,6 +19,8 @@ from flowtex.plotting import component  # noqa: F401  which PyVista finds by its
 pytestmark = pytest.mark.usefixtures("opengl")
 
 SIZE = (400, 200)
+#: A curve, a function of both signs, and steps.
+SOME = ("log", "two slopes", "function", "open boundaries")
 #: Middles of the pixels of an image of the whole surface.
 MIDDLES = (np.arange(SIZE[0]) + 0.5) / SIZE[0]
 
@@ -33,7 +35,7 @@ def test_an_image_has_the_colours_of_its_norm(name: str) -> None:
     assert differences(row_of(norm=norm), MIDDLES, norm).max() < 2
 
 
-@pytest.mark.parametrize("name", NORMS)
+@pytest.mark.parametrize("name", SOME)
 def test_a_norm_that_is_set_later_draws_a_plotter_anew(name: str) -> None:
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
     plotter.disable_anti_aliasing()
@@ -66,7 +68,7 @@ def axes_row(image: Any, figure: Any) -> tuple[Any, Any]:
     return pixels[len(pixels) - y, columns, :3], x
 
 
-@pytest.mark.parametrize("name", NORMS)
+@pytest.mark.parametrize("name", SOME)
 def test_axes_follow_a_norm_and_its_limits(name: str) -> None:
     figure = Figure(figsize=(4, 2.5))
     FigureCanvasAgg(figure)

@@ -77,7 +77,7 @@ def fitting(values: dict[str, Any], field: FlowField) -> dict[str, Any]:
     return {k: v for k, v in values.items() if k not in absent}
 
 
-@property_test(30)
+@property_test(15, fuzz=30)
 @given(field_arguments(), setting_values())
 def test_any_field_is_drawn_with_numpy_and_goes_to_a_browser(
     arguments: dict[str, Any], values: dict[str, Any]

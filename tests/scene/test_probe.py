@@ -101,8 +101,13 @@ CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
 }
 
 
-@pytest.mark.parametrize("aside", [False, True], ids=["straight", "aside"])
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    ("case", "aside"),
+    [
+        *((case, False) for case in CASES),
+        *((case, True) for case in ("two-sided", "streaklets", "paper", "unsteady", "curved")),
+    ],
+)
 def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Generator) -> None:
     make, settings = CASES[case]
     field = make()

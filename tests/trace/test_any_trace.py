@@ -28,7 +28,7 @@ def check(slices: TraceSlices) -> None:
         assert reach is None or (reach >= 0).all()
 
 
-@property_test(80)
+@property_test(40, fuzz=80)
 @given(field_arguments(), WAYS)
 def test_slices_of_any_field(arguments: dict[str, Any], parameter: str) -> None:
     field = field_of(arguments)

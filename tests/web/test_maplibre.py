@@ -94,6 +94,8 @@ LOOK: dict[str, Any] = {"samples": 13, "cmap": "viridis"}
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Iterator[RangeServer]:
     """Return a server of a store, scenes, and the page of the documentation."""
+    if not MAPLIBRE.is_dir():
+        pytest.skip(f"{MAPLIBRE} is missing: run sh tools/client.sh .venv/bin ready")
     folder = tmp_path_factory.mktemp("map")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)

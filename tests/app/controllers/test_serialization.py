@@ -131,7 +131,7 @@ def test_what_is_of_no_use_is_left_out_and_told(link: str, told: str) -> None:
     assert len(faults) == 1 and told in faults[0] and len(faults[0]) < 300
 
 
-@property_test(80)
+@property_test(30, fuzz=80)
 @given(links())
 @example("file=\ud800")
 @example("camera=parallel," + ",".join(["1e308"] * 11))
@@ -143,7 +143,7 @@ def test_whatever_comes_is_taken_without_an_error(link: str) -> None:
     compile(to_python(state, source="None"), "lines", "exec", flags=1024)
 
 
-@property_test(60)
+@property_test(25, fuzz=60)
 @given(st.lists(st.tuples(st.integers(0, 10_000), st.characters()), max_size=5))
 def test_a_link_that_was_changed_is_taken_without_an_error(changes: list[tuple[int, str]]) -> None:
     text = list(to_link(STATE))
@@ -153,7 +153,7 @@ def test_a_link_that_was_changed_is_taken_without_an_error(changes: list[tuple[i
     assert to_link(from_link(to_link(state))) == to_link(state)
 
 
-@property_test(60)
+@property_test(25, fuzz=60)
 @given(
     setting_values(resolution=8192, samples=200),
     st.fixed_dictionaries(

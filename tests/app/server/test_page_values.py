@@ -22,7 +22,7 @@ from flowtex.app.server.page import (
 from flowtex.rendering.camera import Camera, CameraError
 
 
-@property_test(100)
+@property_test(50, fuzz=100)
 @given(junk())
 @example(10**400)
 @example(math.nan)
@@ -35,7 +35,7 @@ def test_anything_is_a_number_within_limits_or_none(value: Any) -> None:
     assert len(shortened(str(value), 50)) <= 50
 
 
-@property_test(100)
+@property_test(50, fuzz=100)
 @given(
     st.fixed_dictionaries(
         {},

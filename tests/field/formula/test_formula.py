@@ -112,7 +112,7 @@ TEXTS = st.one_of(
 )
 
 
-@property_test(400)
+@property_test(150, fuzz=400)
 @given(TEXTS, TEXTS)
 @example("__import__('os').system('true')", "x")
 @example("x", "x\n+@")

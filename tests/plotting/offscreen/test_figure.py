@@ -364,9 +364,7 @@ def test_directions_on_polar_axes_are_those_of_quiver(figure: Figure, kind: str)
     assert np.abs(np.angle((u + 1j * v) * (tips @ (1, -1j)))).max() < np.radians(1)
 
 
-@pytest.mark.parametrize(
-    ("kind", "dpi"), [*((kind, 50) for kind in POLAR), ("usual", 200), ("zoomed", 200)]
-)
+@pytest.mark.parametrize(("kind", "dpi"), [*((kind, 50) for kind in POLAR), ("zoomed", 200)])
 def test_polar_axes_show_a_flow_where_it_is(figure: Figure, kind: str, dpi: float) -> None:
     ax: Any = figure.add_subplot(projection="polar")
     ax.grid(visible=False)

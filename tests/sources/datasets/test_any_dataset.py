@@ -76,7 +76,7 @@ def drawn(draw: Any) -> xr.Dataset:
     return ds
 
 
-@property_test(150)
+@property_test(75, fuzz=150)
 @given(
     datasets(), st.sampled_from([None, "globe", "platecarree", "north", "robinson", "EPSG:3413"])
 )

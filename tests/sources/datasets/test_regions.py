@@ -95,8 +95,13 @@ def assert_same(field: FlowField, regions: Regions) -> None:
                 np.testing.assert_array_equal(values, np.asarray(field.scalars[name][step])[at])
 
 
-@pytest.mark.parametrize("projection", [None, "mercator", "globe"])
-@pytest.mark.parametrize(("lon", "lat"), [*zip(LONGITUDES, [*LATITUDES] * 3, strict=True)])
+@pytest.mark.parametrize(
+    ("lon", "lat", "projection"),
+    [
+        *zip(LONGITUDES, [*LATITUDES] * 3, [None, "mercator", "globe"] * 2, strict=True),
+        *zip(LONGITUDES, [*LATITUDES] * 3, ["globe", None, "mercator"] * 2, strict=True),
+    ],
+)
 def test_a_region_of_a_map_is_that_of_the_field(lon: str, lat: str, projection: str | None) -> None:
     data = dataset(LONGITUDES[lon], LATITUDES[lat], steps=2)
     data = data.isel(time=[1]) if projection == "mercator" else data.chunk()
