@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from page_reader import Reader
+from scipy.spatial import KDTree
 
 import flowtex
 from flowtex._util.colours import colour_table
@@ -54,8 +55,8 @@ def shot(plotter: Any) -> Any:
 
 def read_back(image: Any, table: Any, limits: tuple[float, float]) -> Any:
     """The values that a reader takes from colours with a bar."""
-    away = np.abs(image[..., None, :3] - np.asarray(table, float)[:, :3]).sum(axis=-1)
-    share = (np.argmin(away, axis=-1) + 0.5) / len(table)
+    nearest = KDTree(np.asarray(table, float)[:, :3]).query(image[..., :3], p=1)[1]
+    share = (nearest + 0.5) / len(table)
     return limits[0] + share * (limits[1] - limits[0])
 
 
