@@ -25,12 +25,15 @@ CHANGES: dict[str, dict[str, str]] = {
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"), key=lambda path: (path.stem in CHANGES, path.stem))
 #: Run by the kernel as it starts: small pictures of widgets that no browser draws, coarse grids of
 #: formulas, few samples, and every third point and time of the examples.
-LESS = """import flowtex
+LESS = """import inspect
+import flowtex
 import flowtex.web.export
 import flowtex.widget.flow_widget
 for module in (flowtex.web.export, flowtex.widget.flow_widget):
     module.PREVIEW = (48, 30)
 flowtex.formula.__kwdefaults__["resolution"] = 97
+for draws in (flowtex.render, flowtex.movie):
+    inspect.unwrap(draws).__kwdefaults__["size"] = (160, 120)
 made = flowtex.Settings.__init__
 made.__defaults__ = (9, *made.__defaults__[1:])
 for name in ("ocean", "weather"):
