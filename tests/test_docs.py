@@ -190,7 +190,7 @@ def test_the_blocks_of_a_page_run(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(pv.global_theme, "window_size", [160, 120])
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
-    for draws in map(inspect.unwrap, (flowtex.render, flowtex.movie)):
+    for draws in (inspect.unwrap(flowtex.render), inspect.unwrap(flowtex.movie)):
         defaults = {**(draws.__kwdefaults__ or {}), "size": (160, 120)}
         monkeypatch.setattr(draws, "__kwdefaults__", defaults)
     monkeypatch.setattr(flowtex, "show", flowtex.render, raising=False)
