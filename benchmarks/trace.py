@@ -24,6 +24,8 @@ from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 
 RUNS = 3
+#: Nodes of the surfaces of triangles.
+TRIANGLE_SURFACE_NODES = 20_000
 #: The module, which the function of the same name hides.
 TRACE = importlib.import_module("flowtex.trace.trace")
 
@@ -90,12 +92,12 @@ def apart(composed: TraceSlices, exact: TraceSlices, m: int, cell: Any) -> Any:
 def compare(names: list[str]) -> None:
     """Print the table of surfaces of triangles."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-    from surfaces import SURFACES
+    from surfaces import TRIANGLES
 
     heads = ("triangles", "integrated", "composed", "ratio")
     say(f"{'':18}" + "".join(f"{head:>12}" for head in heads) + "   lag: median, 99 %, in cells")
-    for name in names or ["random plane", "sphere", "cube", "isosurface", "folded contour"]:
-        field = SURFACES[name]()
+    for name in names or TRIANGLES:
+        field = FlowField.from_pyvista(TRIANGLES[name](TRIANGLE_SURFACE_NODES))
         found: dict[bool, tuple[float, TraceSlices]] = {}
         for compose in (True, False):
             SliceStore(field, compose=True).at(0)
