@@ -164,12 +164,15 @@ class StoredPyramid(Pyramid):
         rows, columns = map(np.array, self.about["periods"])
         return rows, columns
 
-    def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Return the textures of a tile; a PyramidError names data that cannot be read."""
-        textures = super().tile(key, steps)
-        if textures is not None and isinstance(self._stored, Levels):
-            self._check_nodes(self._stored, key, textures, steps)
-        return textures
+    def tiles(
+        self, keys: Sequence[TileKey], steps: Sequence[int]
+    ) -> dict[TileKey, TextureSet | None]:
+        """Return the textures of tiles; a PyramidError names data that cannot be read."""
+        made = super().tiles(keys, steps)
+        for key, textures in made.items():
+            if textures is not None and isinstance(self._stored, Levels):
+                self._check_nodes(self._stored, key, textures, steps)
+        return made
 
     def _check_nodes(
         self, stored: Levels, key: TileKey, textures: TextureSet, steps: Sequence[int]

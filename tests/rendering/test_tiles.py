@@ -84,13 +84,13 @@ def test_tiles_in_the_background_come_after_a_coarse_picture(
     plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
     handle = plotter.flowtex.add(flat(), scalars=False)
     told: list[int] = []
-    go, textures = threading.Event(), Pyramid.textures
+    go, textures = threading.Event(), Pyramid.region
 
     def slow(*arguments: Any) -> Any:
         go.wait(PATIENCE_S)
         return textures(*arguments)
 
-    monkeypatch.setattr(Pyramid, "textures", slow)
+    monkeypatch.setattr(Pyramid, "region", slow)
     handle.load_in_background(lambda: told.append(1))
     first = np.asarray(plotter.screenshot(return_img=True), float)
     assert handle.busy
@@ -118,7 +118,7 @@ def test_a_tile_that_fails_is_told_and_shown_coarse(
         msg = "the disk is gone"
         raise OSError(msg)
 
-    monkeypatch.setattr(Pyramid, "textures", broken)
+    monkeypatch.setattr(Pyramid, "region", broken)
     with pytest.warns(UserWarning, match="shown coarse.*the disk is gone"):
         shown = flowtex.render(flat(), size=SIZE, scalars=False)
     assert np.ptp(shown) > 100

@@ -140,7 +140,7 @@ def test_what_is_given_up_is_neither_made_nor_sent(
     client.load((1, 0, 1), 0)  # a client that has dropped it asks again
     assert client.order.count("tile/1/0/1/header") == 2
     began, go = threading.Event(), threading.Event()
-    textures = Pyramid.textures
+    textures = Pyramid.region
 
     def slow(*arguments: Any) -> Any:
         began.set()
@@ -148,7 +148,7 @@ def test_what_is_given_up_is_neither_made_nor_sent(
         check()
         return textures(*arguments)
 
-    monkeypatch.setattr(Pyramid, "textures", slow)
+    monkeypatch.setattr(Pyramid, "region", slow)
     request = client.ask((1, 0, 0), 0)
     assert began.wait(PATIENCE_S)
     client.views.handle_message({"kind": "drop", "request": request})
@@ -192,7 +192,7 @@ def test_errors_are_told_to_who_asked(
         raise OSError(msg)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Pyramid, "textures", fail)
+        patch.setattr(Pyramid, "region", fail)
         client.load((1, 0, 1), 0)
     assert "disk is gone" in capsys.readouterr().err
     client.load((1, 0, 1), 0)

@@ -27,7 +27,7 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 #: Memory of the tiles that are kept, in bytes.
 BUDGET_BYTES = 1_000_000_000
 #: Memory of a texel, four numbers of half precision, and of a node beside it.
-TEXEL_BYTES, NODE_BYTES = 8, 200
+TEXEL_BYTES, NODE_BYTES = 8, 300
 #: Memory of a triangle that has its own vertices.
 TRIANGLE_BYTES = 250
 #: Most tiles that are made at once for one view.
@@ -52,20 +52,18 @@ class Tile:
         """Memory of the tile, on the graphics card or before its transfer."""
         if self.textures is None:
             return 0
-        geometry = self.textures.geometry
-        texels = geometry.size[0] * geometry.size[1] * self.textures.count
-        mesh = geometry.field.valid.size * NODE_BYTES
-        if isinstance(geometry, TriangleGeometry):
-            mesh += len(geometry.triangles) * TRIANGLE_BYTES
-        return texels * TEXEL_BYTES * max(len(self.layers), 1) + mesh
+        rows, columns = self.textures.geometry.size
+        layers = self.textures.count * max(len(self.layers), 1)
+        memory = rows * columns * (TEXEL_BYTES * layers + NODE_BYTES)
+        if isinstance(self.textures.geometry, TriangleGeometry):
+            memory += len(self.textures.geometry.triangles) * TRIANGLE_BYTES
+        return memory
 
     def make(self, step: int) -> Halves:
         """Make the layers of a destination time."""
         if self.textures is None:
             return np.empty((0, 0, 0, 4), np.float16)
-        layers = self.textures.layers(step)
-        self.textures.forget()
-        return layers
+        return self.textures.layers(step)
 
     def take(self, step: int) -> Halves:
         """Return the layers of a destination time, without keeping them."""
@@ -130,23 +128,26 @@ class TileLoader:
                 del self._running[job]
             for key in keys:
                 self._requests[key] = self._latest
-                tile = self._tiles.peek(key)
-                for step in steps:
-                    job = (key, step)
-                    is_ready = tile is not None and step in tile.layers
-                    if is_ready or job in self._running or self.has_failed(key):
-                        continue
-                    self._submit(job)
-            for job in later:
-                if job not in self._running and self._is_requested(job[0]):
-                    self._submit(job)
+            jobs: dict[tuple[int, ...], list[TileKey]] = {}
+            for key in dict.fromkeys([*keys, *(key for key, _ in later)]):
+                asked = {*(steps if key in keys else ()), *(n for k, n in later if k == key)}
+                if missing := tuple(step for step in sorted(asked) if self._is_missing(key, step)):
+                    jobs.setdefault(missing, []).append(key)
+            for missing, group in jobs.items():
+                self._submit(group, missing)
 
-    def _submit(self, job: tuple[TileKey, int]) -> None:
+    def _is_missing(self, key: TileKey, step: int) -> bool:
+        """Return whether a tile is requested, but neither in memory nor on its way nor failed."""
+        is_pending = self.get(key, [step]) is not None or (key, step) in self._running
+        return self._is_requested(key) and not is_pending and not self.has_failed(key)
+
+    def _submit(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
         if self._pool is None:
             self._pool = pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-tile")
-        future = self._pool.submit(self._make, *job)
-        if not future.done():  # a thread waits for the lock before it ends
-            self._running[job] = future
+        for group in self.pyramid.groups(keys):
+            future = self._pool.submit(self._make, group, steps)
+            if not future.done():  # a thread waits for the lock before it ends
+                self._running |= {(key, step): future for key in group for step in steps}
 
     @property
     def busy(self) -> bool:
@@ -174,21 +175,32 @@ class TileLoader:
     def _is_requested(self, key: TileKey) -> bool:
         return self._requests.get(key, -np.inf) > self._latest - GRACE_S
 
-    def _make(self, key: TileKey, step: int) -> None:
-        def begin() -> Tile:
-            textures = self.pyramid.tile(key, (step,))
-            return Tile(key, textures, textures and self._prepare(textures))
-
+    def _make(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
+        tiles: dict[TileKey, Tile] = {}
         try:
-            with stoppable(lambda: not self._is_requested(key)):
-                tile = self._tiles.get(key, begin)
-                tile.layers[step] = tile.make(step)
-                self._tiles.put(key, tile)  # to count its new size
+            with stoppable(lambda: not any(map(self._is_requested, keys))):
+                tiles = {key: tile for key in keys if (tile := self._tiles.peek(key))}
+                if fresh := [key for key in keys if key not in tiles]:
+                    for key, textures in self.pyramid.tiles(fresh, steps).items():
+                        tiles[key] = Tile(key, textures, textures and self._prepare(textures))
+                for tile in tiles.values():
+                    for step in steps:
+                        tile.layers[step] = tile.make(step)
+                    self._tiles.put(tile.key, tile)  # to count its new size
         except Stopped:
             pass
         except Exception as error:
-            self.errors[key], self._failed[key] = error, self._clock()
+            if len(keys) > 1:  # the others may be without fault
+                for key in keys:
+                    self._make([key], steps)
+                return
+            self.errors[keys[0]], self._failed[keys[0]] = error, self._clock()
         finally:
+            for tile in tiles.values():
+                if tile.textures is not None:
+                    tile.textures.forget()
             with self._lock:
-                self._running.pop((key, step), None)
+                for key in keys:
+                    for step in steps:
+                        self._running.pop((key, step), None)
             self._notify()

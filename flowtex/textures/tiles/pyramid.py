@@ -95,6 +95,7 @@ class Pyramid:
     """
 
     tile_blocks = TILE_BLOCKS
+    most_grouped = 400_000  #: Most nodes of a window of several tiles.
     ranges: Mapping[tuple[str, bool], tuple[float, float]] = MappingProxyType({})
 
     def __init__(
@@ -185,16 +186,53 @@ class Pyramid:
             )
         return [TileKey(level, j, i) for j in rows for i in columns]
 
+    def groups(self, keys: Sequence[TileKey]) -> list[list[TileKey]]:
+        """Return tiles in groups, each traced in one window with fewer nodes than theirs."""
+        groups: list[list[TileKey]] = []
+        # Paths that are integrated need no halo.
+        composed = self.field.steady or self.lines == "streamlines"
+        for key in keys:
+            group = [key]
+            for other in list(groups) if composed else ():
+                if other[0].level == key.level:
+                    most = min(self.most_grouped, self._nodes_of(group) + self._nodes_of(other))
+                    if self._nodes_of(other + group) <= most:
+                        groups.remove(other)
+                        group = other + group
+            groups.append(group)
+        return groups
+
+    def _nodes_of(self, keys: Sequence[TileKey]) -> int:
+        """Return about how many nodes are traced for tiles of a level."""
+        (first, last), halo = self._box(keys), int(HALO_SHARE * PATH_CELLS) + HALO_SPARE
+        shape = self.shape(keys[0].level)
+        return math.prod(
+            min(b - a + 2 * halo, n) for a, b, n in zip(first, last, shape, strict=True)
+        )
+
+    def _box(self, keys: Sequence[TileKey]) -> tuple[list[int], list[int]]:
+        """Return the first and the last lines of nodes of tiles of a level."""
+        first = [TILE_CELLS * min(at) for at in tuple(zip(*keys, strict=True))[1:]]
+        last = [TILE_CELLS * (max(at) + 1) for at in tuple(zip(*keys, strict=True))[1:]]
+        return first, [min(b, n - 1) for b, n in zip(last, self.shape(keys[0].level), strict=True)]
+
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Trace a tile, again with a wider halo where paths were cut at some destination times."""
+        """Trace a tile as :meth:`tiles` does."""
+        return self.tiles([key], steps)[key]
+
+    def tiles(
+        self, keys: Sequence[TileKey], steps: Sequence[int]
+    ) -> dict[TileKey, TextureSet | None]:
+        """Trace tiles of a level, again with a wider halo where paths were cut at some steps."""
         for widening in WIDENINGS:
-            textures = self.textures(key, widening)
-            if textures is None or widening == WIDENINGS[-1]:
+            made = self.region(keys, widening)
+            if widening == WIDENINGS[-1]:
                 break
-            steps = [step for step in steps if is_cut(textures, step)]
+            shown = [textures for textures in made.values() if textures is not None]
+            steps = [step for step in steps if any(is_cut(part, step) for part in shown)]
             if not steps:
                 break
-        return textures
+        return made
 
     @cached_property
     def whole_speed(self) -> float:
@@ -206,53 +244,73 @@ class Pyramid:
         return small_cell(self.root)
 
     def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
-        """Return the textures of a tile, whose layers are traced when they are requested.
+        """Return the textures of a tile, as :meth:`region` does."""
+        return self.region([key], widening)[key]
+
+    def region(
+        self, keys: Sequence[TileKey], widening: int = 1
+    ) -> dict[TileKey, TextureSet | None]:
+        """Return the textures of tiles of a level, which are traced together on request.
 
         ``None`` means a tile of which nothing is drawn. The halo is ``widening`` times as wide as
         paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
-        when the tile does not exist.
+        when a tile does not exist.
         """
-        first = [at * TILE_CELLS for at in key[1:]]
-        shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
-        if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
-            raise KeyError(
-                f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
-            )
-        last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
+        level = keys[0].level
+        shape = self.shape(level) if 0 <= level < self.depth else (0, 0)
+        for key in keys:
+            if not all(0 <= at * TILE_CELLS < n - 1 for at, n in zip(key[1:], shape, strict=True)):
+                raise KeyError(
+                    f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+                )
+        first, last = self._box(keys)
         points, valid = self._positions(
-            key.level, *(np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
+            level, *(np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
         )
-        if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
-            return None
+        cells = valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]
+        made: dict[TileKey, TextureSet | None] = dict.fromkeys(keys)
+        boxes = {key: self._box([key]) for key in keys}
+        for key, (start, end) in list(boxes.items()):
+            rows, columns = (slice(a - f, b - f) for a, b, f in zip(start, end, first, strict=True))
+            if not cells[rows, columns].any():
+                del boxes[key]
+        if not boxes:
+            return made
         longest, widths = _reach(points, valid)
         halo = _within_window(
             [b - a + 1 for a, b in zip(first, last, strict=True)],
             [min(widening * width, MOST_HALO) for width in widths],
         )
-        lines, closed, is_small = self._window(key.level, first, last, halo)
-        start = [a - int(line[0]) for a, line in zip(first, lines, strict=True)]
-        drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
+        lines, closed, is_small = self._window(level, first, last, halo)
         sides = [
             (not c and (p or int(line[0]) > 0), not c and (p or int(line[-1]) < n - 1))
             for c, p, line, n in zip(closed, self.field.periodic, lines, shape, strict=True)
         ]
-        field = self._part(key.level, lines[0], lines[1], closed)
-        geometry = SurfaceGeometry.of_tile(
-            field, (drawn[0], drawn[1]), self.root.surface, (sides[0], sides[1])
-        )
+        field = self._part(level, lines[0], lines[1], closed)
         nodes = np.zeros(field.shape, dtype=bool)
-        nodes[geometry.texels] = True
+        geometries = {}
+        for key, (start, end) in boxes.items():
+            rows, columns = (
+                slice(a - int(line[0]), b - int(line[0]) + 1)
+                for a, b, line in zip(start, end, lines, strict=True)
+            )
+            geometries[key] = SurfaceGeometry.of_tile(
+                field, (rows, columns), self.root.surface, (sides[0], sides[1])
+            )
+            nodes[geometries[key].texels] = True
         store = SliceStore(
             field,
             parameter=self.parameter,
             lines=self.lines,
             compose=(field.steady or self.lines == "streamlines") and is_small,
             longest=longest,
-            first_cells=COARSE_FIRST_CELLS if key.level else FIRST_CELLS,
+            first_cells=COARSE_FIRST_CELLS if level else FIRST_CELLS,
             cell=self._cell,
             nodes=nodes,
         )
-        return TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+        for key, geometry in geometries.items():
+            made[key] = TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+        return made
 
     def _window(
         self, level: int, first: list[int], last: list[int], halo: list[int]
@@ -261,15 +319,20 @@ class Pyramid:
         shape = self.shape(level)
         lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
         around = self._around_pole(lines, shape)
+        closed = [around == axis for axis in (0, 1)]
         for axis, (count, cells) in enumerate(zip(shape, np.subtract(last, first), strict=True)):
             if axis == around:
                 # A particle that passes a pole comes out on its far side: it needs all of the ring.
                 aside = min(max(count - 1 - cells, 0) // 2, BLOCK_CELLS)
                 lines[axis] = _ring(cells + 2 * aside, count) + first[axis] - aside
+            elif self.field.periodic[axis] and len(lines[axis]) >= count:
+                aside = min((count - 1 - cells) // 2, BLOCK_CELLS)
+                lines[axis] = np.arange(count) + first[axis] - aside
+                closed[axis] = True
             elif not self.field.periodic[axis]:
                 lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
         is_small = around is None or len(lines[0]) * len(lines[1]) <= MOST_COMPOSED
-        return lines, (around == 0, around == 1), is_small
+        return lines, (closed[0], closed[1]), is_small
 
     def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
         """Return the axis that goes around a pole, if some lines lie beyond that pole."""

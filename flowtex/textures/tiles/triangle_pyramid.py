@@ -11,6 +11,7 @@ A tile has 2 x 2 blocks, and so has the root; in each lies one tile of the next 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -48,6 +49,7 @@ class TrianglePyramid(Pyramid):
     """The levels of a field on triangles and their tiles; parameters are those of a pyramid."""
 
     tile_blocks = 2
+    most_grouped = 100_000
 
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
@@ -112,35 +114,44 @@ class TrianglePyramid(Pyramid):
             (masks, self.places(self.depth)),
         )
 
-    def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
-        """Return the textures of a tile, as for structured surfaces."""
-        count = 2 ** (self._steps(key.level) - 1)
-        if not (0 <= key.level < self.depth and all(0 <= at < count for at in key[1:])):
-            raise KeyError(
-                f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+    def region(
+        self, keys: Sequence[TileKey], widening: int = 1
+    ) -> dict[TileKey, TextureSet | None]:
+        """Return the textures of tiles of a level, as for structured surfaces."""
+        number = keys[0].level
+        count = 2 ** (self._steps(number) - 1)
+        for key in keys:
+            if not (0 <= key.level < self.depth and all(0 <= at < count for at in key[1:])):
+                raise KeyError(
+                    f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+                )
+        level = self._clusters[number]
+        made: dict[TileKey, TextureSet | None] = dict.fromkeys(keys)
+        parts = {key: part for key in keys if len((part := self._triangles(key))[0])}
+        if not parts:
+            return made
+        places = {key: self.places(number)[self.blocks_of(key)] for key in parts}
+        longest = self._longest(np.stack(list(places.values())))
+        near = []
+        for members, _ in parts.values():
+            nodes = np.unique(level.triangles[members])
+            near.append(
+                self._around(number, nodes, widening * longest * self._stretch(number, nodes))
             )
-        level = self._clusters[key.level]
-        members, masks = self._triangles(key)
-        if not len(members):
-            return None
-        triangles = level.triangles[members]
-        nodes = np.unique(triangles)
-        rows, columns = self.blocks_of(key)
-        places = self.places(key.level)[rows, columns]
-        longest = 0.99 * PATH_CELLS * float(places[..., 4].max())
-        width = widening * longest * self._stretch(key.level, nodes)
-        around = self._around(key.level, nodes, width)
-        window, number = _part(level, around)
-        geometry = TriangleGeometry.of_tile(
-            window,
-            number[nodes],
-            number[triangles],
-            np.searchsorted(around, members),
-            self.root.surface,
-            (masks, places),
-        )
-        followed = np.zeros(window.shape, dtype=bool)
-        followed[geometry.texels] = True
+        around = np.unique(np.concatenate(near))
+        window, numbers = _part(level, around)
+        followed, geometries = np.zeros(window.shape, dtype=bool), {}
+        for key, (members, masks) in parts.items():
+            triangles = level.triangles[members]
+            geometries[key] = TriangleGeometry.of_tile(
+                window,
+                numbers[np.unique(triangles)],
+                numbers[triangles],
+                np.searchsorted(around, members),
+                self.root.surface,
+                (masks, places[key]),
+            )
+            followed[geometries[key].texels] = True
         store = SliceStore(
             window,
             parameter=self.parameter,
@@ -151,7 +162,24 @@ class TrianglePyramid(Pyramid):
         )
         if store.parameter == "arclength":
             store.lags, store.unit = _lags(window.surface.cell_size, followed, longest)
-        return TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+        for key, geometry in geometries.items():
+            made[key] = TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+        return made
+
+    def _longest(self, places: Floats) -> float:
+        """Return the length of paths in blocks (..., 5)."""
+        return 0.99 * PATH_CELLS * float(places[..., 4].max())
+
+    def _nodes_of(self, keys: Sequence[TileKey]) -> int:
+        number = keys[0].level
+        places = np.concatenate(
+            [self.places(number)[self.blocks_of(k)].reshape(-1, 5) for k in keys]
+        )
+        reach = places[:, 3:4] + self._longest(places)
+        low, high = places[:, :3] - reach, places[:, :3] + reach
+        near = self._boxes.members(low, high, self._steps(number))
+        parts = self._members(number)
+        return sum(len(part) for part, hit in zip(parts, near, strict=True) if len(hit)) // 2
 
     def _steps(self, level: int) -> int:
         """Return the steps of the k-d tree to the blocks of a level."""

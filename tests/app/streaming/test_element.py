@@ -99,7 +99,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
     (record,) = [r for r in caplog.records if r.name.startswith("flowtex")]
     assert "tile (0, 5, 5) does not exist" in record.getMessage()
     with monkeypatch.context() as patch:
-        patch.setattr(Pyramid, "textures", None)
+        patch.setattr(Pyramid, "region", None)
         with pytest.raises(web.HTTPNotFound):
             ask("0,0,0.0")
     # What was wrong was the network, which is there again when it is requested later.

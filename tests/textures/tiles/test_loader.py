@@ -53,13 +53,16 @@ class Source:
     lock = threading.Lock()
     now = most = 0
 
-    def __init__(self, broken: TileKey | None = None) -> None:
-        self.broken, self.go = broken, threading.Event()
+    def __init__(self, broken: TileKey | None = None, together: int = 1) -> None:
+        self.broken, self.together, self.go = broken, together, threading.Event()
         self.began: list[tuple[TileKey, int]] = []
 
-    def tile(self, key: TileKey, steps: Sequence[int]) -> Any:
+    def groups(self, keys: Sequence[TileKey]) -> list[list[TileKey]]:
+        return [[*keys[n : n + self.together]] for n in range(0, len(keys), self.together)]
+
+    def tiles(self, keys: Sequence[TileKey], steps: Sequence[int]) -> Any:
         del steps
-        return Textures(key, self)
+        return {key: Textures(key, self) for key in keys}
 
 
 @pytest.mark.threads
@@ -79,7 +82,7 @@ def test_a_tile_is_there_once_it_is_made() -> None:
     assert tile.prepared == KEYS[0]
     assert (tile.take(1) == 1).all()
     assert (tile.take(1) == 1).all()  # made again, since it was sent
-    assert len(told) == 4
+    assert len(told) == 2
     assert not loader.busy
     loader.close()
 
@@ -100,8 +103,9 @@ def test_what_nobody_wants_is_given_up() -> None:
     loader.close()
 
 
-def test_a_failure_is_told_and_tried_again_later() -> None:
-    source: Any = Source(broken=KEYS[1])
+@pytest.mark.parametrize("together", [1, 3])
+def test_a_failure_is_told_and_tried_again_later(together: int) -> None:
+    source: Any = Source(broken=KEYS[1], together=together)
     source.go.set()
     now = [0.0]
     loader = TileLoader(source, clock=lambda: now[0])
@@ -112,7 +116,10 @@ def test_a_failure_is_told_and_tried_again_later() -> None:
     assert loader.get(KEYS[0], [0]) is not None
     assert loader.get(KEYS[1], [0]) is None
     assert isinstance(loader.errors[KEYS[1]], OSError)
-    assert source.began.count((KEYS[1], 0)) == 1
+    assert source.began.count((KEYS[1], 0)) == (1 if together == 1 else 2)
+    before = len(source.began)
+    loader.request(KEYS[:3], [0])
+    assert len(source.began) == before
     # The network is there again.
     source.broken = None
     now[0] += RETRY_S + 1
@@ -125,7 +132,7 @@ def test_a_failure_is_told_and_tried_again_later() -> None:
 def test_tiles_fit_into_their_memory() -> None:
     source: Any = Source()
     source.go.set()
-    loader = TileLoader(source, budget=2200)
+    loader = TileLoader(source, budget=10_000)
     for key in KEYS:
         loader.request([key], [0])
         loader.wait()

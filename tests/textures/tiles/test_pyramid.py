@@ -128,6 +128,37 @@ def test_slopes_go_on_across_the_seam_of_a_ring() -> None:
     assert off[lags <= 32].max() < 1e-4  # longer ones only close the last interval
 
 
+@pytest.mark.parametrize("closed", [False, True])
+def test_tiles_traced_together_equal_tiles_traced_alone(*, closed: bool) -> None:
+    if closed:
+        a, r = np.meshgrid(np.linspace(0, 2 * np.pi, 97), np.linspace(1, 2, 129))
+        points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+        velocity = np.stack([-np.sin(a) + 0.2 * np.cos(a), np.cos(a) + 0.2 * np.sin(a)], axis=-1)
+        pyramid = Pyramid(FlowField.from_arrays(points, velocity))
+    else:
+        pyramid = Pyramid(waves())
+    keys = [TileKey(0, j, i) for j in range(2) for i in range(2)]
+    together = pyramid.tiles(keys, [0])
+    stores = {textures.store for textures in together.values() if textures is not None}
+    assert len(stores) == 1
+    for key in keys:
+        one, other = together[key], pyramid.tile(key, [0])
+        assert one is not None
+        assert other is not None
+        # The last lag depends on the largest cells around.
+        alike = len(other.store.lags) - 1
+        np.testing.assert_array_equal(one.store.lags[:alike], other.store.lags[:alike])
+        assert np.abs(nodal(one) - nodal(other))[: alike + 1, ..., :3].max() < 2e-3
+
+
+def test_tiles_with_overlapping_halos_are_grouped() -> None:
+    pyramid, far = Pyramid(waves(800, 800)), TileKey(0, 20, 20)
+    near = [TileKey(0, j, i) for j in range(2) for i in range(2)]
+    above = pyramid.children(None)[0]
+    groups = pyramid.groups([near[0], far, *near[1:], above])
+    assert sorted(map(sorted, groups)) == sorted([near, [far], [above]])
+
+
 def test_a_field_that_varies_is_followed_in_time() -> None:
     x, y = grid(74, 84)
     steps = [
