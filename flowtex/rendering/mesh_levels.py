@@ -398,7 +398,7 @@ class TriangleBlocks:
         return 3 * drawn[:, None] + np.arange(3)
 
 
-def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels | TriangleBlocks:
+def mesh_levels_of(textures: TextureSet, *, placed: bool = True) -> MeshLevels | TriangleBlocks:
     """Return the triangles of a texture set's surface, by level and block.
 
     ``placed`` says that fragments correct their place between the nodes.
@@ -408,6 +408,6 @@ def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels 
         return TriangleBlocks(geometry)
     # A noise that lies on the nodes moves with them.
     shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
-    if placed:
+    if placed and textures.paper is None:
         shares = (PLACED_SHARE, HEIGHT_SHARE)
     return MeshLevels(geometry.points, geometry.cells, geometry.periodic, *shares)

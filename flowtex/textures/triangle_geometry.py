@@ -88,7 +88,7 @@ class TriangleGeometry(DrawnSurface):
     @cached_property
     def size(self) -> tuple[int, int]:
         """Rows and columns (H, W) of texels: about a square, with a power of two as W."""
-        return _image_size(self.shape[1])
+        return image_size(self.shape[1])
 
     @property
     def normal(self) -> Floats32:
@@ -144,7 +144,7 @@ class TriangleGeometry(DrawnSurface):
 
     def as_image(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
         """Return values at the vertices (3 m,) as an image of the nodes or triangles, (H, W)."""
-        size = _image_size(len(self.triangles)) if on_cells else self.size
+        size = image_size(len(self.triangles)) if on_cells else self.size
         at = np.repeat(np.arange(len(self.triangles)), 3) if on_cells else self.triangles.ravel()
         image = np.zeros(size, values.dtype)
         image.reshape(-1)[at] = values
@@ -157,7 +157,8 @@ class TriangleGeometry(DrawnSurface):
         flat[data.shape[1] :] = 0
 
 
-def _image_size(count: int) -> tuple[int, int]:
+def image_size(count: int) -> tuple[int, int]:
+    """Return rows and columns of texels for a number of items, about a square."""
     width = 1 << int(np.ceil(np.log2(max(count, 1)) / 2))
     return -(-count // width), width
 

@@ -1,35 +1,39 @@
-// The texture of a fragment from its varyings. Called outside of any branch: derivatives are not
-// defined behind one.
+// The texture of a fragment.
 
 #ifdef FLOWTEX_PAPER
+// Called outside of any branch: derivatives are not defined behind one.
 float flowtexValue(vec2 coordinate, vec2 noise)
 {
   float level = flowtexSliceLevel(flowtexDx(coordinate), flowtexDy(coordinate));
   return flowtexFragment(coordinate, noise, flowtexDx(noise), flowtexDy(noise), level);
 }
 #else
-#ifdef FLOWTEX_PLACED
-void flowtexPlace(inout vec2 coordinate, inout vec3 position, inout vec3 normal, vec3 dx, vec3 dy,
-                  inout vec2 byX, inout vec2 byY);
-#endif
+//#include common/place.glsl
 
-float flowtexValue(vec2 coordinate, vec3 position, vec3 normal)
+float flowtexValueAt(FlowtexPlace place)
 {
-  vec2 byX = flowtexDx(coordinate);
-  vec2 byY = flowtexDy(coordinate);
+#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS) || defined(FLOWTEX_SPARSE)
+  flowtexSetBy(place.dx, place.dy, place.byX, place.byY);
+#endif
+  vec3 dx = place.dx;
+  vec3 dy = place.dy;
+#ifndef FLOWTEX_PLANAR
+  dx = flowtexOnSurface(dx, place.position, place.normal);
+  dy = flowtexOnSurface(dy, place.position, place.normal);
+#endif
+  return flowtexFragment(place.position, dx, dy, place.coordinate, flowtexSliceLevel(place.byX, place.byY));
+}
+
+#ifndef FLOWTEX_DEFERRED
+// From varyings, outside of any branch.
+float flowtexValue(inout vec2 coordinate, vec3 position)
+{
   // Relative to a point near the view: fewer digits are lost.
   vec3 dx = flowtexDx(position - u_noiseOrigin);
   vec3 dy = flowtexDy(position - u_noiseOrigin);
-#ifdef FLOWTEX_PLACED
-  flowtexPlace(coordinate, position, normal, dx, dy, byX, byY);
-#endif
-#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS) || defined(FLOWTEX_SPARSE)
-  flowtexSetBy(dx, dy, byX, byY);
-#endif
-#ifndef FLOWTEX_PLANAR
-  dx = flowtexOnSurface(dx, position, normal);
-  dy = flowtexOnSurface(dy, position, normal);
-#endif
-  return flowtexFragment(position, dx, dy, coordinate, flowtexSliceLevel(byX, byY));
+  FlowtexPlace place = flowtexPlaceOn(position, dx, dy, coordinate);
+  coordinate = place.coordinate;
+  return flowtexValueAt(place);
 }
+#endif
 #endif

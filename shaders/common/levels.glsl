@@ -27,11 +27,3 @@ float flowtexSliceLevel(vec2 dx, vec2 dy)
   return clamp(log2(max(footprint.y, FLOWTEX_LEAST_TEXELS)), 0.0, u_deepest);
 #endif
 }
-
-// A colour for a level of detail, for teaching: one hue for each doubling, six in a round.
-vec3 flowtexLevelColour(float level)
-{
-  vec3 turn = level / FLOWTEX_LEVELS_AROUND + FLOWTEX_HUE_SHIFT * vec3(0.0, -1.0, 1.0);
-  vec3 hue = 0.5 + 0.5 * cos(2.0 * FLOWTEX_PI * turn);
-  return mix(vec3(FLOWTEX_LEVEL_DARKEST), vec3(1.0), hue);
-}

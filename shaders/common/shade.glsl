@@ -38,3 +38,11 @@ vec3 flowtexShade(vec3 colour, float value)
     : (1.0 - light) / max(1.0 - base, FLOWTEX_LEAST_LIGHTNESS);
   return flowtexFromOklab(vec3(light, lab.yz * room));
 }
+
+// A colour for a level of detail, for teaching: one hue for each doubling, six in a round.
+vec3 flowtexLevelColour(float level)
+{
+  vec3 turn = level / FLOWTEX_LEVELS_AROUND + FLOWTEX_HUE_SHIFT * vec3(0.0, -1.0, 1.0);
+  vec3 hue = 0.5 + 0.5 * cos(2.0 * FLOWTEX_PI * turn);
+  return mix(vec3(FLOWTEX_LEVEL_DARKEST), vec3(1.0), hue);
+}

@@ -8,6 +8,7 @@ uniform highp sampler2DArray u_slicesNext; // slices of the next destination tim
 uniform float u_between;                   // how far the time has come from one to the next
 #endif
 uniform vec2 u_slicesSize;  // texels of a layer
+uniform vec2 u_padding;     // texels of the slices before the first node
 uniform float u_deepest;    // coarsest level of the slices
 uniform float u_lags[FLOWTEX_MOST_LAGS];   // lags of the slices, in units of lag
 uniform int u_lagCount;

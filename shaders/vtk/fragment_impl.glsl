@@ -3,12 +3,19 @@
   flowtexTriangleNumber = int(flowtexCornersVSOutput.w);
 #endif
   flowtexPlaced = flowtexCoordinateVSOutput;
-#if defined(FLOWTEX_PAPER)
+#if defined(FLOWTEX_DEFERRED)
+  vec4 flowtexSum = texelFetch(u_sums, ivec2(gl_FragCoord.xy), 0);
+  float flowtexTextured = flowtexSum.r;
+#ifndef FLOWTEX_TRIANGLES
+  // At an outline the pixel may belong to another part of the surface.
+  if (all(lessThan(abs(flowtexSum.ba - flowtexPlaced) * u_slicesSize, vec2(FLOWTEX_PLACE_FAR))))
+    flowtexPlaced = flowtexSum.ba;
+#endif
+  float flowtexNoiseLevel = flowtexSum.g;
+#elif defined(FLOWTEX_PAPER)
   float flowtexTextured = flowtexValue(flowtexPlaced, flowtexNoiseVSOutput);
-#elif defined(FLOWTEX_PLANAR)
-  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput, vec3(0.0, 0.0, 1.0));
 #else
-  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput, flowtexNormalVSOutput);
+  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput);
 #endif
   // VTK has set ambientColor and diffuseColor from the property or the scalars by now, each times
   // its share of the light, and lights them next.

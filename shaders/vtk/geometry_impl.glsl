@@ -1,8 +1,7 @@
+#ifndef FLOWTEX_DEFERRED
     flowtexPositionGSOutput = flowtexPositionVSOutput[i];
-    flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
-#ifndef FLOWTEX_PLANAR
-    flowtexNormalGSOutput = flowtexNormalVSOutput[i];
 #endif
+    flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
 #ifdef FLOWTEX_TRIANGLES
     flowtexCornersGSOutput = flowtexCornersVSOutput[i];
 #endif

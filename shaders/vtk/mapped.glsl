@@ -1,6 +1,5 @@
 uniform sampler2DArray u_shares;  // of the range of the colour map, and where there is a value
 uniform sampler2DArray u_colours;
-uniform vec2 u_padding;           // texels of the slices before the first node
 uniform bool u_flat;              // values belong to cells: shares lie at first nodes, or at triangles
 
 int flowtexTriangleNumber; // number of the triangle

@@ -1,10 +1,8 @@
-in vec3 flowtexPosition;
 in vec2 flowtexCoordinate;
-out vec3 flowtexPositionVSOutput;
 out vec2 flowtexCoordinateVSOutput;
-#ifndef FLOWTEX_PLANAR
-in vec3 flowtexNormal;
-out vec3 flowtexNormalVSOutput;
+#ifndef FLOWTEX_DEFERRED
+in vec3 flowtexPosition;
+out vec3 flowtexPositionVSOutput;
 #endif
 #ifdef FLOWTEX_TRIANGLES
 in vec4 flowtexCorners; // numbers of the three nodes and of the triangle, the same at each

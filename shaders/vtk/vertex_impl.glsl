@@ -1,7 +1,6 @@
-  flowtexPositionVSOutput = flowtexPosition;
   flowtexCoordinateVSOutput = flowtexCoordinate;
-#ifndef FLOWTEX_PLANAR
-  flowtexNormalVSOutput = flowtexNormal;
+#ifndef FLOWTEX_DEFERRED
+  flowtexPositionVSOutput = flowtexPosition;
 #endif
 #ifdef FLOWTEX_TRIANGLES
   flowtexCornersVSOutput = flowtexCorners;

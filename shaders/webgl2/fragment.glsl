@@ -18,7 +18,6 @@ in vec2 flowtexNoiseOut;
 //#include webgl2/mapped.glsl
 #ifndef FLOWTEX_TRIANGLES
 uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
-uniform vec2 u_padding;           // texels of the slices before the first node
 #endif
 uniform bool u_flat;       // values belong to cells: they lie at first nodes, or are those of triangles
 uniform bool u_mapped;     // colour by the scalar, or one colour for all

@@ -20,7 +20,6 @@ from flowtex.plotting import component  # noqa: F401  which PyVista finds by its
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
-from flowtex.rendering.vtk import FlowSurface
 from flowtex.scene.options import LAND_COLOR
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -86,39 +85,6 @@ def test_no_surface_hides_its_lines(name: str) -> None:
         middle = slice(SIZE[0] // 2 - 2, SIZE[0] // 2 + 2)
         rows = (np.abs(on - off).max(axis=-1) > 8)[:, middle].any(axis=1)
         assert rows[SIZE[1] // 4 : -SIZE[1] // 4].mean() > 0.97
-
-
-@pytest.mark.parametrize("turned", [False, True])
-def test_the_far_side_of_a_whole_globe_is_left_out(
-    plotter: Any, monkeypatch: pytest.MonkeyPatch, turned: bool
-) -> None:
-    field = winds()
-    if turned:
-        lines = np.arange(field.shape[0])[::-1], np.arange(field.shape[1])
-        field = field.at_lines(*lines)
-    handle = plotter.flowtex.add(field, show_scalar_bar=False, **QUICK, **OFF)
-    prop = handle.actor.prop
-    near = shot(plotter)
-    assert prop.culling == ("front" if turned else "back")
-    other = "back" if turned else "front"
-    prop.culling = other  # chosen by somebody
-    far = shot(plotter)
-    assert prop.culling == other
-    assert np.abs(near - far).mean() > 5
-    prop.culling = "none"
-    for opacity in (0.5, 1.0):
-        handle.opacity = opacity
-        plotter.render()
-        assert (prop.culling == "none") == (opacity < 1)
-    plotter.camera.position, plotter.camera.focal_point = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
-    plotter.render()
-    assert prop.culling == "none"
-    plotter.reset_camera()
-    plotter.view_yz()
-    near = shot(plotter)
-    monkeypatch.setattr(FlowSurface, "_cull", lambda self: None)
-    prop.culling = "none"
-    assert np.mean(np.abs(shot(plotter) - near).max(axis=-1) > 3) < 1e-3
 
 
 def test_what_is_behind_the_globe_is_hidden() -> None:

@@ -30,7 +30,7 @@ def test_files_ask_for_every_variant() -> None:
     named = {name for text in texts for name in re.findall(r'"(FLOWTEX_[A-Z]+)"', text)}
     sources = map(shaders.shader_source, shaders.shader_names())
     asked = {n for s in sources for line in re.findall(r"#(?:if|elif).*", s) for n in WORD(line)}
-    assert {"FLOWTEX_PAPER", "FLOWTEX_OPAQUE", "FLOWTEX_PLACED"} <= named <= asked
+    assert {"FLOWTEX_PAPER", "FLOWTEX_OPAQUE", "FLOWTEX_DEFERRED"} <= named <= asked
 
 
 def test_no_line_of_shader_text_stands_in_python() -> None:
@@ -43,7 +43,10 @@ def test_no_line_of_shader_text_stands_in_python() -> None:
 def test_every_uniform_that_is_declared_is_set() -> None:
     texts = map(
         shaders.shader_source,
-        ("common/uniforms.glsl", "common/arrow.glsl", "vtk/fragment_dec.glsl", "vtk/mapped.glsl"),
+        (
+            *("common/uniforms.glsl", "common/arrow.glsl", "common/place.glsl"),
+            *(f"vtk/{name}.glsl" for name in ("fragment_dec", "mapped", "sum_fragment")),
+        ),
     )
     declared = set(re.findall(r"^uniform .*?(u_\w+)", "\n".join(texts), re.M))
     package = Path(shaders.__file__).parent

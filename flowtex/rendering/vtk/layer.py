@@ -22,7 +22,6 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
 from vtkmodules.vtkCommonCore import vtkObject
-from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
@@ -43,16 +42,19 @@ from flowtex.rendering.uniforms import (
     variants,
 )
 from flowtex.rendering.vtk.mesh import (
-    ATTRIBUTES,
+    COORDINATE,
+    CORNERS,
+    NOISE,
+    POSITION,
     FlowMapper,
     MappedColours,
-    set_position,
+    map_attributes,
     set_triangles,
-    vertex_attributes,
 )
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
+from flowtex.textures.triangle_geometry import TriangleGeometry, image_size
 
 #: OpenGL's numbers of internal formats by channels, in half precision and in single.
 FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815, 4: 0x8814}
@@ -144,7 +146,9 @@ class FlowLayer:
         self._gpu: dict[str, vtkTextureObject] = {}
         self._retired: list[vtkTextureObject] = []
         self.view = ViewState()
-        self._map_attributes()
+        #: Whether passes before the frame sum the pixels, and what they have summed.
+        self.deferred = False
+        self.sums: vtkTextureObject | None = None
         self._observed = observe_draws(self._mapper, self.before_draw)
 
     @property
@@ -157,8 +161,7 @@ class FlowLayer:
     def mesh_levels(self) -> MeshLevels | TriangleBlocks:
         """The triangles of each level of the mesh."""
         if self._mesh_levels is None:
-            placed = corrects_places(self.textures)
-            self._mesh_levels = mesh_levels_of(self.textures, placed=placed)
+            self._mesh_levels = mesh_levels_of(self.textures)
         return self._mesh_levels
 
     def set_textures(self, textures: TextureSet) -> None:
@@ -170,7 +173,7 @@ class FlowLayer:
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
         self.view.lags = self.view.levels = None
         self._retire(*(["u_noiseImage"] if same else self._gpu))
-        self._map_attributes()
+        self._variant = None
 
     def set_moment(self, before: int, after: int, between: float) -> None:
         """Show the time between two destination times of the slices.
@@ -198,31 +201,44 @@ class FlowLayer:
         self._mapper.RemoveObserver(self._observed)
         self._prefetch.close()
         self.actor.clear_shader_replacements(_feature_name=OWNER)
-        for attribute in ATTRIBUTES:
-            self._mapper.RemoveVertexAttributeMapping(attribute)
+        self._mapper.RemoveAllVertexAttributeMappings()
         self._retire(*self._gpu)
-        self._free(self._window())
+        self._free(self.window)
 
-    def _map_attributes(self) -> None:
-        mapper, points = self._mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
-        for attribute, array in vertex_attributes(self.textures).items():
-            mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
-
-    def _write_text(self) -> None:
+    @property
+    def variant(self) -> frozenset[str]:
+        """The names of the shader's variant."""
         moving = is_moving(self.textures, self._settings, self.view)
         near = is_near(self.textures, self._settings, self.view)
         sparse = is_sparse(self.textures, self._settings)
-        variant = variants(self.textures, moving=moving, near=near, sparse=sparse)
-        if corrects_places(self.textures):
-            variant |= {"FLOWTEX_PLACED"}
+        found = variants(self.textures, moving=moving, near=near, sparse=sparse)
+        return found | {"FLOWTEX_DEFERRED"} if self.deferred else found
+
+    def _write_text(self, renderer: Any) -> None:
+        self.deferred = is_deferred(self.actor, renderer, self.textures)
+        variant = self.variant
         if variant == self._variant:
             return
         self._variant = variant
+        arrays = {"flowtexCoordinate": COORDINATE}
+        if self.textures.geometry.corners is not None:
+            arrays["flowtexCorners"] = CORNERS
+        if self.textures.paper is not None:
+            arrays["flowtexNoise"] = NOISE
+        if not self.deferred:
+            arrays["flowtexPosition"] = POSITION
+            self._write_position()
+        map_attributes(self._mapper, arrays)
         insert_text(self.actor, OWNER, "", variant, before=True)
+
+    def _write_position(self) -> None:
+        geometry = self.textures.geometry
+        position = geometry.position_from(self.view.anchor)
+        self.mesh.point_data[POSITION] = geometry.at_vertices(position)
 
     def before_draw(self, program: vtkShaderProgram | None) -> None:
         """Write uniforms and texture units to the program that is about to draw."""
-        window = self._window()
+        window = self.window
         if program is None or window is None:
             return
         self._free(window)
@@ -233,7 +249,6 @@ class FlowLayer:
         values = uniforms(self.textures, self._settings, self.view)
         above, before = self.textures.geometry.padding
         values["u_padding"] = float(before), float(above)
-        values["u_anchor"] = tuple(float(c) for c in self.view.anchor)
         arrows = has_arrows(self.textures, self._settings)
         coloured = arrows and self._settings.arrow_color == "scalars"
         values["u_mapped"] = self._colours is not None
@@ -250,12 +265,55 @@ class FlowLayer:
                 if self._gpu[name].GetTextureUnit() < 0:
                     self._gpu[name].Activate()
                 program.SetUniformi(name, self._gpu[name].GetTextureUnit())
+        if (sums := self.sums) is not None and program.IsUniformUsed("u_sums"):
+            if sums.GetTextureUnit() < 0:
+                sums.Activate()
+            program.SetUniformi("u_sums", sums.GetTextureUnit())
 
     def after_frame(self) -> None:
         """Release the texture units."""
         self._drawn = True
         for texture in self._gpu.values():
             _unbind(texture)
+        if self.sums is not None:
+            _unbind(self.sums)
+
+    def rays(self, matrix: Floats, size: Ints) -> tuple[Floats, Floats, Floats]:
+        """Return the corner of the picture, and its change by a pixel to the right and upwards.
+
+        They lie on the plane through the focus that is parallel to the picture, (3,) each, as
+        positions are given to shaders. The matrix (4, 4) leads from the world to the picture, whose
+        size is in pixels.
+        """
+        geometry = self.textures.geometry
+        place = np.eye(4)
+        place[:3, :3] = geometry.frame.T
+        place[:3, 3] = geometry.center + geometry.frame.T @ self.view.anchor
+        whole = matrix @ self.place @ place
+        focus = whole @ [*(geometry.local(self.view.focus) - self.view.anchor), 1.0]
+        corners = np.array([[-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [focus[2] / focus[3]] * 3])
+        points = np.linalg.solve(whole, np.vstack([corners, np.ones(3)]))
+        points = points[:3] / points[3]
+        along, up = (points[:, 1:] - points[:, :1]).T / size[:, None]
+        return points[:, 0], along, up
+
+    def box(self, matrix: Floats, size: Ints) -> tuple[int, int, int, int] | None:
+        """Return first and end of the columns and rows in which the layer may be seen."""
+        ends = np.reshape(self.mesh.GetBounds(), (3, 2))
+        corners = np.stack([*np.meshgrid(*ends, indexing="ij"), np.ones((2, 2, 2))])
+        seen = matrix @ self.place @ corners.reshape(4, 8)
+        low, high = np.zeros(2), size
+        if (seen[3] > 0).all():
+            at = (seen[:2] / seen[3] + 1) / 2 * size[:, None]
+            low, high = np.maximum(low, at.min(axis=1) - 2), np.minimum(high, at.max(axis=1) + 2)
+        if (low >= high).any():
+            return None
+        return int(low[0]), int(high[0]), int(low[1]), int(high[1])
+
+    @property
+    def place(self) -> Floats:
+        """The actor's matrix, (4, 4)."""
+        return np.asarray(pv.array_from_vtkmatrix(self.actor.GetMatrix()))
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
         """Return the function that loads the texture of each sampler of the shader."""
@@ -269,8 +327,10 @@ class FlowLayer:
         loaders |= {
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
-            "u_nodes": lambda: single(_nodes(self.textures.grid)),
+            "u_nodes": lambda: single(_nodes(geometry, self.view.anchor)),
         }
+        if (corners := geometry.corners) is not None:
+            loaders["u_corners"] = lambda: single(_corners(corners))
         if paper is not None:
             loaders["u_noiseImage"] = partial(send, paper.noise_texels, repeat=paper.noise_repeat)
             loaders["u_stepImage"] = partial(send, paper.step_texels, repeat=paper.repeat)
@@ -293,7 +353,7 @@ class FlowLayer:
         eye = (
             np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
         )
-        placed: Floats = np.asarray(pv.array_from_vtkmatrix(self.actor.GetMatrix()))
+        placed = self.place
         points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]
@@ -302,7 +362,7 @@ class FlowLayer:
         self.height = float(2 * camera.GetParallelScale() if parallel else height) / scale
         self.view.pixel = self.height / renderer.GetSize()[1]
         self._choose_slices()
-        self._write_text()
+        self._write_text(renderer)
         self._move_anchor()
 
     def _choose_slices(self) -> None:
@@ -328,8 +388,9 @@ class FlowLayer:
             return
         near_middle = np.abs(focus).max() <= ANCHOR_RANGE * self.height
         self.view.anchor = np.zeros(3) if near_middle else focus
-        position = geometry.position_from(self.view.anchor)
-        set_position(self.mesh, geometry.at_vertices(position))
+        self._retire("u_nodes")
+        if not self.deferred:
+            self._write_position()
 
     def choose_levels(self, renderer: Any, view: TileView) -> Ints:
         """Return the coarsest levels of the mesh that the view allows, (block rows, columns).
@@ -369,7 +430,9 @@ class FlowLayer:
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")
 
-    def _window(self) -> vtkOpenGLRenderWindow | None:
+    @property
+    def window(self) -> vtkOpenGLRenderWindow | None:
+        """The window of the renderer, once it has one."""
         renderer = self._renderer()
         return None if renderer is None else renderer.GetRenderWindow()
 
@@ -390,16 +453,41 @@ _last: weakref.WeakKeyDictionary[vtkOpenGLRenderWindow, weakref.ref[FlowLayer]] 
 )
 
 
-def corrects_places(textures: TextureSet) -> bool:
-    """Return whether the shader corrects the places of fragments between the nodes."""
-    return isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
+def is_deferred(actor: pv.Actor, renderer: Any, textures: TextureSet) -> bool:
+    """Return whether passes before the frame can sum the pixels of an actor.
+
+    What is seen through it has pixels of its own, and passes of the renderer's may have others.
+    """
+    return bool(
+        textures.paper is None
+        and actor.prop.opacity == 1
+        and actor.prop.style == "Surface"
+        and not actor.GetForceTranslucent()
+        and renderer.GetPass() is None
+        and not renderer.GetRenderWindow().GetStereoRender()
+    )
 
 
-def _nodes(geometry: SurfaceGeometry) -> Floats32:
-    """Return nodal positions and normals, (2, J, I, 3), or positions in a plane, (1, J, I, 2)."""
-    if geometry.planar:
-        return np.nan_to_num(geometry.position[None, ..., :2])
-    return np.nan_to_num(np.stack([geometry.position, geometry.normal]))
+def _nodes(geometry: SurfaceGeometry | TriangleGeometry, anchor: Floats) -> Floats32:
+    """Return nodal positions from an anchor and normals, (2 or 1, J, I, 3), as the slices lie."""
+    nodal = [geometry.position_from(anchor)]
+    if not geometry.planar:
+        nodal.append(geometry.normal)
+    layers = np.nan_to_num(np.stack(nodal))
+    if geometry.corners is None:
+        return layers
+    texels = np.zeros((len(layers), *geometry.size, 3), np.float32)
+    for layer, image in zip(layers, texels, strict=True):
+        geometry.write_texels(layer, image)
+    return texels
+
+
+def _corners(corners: Floats32) -> Floats32:
+    """Return texels (1, H, W, 4) with the nodes of each triangle, given at vertices, (3 m, 4)."""
+    rows, columns = image_size(len(corners) // 3)
+    texels = np.zeros((1, rows, columns, 4), np.float32)
+    texels.reshape(-1, 4)[: len(corners) // 3] = corners[::3]
+    return texels
 
 
 def _is_more(needed: int | None, present: int | None) -> bool:

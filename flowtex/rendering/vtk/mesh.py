@@ -14,7 +14,7 @@ from pyvista.plotting.themes import Theme
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_ID_TYPE
 from vtkmodules.vtkCommonCore import vtkDataArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats, Floats32, Indices
@@ -30,14 +30,6 @@ FAR_EXTENTS = 1e3
 POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
 CORNERS = "flowtex corners"
 NORMAL = "Normals"
-#: Those that the shader reads, by the names of its vertex attributes.
-ATTRIBUTES = {
-    "flowtexPosition": POSITION,
-    "flowtexCoordinate": COORDINATE,
-    "flowtexNormal": NORMAL,
-    "flowtexNoise": NOISE,
-    "flowtexCorners": CORNERS,
-}
 #: Greatest share of the range of a colour map.
 MOST_RANGES = 1e3
 
@@ -57,11 +49,6 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     return mesh
 
 
-def set_position(mesh: pv.PolyData, position: Floats32) -> None:
-    """Write the vertices' positions in the surface's frame, (V, 3), relative to any anchor."""
-    mesh.point_data[POSITION] = position
-
-
 def set_triangles(mesh: pv.PolyData, triangles: Indices) -> None:
     """Draw other triangles, (N, 3), of the mesh's points."""
     cells = vtkCellArray()
@@ -72,7 +59,6 @@ def set_triangles(mesh: pv.PolyData, triangles: Indices) -> None:
 def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     """Write the vertex attributes of a texture set to its mesh."""
     geometry = textures.geometry
-    set_position(mesh, geometry.at_vertices(geometry.position))
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
     if (corners := geometry.corners) is not None:
         mesh.point_data[CORNERS] = corners
@@ -80,16 +66,12 @@ def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
         mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
 
 
-def vertex_attributes(textures: TextureSet) -> dict[str, str]:
-    """Return the point arrays that the shader of a texture set reads, by vertex attribute."""
-    needed = {POSITION, COORDINATE}
-    if not textures.geometry.planar:
-        needed.add(NORMAL)
-    if textures.geometry.corners is not None:
-        needed.add(CORNERS)
-    if textures.paper is not None:
-        needed.add(NOISE)
-    return {name: array for name, array in ATTRIBUTES.items() if array in needed}
+def map_attributes(mapper: Any, arrays: Mapping[str, str]) -> None:
+    """Give the shader of a mapper the point arrays of some vertex attributes, and no others."""
+    mapper.RemoveAllVertexAttributeMappings()
+    for attribute, array in arrays.items():
+        points = vtkDataObject.FIELD_ASSOCIATION_POINTS
+        mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
 
 class Ends(NamedTuple):

@@ -21,7 +21,6 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkShaderProgram
 from flowtex._util.array_types import Floats, Ints
 from flowtex._util.notices import notify
 from flowtex.field import FlowField
-from flowtex.field.earth import EARTH_RADIUS
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
 from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_levels_of
 from flowtex.rendering.tile_choice import (
@@ -42,7 +41,6 @@ from flowtex.rendering.uniforms import (
 )
 from flowtex.rendering.vtk.layer import (
     FlowLayer,
-    corrects_places,
     insert_text,
     observe_draws,
     plain_actor,
@@ -50,6 +48,7 @@ from flowtex.rendering.vtk.layer import (
     write_uniform,
 )
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
+from flowtex.rendering.vtk.passes import DeferredPasses
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
@@ -89,9 +88,9 @@ class FlowSurface:
         #: of the picture that it is a part of.
         self.full_height: int | None = None
         self.whole_height: int | None = None
-        self._culling = "none"
         self._notify: Callable[[], None] | None = None
         self._reported: set[TileKey] = set()
+        self._passes = DeferredPasses.of(renderer)
         self._observed = [
             renderer.AddObserver("StartEvent", weak_callback(self._before_frame)),
             renderer.AddObserver("EndEvent", weak_callback(self._after_frame)),
@@ -171,6 +170,7 @@ class FlowSurface:
         if renderer is not None:
             for tag in self._observed:
                 renderer.RemoveObserver(tag)
+        self._passes.remove(self)
         self._drop(list(self._tiles))
         self._arrows.close()
         if self._loader is not None:
@@ -190,9 +190,9 @@ class FlowSurface:
         renderer = self._renderer()
         if renderer is None or not self._actor.GetVisibility():
             self._show([])
+            self._passes.remove(self)
             return
         self._base.look()
-        self._cull()
         view = self._tile_view(renderer)
         shown = self._choose(view)
         layers: dict[TileKey | None, FlowLayer] = {None: self._base}
@@ -206,30 +206,9 @@ class FlowSurface:
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
+        self._passes.show(self, list(layers.values()))
         pyramid = None if self._loader is None else self._loader.pyramid
-        self._arrows.look(layers, pyramid, view, self._place)
-
-    def _cull(self) -> None:
-        """Leave out the hidden far side of a whole globe; a user's choice of faces stays."""
-        prop, eye, surface = self._actor.prop, self.view.eye, self._base.textures.geometry.whole
-        culling = "none"
-        if (
-            self._loader is None
-            and surface.on_globe
-            and prop.opacity == 1
-            and prop.style == "Surface"
-            and self._actor.mapper.GetClippingPlanes() is None
-            and self._actor.GetMatrix().Determinant() > 0
-            and (eye[3] == 0 or np.linalg.norm(eye[:3]) > EARTH_RADIUS)
-            and surface.poles is not None
-            and surface.poles.both
-            and surface.cells.all()
-        ):
-            row = len(surface.points) // 2
-            up = np.cross(*surface.tangents[:, row, 0]) @ surface.points[row, 0]
-            culling = "back" if up > 0 else "front"
-        if prop.culling in ("none", self._culling):
-            prop.culling = self._culling = culling
+        self._arrows.look(layers, pyramid, view, self._base.place)
 
     def _after_frame(self) -> None:
         for layer in (self._base, *self._tiles.values()):
@@ -291,14 +270,9 @@ class FlowSurface:
         if not camera.GetParallelProjection():
             eye, half = self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
         camera.GetFrustumPlanes(width / max(height, 1), planes)
-        sides = np.reshape(planes, (6, 4))[:4] @ self._place  # without near and far
+        sides = np.reshape(planes, (6, 4))[:4] @ self._base.place  # without near and far
         pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
-
-    @property
-    def _place(self) -> Floats:
-        """The actor's matrix, (4, 4)."""
-        return np.asarray(pv.array_from_vtkmatrix(self._actor.GetMatrix()))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
         """Return whether a tile can be drawn, and make its actor first."""
@@ -318,8 +292,7 @@ class FlowSurface:
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which caches the values
             _ = textures.unit, textures.cell, textures.critical_cell  # which are cached as well
-            levels = mesh_levels_of(textures, placed=corrects_places(textures))
-            return surface_mesh(textures), levels
+            return surface_mesh(textures), mesh_levels_of(textures)
 
         def notify() -> None:
             surface = reference()

@@ -370,7 +370,7 @@ class ClientData:
     @cached_property
     def _mesh(self) -> Floats32:
         """Records by which the client chooses triangles."""
-        return mesh_levels_of(self.textures).records.astype("<f4")
+        return mesh_levels_of(self.textures, placed=False).records.astype("<f4")
 
     def _geometry(self) -> Header:
         geometry = self.textures.geometry

@@ -1,0 +1,4 @@
+  flowtexCoordinateVSOutput = flowtexCoordinate;
+#ifdef FLOWTEX_TRIANGLES
+  flowtexTriangleVSOutput = flowtexCorners.w;
+#endif

@@ -1,0 +1,222 @@
+"""The passes before a frame draw what sums in the fragments of the mesh do, whatever VTK does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkRenderingCore import vtkHardwareSelector
+
+import flowtex.plotting.component  # noqa: F401 plotter.flowtex
+from flowtex._util.array_types import Bytes
+from flowtex.rendering.vtk import layer
+
+pytestmark = [
+    pytest.mark.usefixtures("opengl"),
+    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+]
+SIZE = [240, 180]
+#: Greatest share of pixels that may differ by more than rounding: some at outlines.
+MOST_OTHERS = 0.002
+
+
+def saddle() -> Any:
+    """Return a curved grid that hides a part of itself."""
+    s, t = np.meshgrid(np.linspace(0, 1.7 * np.pi, 41), np.linspace(-1, 1, 17))
+    mesh: Any = pv.StructuredGrid(np.cos(s), np.sin(s), t + 0.2 * np.sin(3 * s))
+    x, y, _ = mesh.points.T
+    mesh["U"] = np.column_stack([-y, x, 0.6 * np.cos(3 * np.arctan2(y, x))])
+    return mesh
+
+
+def ball() -> Any:
+    """Return triangles with a crease in their shading, which is none."""
+    mesh: Any = pv.Icosphere(radius=1.1, nsub=3)
+    mesh.clear_data()
+    mesh["U"] = np.cross([0.2, 0.5, 1.0], mesh.points)
+    return mesh
+
+
+def clip(plotter: Any, handle: Any) -> None:
+    cut = vtkPlane()
+    cut.SetOrigin(0, 0, 0.1)
+    cut.SetNormal(0.3, 0.1, 1)
+    handle.actor.mapper.AddClippingPlane(cut)
+
+
+def cull(plotter: Any, handle: Any) -> None:
+    handle.actor.prop.culling = "front"
+
+
+def edges(plotter: Any, handle: Any) -> None:
+    handle.actor.prop.show_edges = True
+
+
+def place(plotter: Any, handle: Any) -> None:
+    handle.actor.scale, handle.actor.orientation = (0.5, 1.5, 1.0), (20, 30, 40)
+
+
+def hide(plotter: Any, handle: Any) -> None:
+    plotter.add_mesh(pv.Sphere(radius=0.6, center=(0.9, 0.4, 0.3)), color="red")
+
+
+def veil(plotter: Any, handle: Any) -> None:
+    plotter.enable_depth_peeling()
+    plotter.add_mesh(pv.Sphere(radius=1.4), color="red", opacity=0.3)
+
+
+def parallel(plotter: Any, handle: Any) -> None:
+    plotter.enable_parallel_projection()
+
+
+def shade(plotter: Any, handle: Any) -> None:
+    plotter.enable_ssao(radius=0.5)
+
+
+def enlarge(plotter: Any, handle: Any) -> None:
+    plotter.enable_anti_aliasing("ssaa")
+
+
+def sample(plotter: Any, handle: Any) -> None:
+    plotter.enable_anti_aliasing("msaa", multi_samples=4)
+
+
+def silhouette(plotter: Any, handle: Any) -> None:
+    plotter.add_silhouette(handle.actor.mapper.dataset, color="blue")
+
+
+def see_through(plotter: Any, handle: Any) -> None:
+    handle.actor.prop.opacity = 0.5
+
+
+def lines(plotter: Any, handle: Any) -> None:
+    handle.actor.prop.style = "wireframe"
+
+
+def dots(plotter: Any, handle: Any) -> None:
+    handle.actor.prop.style, handle.actor.prop.point_size = "points", 5
+
+
+def near(plotter: Any, handle: Any) -> None:
+    plotter.camera.zoom(60)
+
+
+CHANGES = [clip, cull, edges, place, hide, veil, parallel, sample, silhouette, near]
+#: Those that keep the sum in the fragments of the mesh.
+FORWARD = [shade, enlarge, see_through, lines, dots]
+
+
+def picture(mesh: Any, change: Callable[[Any, Any], None] | None, **options: Any) -> Bytes:
+    """Draw a mesh with a change."""
+    plotter: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+    with closing(plotter):
+        plotter.disable_anti_aliasing()
+        handle = plotter.flowtex.add(mesh, show_scalar_bar=False, samples=15, **options)
+        plotter.camera_position = "iso"
+        plotter.reset_camera()
+        if change:
+            change(plotter, handle)
+        return np.asarray(plotter.screenshot(return_img=True))
+
+
+def in_fragments(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep the sum in the fragments of the mesh."""
+    monkeypatch.setattr(layer, "is_deferred", lambda *_: False)
+
+
+def assert_alike(one: Bytes, other: Bytes, least: int = 2) -> None:
+    """Fail unless only some pixels at outlines differ, by more than rounding or at ``least``."""
+    change = np.abs(one.astype(int) - other).max(axis=-1)
+    assert (change > least).mean() < MOST_OTHERS
+    assert one.std() > 20, "nothing is drawn"
+
+
+@pytest.mark.parametrize("make", [saddle, ball])
+@pytest.mark.parametrize("change", [None, *CHANGES, *FORWARD])
+def test_passes_draw_what_fragments_do(
+    make: Callable[[], Any],
+    change: Callable[[Any, Any], None] | None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mesh = make()
+    deferred: list[bool] = []
+    decide = layer.is_deferred
+
+    def decided(*words: Any) -> bool:
+        deferred.append(decide(*words))
+        return deferred[-1]
+
+    monkeypatch.setattr(layer, "is_deferred", decided)
+    drawn = picture(mesh, change)
+    assert deferred[-1] == (change not in FORWARD)
+    in_fragments(monkeypatch)
+    # Samples beside the middle of a pixel belong to triangles that do not cover it.
+    assert_alike(drawn, picture(mesh, change), 16 if change is sample else 2)
+
+
+def test_renderers_of_a_window_and_linked_views_have_their_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def draw() -> Bytes:
+        plotter: Any = pv.Plotter(off_screen=True, window_size=[401, 201], shape=(1, 2))
+        with closing(plotter):
+            plotter.disable_anti_aliasing()
+            for column, mesh in enumerate((saddle(), ball())):
+                plotter.subplot(0, column)
+                plotter.flowtex.add(mesh, show_scalar_bar=False, samples=15)
+            plotter.link_views()
+            plotter.camera_position = "iso"
+            plotter.camera.zoom(4)
+            return np.asarray(plotter.screenshot(return_img=True))
+
+    drawn = draw()
+    in_fragments(monkeypatch)
+    assert_alike(drawn, draw())
+
+
+def test_flows_of_one_renderer_hide_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    def draw() -> Bytes:
+        plotter: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+        with closing(plotter):
+            plotter.disable_anti_aliasing()
+            for mesh in (saddle(), ball()):
+                plotter.flowtex.add(mesh, show_scalar_bar=False, samples=15)
+            handle = plotter.flowtex.add(pv.Sphere(), vectors="Normals", show_scalar_bar=False)
+            plotter.camera_position = "iso"
+            plotter.screenshot(return_img=True)
+            handle.remove()
+            return np.asarray(plotter.screenshot(return_img=True))
+
+    drawn = draw()
+    in_fragments(monkeypatch)
+    assert_alike(drawn, draw())
+
+
+def test_large_picture_is_drawn_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    def draw() -> Bytes:
+        plotter: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+        with closing(plotter):
+            plotter.disable_anti_aliasing()
+            plotter.flowtex.add(saddle(), show_scalar_bar=False, samples=15)
+            plotter.camera_position = "iso"
+            return np.asarray(plotter.screenshot(return_img=True, scale=2))
+
+    drawn = draw()
+    in_fragments(monkeypatch)
+    assert_alike(drawn, draw())
+
+
+def test_selection_finds_the_surface() -> None:
+    plotter: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+    with closing(plotter):
+        plotter.flowtex.add(ball(), show_scalar_bar=False, samples=15)
+        plotter.show(auto_close=False)
+        selector = vtkHardwareSelector()
+        selector.SetRenderer(plotter.renderer)
+        selector.SetArea(0, 0, SIZE[0] - 1, SIZE[1] - 1)
+        assert selector.Select().GetNumberOfNodes() == 1
