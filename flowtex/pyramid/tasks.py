@@ -258,7 +258,8 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
     if textures is not None:
         colours = _colours(pyramid, textures.geometry.field)
         # A page of a store may have some of its steps, which pathlines lead through.
-        data = ClientData(textures, colours, traces=textures.store.streamlines)
+        is_steady = textures.store.streamlines
+        data = ClientData(textures, colours, depth=pyramid.depth, traces=is_steady)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
         _write(array, f"{key.level}/{SURFACE}", at, fingerprint, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_tiles import TILE_CELLS
 from triangle_meshes import sphere, surface_of
 
 import flowtex
@@ -15,8 +16,9 @@ from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import part_info
 from flowtex.scene.options import Options
 from flowtex.settings import TABLE, Settings
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import coarsened_field
-from flowtex.web.view import WebView, even_steps, web_views
+from flowtex.web.view import TileSource, WebView, even_steps, web_views
 
 
 def plane(times: int = 1, shape: tuple[int, int] = (9, 12)) -> flowtex.FlowField:
@@ -138,6 +140,38 @@ def test_the_header_says_what_the_client_needs() -> None:
     for text in header["shaders"].values():
         assert "//#include" not in text
         assert "#define FLOWTEX_PLANAR" in text
+
+
+@pytest.mark.usefixtures("small_tiles")
+def test_a_node_has_one_position_at_all_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So no crack opens between tiles; and what is rounded is a hundredth of a cell at most."""
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
+    lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 257), np.linspace(-0.5, 0.5, 129) * np.pi)
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    field = FlowField.from_arrays(700 * points + [4e5, -300, 20], np.cross([0.3, 1, 0.1], points))
+    root = web_view(field).data()
+    pyramid = root.pyramid
+    assert pyramid is not None and pyramid.depth == 2
+    source, found = TileSource(root), np.full(field.surface.points.shape, np.nan)
+    coarse = pyramid.children(None)
+    keys = [None, *coarse, *(child for key in coarse for child in pyramid.children(key))]
+    for key in keys:
+        data = root if key is None else source.tile(key, ())
+        assert data is not None
+        rows, columns = data.textures.grid.drawn
+        middle = data.tile_header["slices"]["trace"]["middle"]
+        drawn = data.surface()["padded"][1:-1, 1:-1].astype(float)[rows, columns] + middle
+        j, i = pyramid.line_numbers(pyramid.depth if key is None else key.level)
+        _, row, column = key or TileKey(0, 0, 0)
+        first = row * TILE_CELLS, column * TILE_CELLS
+        at = np.ix_(*(n[f : f + s] for n, f, s in zip((j, i), first, drawn.shape, strict=False)))
+        before = found[at]
+        np.testing.assert_array_equal(np.where(np.isnan(before), drawn, before), drawn)
+        found[at] = drawn
+    surface = field.surface
+    away = np.linalg.norm(found - (surface.points - surface.center), axis=-1)
+    narrow = np.linalg.norm(surface.tangents, axis=-1).min(axis=0)
+    assert (away[1:-1] / narrow[1:-1]).max() < 0.01
 
 
 def test_a_time_needs_the_steps_around_it() -> None:

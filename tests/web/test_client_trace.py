@@ -266,14 +266,14 @@ def test_tiles_around_a_pole_are_those_of_numpy(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of the ring around it there are all lines where it is near, and a few elsewhere."""
-    for name, number in (("ROOT_NODES", 2000), ("MOST_RING", 400)):
-        monkeypatch.setattr(f"flowtex.textures.tiles.pyramid.{name}", number)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 2000)
     field = globe(1.0, 0.4, 0.3, columns=601)
     view = web_views(field, Options.split(samples=9))[0]
     assert view.scene.pyramid is not None
     textures = view.scene.pyramid.textures(TileKey(0, 0, 1))
     assert textures is not None and textures.grid.field.shape[1] < 601
-    data, path = ClientData(textures, traces=True), tmp_path / "page.html"
+    data = ClientData(textures, depth=view.scene.pyramid.depth, traces=True)
+    path = tmp_path / "page.html"
     assert data.traced and len(data.surface()["rays"]) == 1
     monkeypatch.setattr(view, "page_data", lambda: data)
     path.write_text("".join(page_pieces(contents_of([view], None, picture=b""))), encoding="utf-8")

@@ -105,6 +105,7 @@ class ClientData:
     chosen: tuple[int, ...] = ()
     pyramid: Pyramid | None = None  #: Tiles of a large flow, of which this is the root.
     finest: int = 0  #: Finest level of those that are sent.
+    depth: int = 0  #: Level of the root, of which this is a tile.
     #: Whether the client receives the velocity instead of slices, where it can trace them.
     traces: bool = False
     bodies: Bodies | None = None  #: Other meshes.
@@ -257,7 +258,7 @@ class ClientData:
             parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
         parts["mesh"] = self._mesh
         if self.traced:
-            parts |= velocity.surface_parts(self.textures)
+            parts |= velocity.surface_parts(self.textures, self._depth)
         else:
             parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
@@ -317,7 +318,11 @@ class ClientData:
             values=None if colours.name is None else values(colours.name),
             others=tuple((n, values(colours.choices[n]["name"])) for n, _ in colours.others),
         )
-        return ClientData(textures, colours, self.chosen, traces=self.traces)
+        return ClientData(textures, colours, self.chosen, depth=self._depth, traces=self.traces)
+
+    @property
+    def _depth(self) -> int:
+        return self.depth if self.pyramid is None else self.pyramid.depth
 
     @cached_property
     def tile_header(self) -> Header:
@@ -428,7 +433,7 @@ class ClientData:
             "times": plain_list(self.times),
             "timeUnit": textures.geometry.field.time_unit,
             "dates": dates_of(self.field, self.times),
-            **({"trace": velocity.trace_header(textures)} if self.traced else {}),
+            **({"trace": velocity.trace_header(textures, self._depth)} if self.traced else {}),
         }
 
 

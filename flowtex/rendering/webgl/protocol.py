@@ -16,7 +16,9 @@ import base64
 import gzip
 import json
 import struct
+import zlib
 from collections.abc import Mapping
+from itertools import product
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -106,20 +108,19 @@ def _packed(array: AnyArray) -> tuple[Header, bytes]:
     numbers = whole.view(f"<u{whole.itemsize}").reshape(-1, max(width, 1), channels)
     middle = len(numbers) // 2
     sample = numbers[middle : middle + max(SAMPLE // max(width * channels, 1), LEAST_ROWS)]
-    differences = []
-    for axis in (0, 1):
-        orders = [sample]
-        for _ in range(MOST_DIFFERENCES):
-            orders.append(_differences(orders[-1], axis))
-        sizes = [float(np.log2(_signed_last(order) + 1.0).sum()) for order in orders]
-        differences.append(int(np.argmin(sizes)))
-        sample = orders[differences[-1]]
-    for axis, order in enumerate(differences):
+    choices = product(range(MOST_DIFFERENCES + 1), repeat=2)
+    # Differences of the first rows are no differences, of which a sample has too many.
+    first = min(MOST_DIFFERENCES, len(sample) - 1)
+    best = min(choices, key=lambda orders: len(zlib.compress(_planes(sample, orders, first))))
+    return {"differences": list(best), "scale": scale}, _planes(numbers, best)
+
+
+def _planes(numbers: AnyArray, orders: tuple[int, ...], first: int = 0) -> bytes:
+    for axis, order in enumerate(orders):
         for _ in range(order):
             numbers = _differences(numbers, axis)
-    numbers = np.ascontiguousarray(np.moveaxis(_signed_last(numbers), -1, 0))
-    planes = numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
-    return {"differences": differences, "scale": scale}, planes
+    numbers = np.ascontiguousarray(np.moveaxis(_signed_last(numbers[first:]), -1, 0))
+    return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 
 
 def _whole(array: AnyArray, channels: int) -> tuple[AnyArray, list[int] | None]:

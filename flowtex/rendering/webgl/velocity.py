@@ -33,8 +33,8 @@ from flowtex.trace.structure.formula_lines import formula_rates
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4
-#: Error of a position as a share of a small cell, and which percentile that is.
-CELL_SHARE, SMALL_CELLS = 2**-11, 1.0
+#: Unit of positions as a share of a small cell of the finest level, and which percentile that is.
+CELL_SHARE, SMALL_CELLS = 2**-13, 1.0
 #: Steps of a rate as a share of that along wide cells, and which percentile these are; of the
 #: speed, and of a share of it: its error is 2^-10 of itself, or 2^-13 of the typical one.
 RATE_UNIT, WIDE_CELLS, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 95, 2.0**-12, 2**9
@@ -149,8 +149,8 @@ def _size(textures: TextureSet) -> float:
     return float(np.median(_sizes(textures)))
 
 
-def trace_header(textures: TextureSet) -> Header:
-    """Return the numbers of tracing and of laying out the texels."""
+def trace_header(textures: TextureSet, depth: int) -> Header:
+    """Return the numbers of tracing and of laying out the texels; ``depth`` is that of the root."""
     geometry = textures.grid
     surface, store = geometry.field.surface, textures.store
     poles, at_poles = surface.poles, dict[str, Any]()
@@ -181,7 +181,7 @@ def trace_header(textures: TextureSet) -> Header:
         "closed": [bool(p) for p in surface.periodic],
         # By how much a position grows with a period.
         "offset": plain_list(surface.offset @ geometry.frame.T),
-        "middle": plain_list(geometry.frame @ (surface.center - geometry.center)),
+        "middle": plain_list(_middle(textures, _position_unit(textures, depth))),
         "unit": _size(textures),
         "pace": float(textures.pace),
         "timed": {"unit": float(store.unit.flat[0]), "speed": textures.typical_speed}
@@ -195,18 +195,32 @@ def trace_header(textures: TextureSet) -> Header:
     }
 
 
-def surface_parts(textures: TextureSet) -> Parts:
-    """Return the arrays of the nodes that are the same at all times."""
+def _position_unit(textures: TextureSet, depth: int) -> float:
+    """Return a power of two that is the same for all levels: they share nodes."""
+    whole = textures.grid.whole
+    sizes = norm(whole.tangents)
+    small = np.percentile(sizes[sizes > whole.extent / 2**24], SMALL_CELLS)  # not at a pole
+    return float(np.exp2(np.floor(np.log2(small * CELL_SHARE)) - depth))
+
+
+def _middle(textures: TextureSet, unit: float) -> Floats:
     geometry = textures.grid
-    surface = geometry.surface
-    padded = (surface.padded - surface.center) @ geometry.frame.T
+    return np.rint(geometry.local(geometry.surface.center) / unit) * unit
+
+
+def surface_parts(textures: TextureSet, depth: int) -> Parts:
+    """Return the arrays of the nodes that are the same at all times.
+
+    ``depth`` is the level of the root. Positions are multiples of a power of two, which are packed
+    well, and that of a node is the same at all levels unless single precision is coarser.
+    """
+    geometry = textures.grid
+    surface, unit = geometry.surface, _position_unit(textures, depth)
     parts: Parts = {"unit": half(_sizes(textures) / _size(textures))}
-    # Multiples of a power of two are packed well, if they are much smaller than a cell.
-    small = float(np.percentile(norm(surface.tangents), SMALL_CELLS))
-    least = np.ldexp(1.0, int(np.floor(np.log2(max(small, 1e-30) * CELL_SHARE))))
-    if np.abs(padded).max() < least * 2**24:
-        padded = np.rint(padded / least) * least + 0.0  # no zero is below zero
-    parts["padded"] = np.ascontiguousarray(padded, "<f4")
+    padded = (surface.padded - geometry.center) @ geometry.frame.T - _middle(textures, unit)
+    unit = max(unit, np.ldexp(1.0, int(np.frexp(np.abs(padded).max())[1]) - 24))
+    # No zero is below zero.
+    parts["padded"] = np.ascontiguousarray(np.rint(padded / unit) * unit + 0.0, "<f4")
     if surface.poles is not None:
         parts["rays"] = np.stack([pole.rays / pole.size for pole in surface.poles]).astype("<f4")
     valid = geometry.field.valid
@@ -243,8 +257,9 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
         channels += [channels[2], unknown_share(field, 0)]
     share, exponent = np.frexp(channels[2:])
     channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
-    across = norm(field.surface.tangents)[:, ::4, ::4] / _sizes(textures)[::4, ::4]
-    wide = np.maximum(np.percentile(across, WIDE_CELLS, axis=(1, 2)), LEAST_SIZE)
+    # Around a pole there are wide cells that no path of a drawn node comes to.
+    across = (norm(field.surface.tangents) / _sizes(textures))[:, *textures.grid.drawn]
+    wide = np.maximum(np.percentile(across[:, ::4, ::4], WIDE_CELLS, axis=(1, 2)), LEAST_SIZE)
     unit = np.array([*RATE_UNIT / 2 ** np.rint(np.log2(wide)), *[SPEED_UNIT] * len(channels[2:])])
     return half(np.rint(np.stack(channels, axis=-1) / unit) * unit + 0.0)
 

@@ -52,8 +52,6 @@ COARSE_FIRST_CELLS = 1.0
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Most nodes of a window; halos are narrower where there would be more.
 MOST_WINDOW = 600_000
-#: Lines of a ring around a pole; of more of them some are left out, away from the tile.
-MOST_RING = 1536
 #: Most nodes of a window around a pole for composed paths: in a larger one all are traced.
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
@@ -512,19 +510,14 @@ def _within_window(tile: list[int], halo: list[int]) -> list[int]:
 def _ring(near: int, count: int) -> Indices:
     """Return numbers of the lines around a pole, from 0 to the one that repeats the first.
 
-    Few lines are all returned, and otherwise those up to ``near``. Beyond, the spacing grows and
-    then decreases again: around a pole cells are so narrow that nothing is lost.
+    They are all of those up to ``near``. Beyond, the spacing doubles with the distance from the
+    tile: a path comes so far only where lines are so close together that it is at most a long cell.
     """
-    if count <= MOST_RING:
-        return np.arange(count)
-    step = -(-count // (MOST_RING - near))
-    growing = [1]
-    while growing[-1] < step:
-        growing.append(growing[-1] + (growing[-1] + 1) // 2)
-    ahead, back = near + np.cumsum(growing), count - 1 - np.cumsum(growing)[::-1]
-    middle = np.linspace(ahead[-1], back[0], -(-(back[0] - ahead[-1]) // step) + 1)
-    around = np.unique(np.concatenate([ahead, np.rint(middle).astype(int), back]))
-    return np.concatenate([np.arange(near + 1), around, [count - 1]])
+    last, ahead, step = near + count - 1, [near], 1
+    while ahead[-1] + 1.5 * step <= last / 2:
+        ahead.append(ahead[-1] + step)
+        step = 1 << int(math.log2((ahead[-1] - near + BLOCK_CELLS) / PATH_CELLS))
+    return np.unique([*range(near), *ahead, last // 2, *(last - line for line in ahead)])
 
 
 def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) -> Floats:
