@@ -39,9 +39,11 @@ def main() -> None:
     arguments = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
-    from flowtex.web.export import contents_of, page_data, page_pieces
+    from flowtex.rendering.webgl import velocity
+    from flowtex.web.export import page_text
     from flowtex.web.view import web_views
 
+    can_trace = velocity.can_trace
     names = ("page, MB", "bytes a node", "written in, s of processor", "drawn after, s")
     table = Table("nodes, and what a page has", *names)
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
@@ -53,11 +55,11 @@ def main() -> None:
             if len(field.times) > 1:
                 name += f", {len(field.times)} times"
             for traces in (True, False):
+                velocity.can_trace = can_trace if traces else lambda _: False
                 path = Path(folder) / f"{mesh}.html"
                 start = time.process_time()
                 views = web_views(data, options)
-                scenes = page_data(views, traces=traces)
-                path.write_text("".join(page_pieces(contents_of(views, scenes))), encoding="utf-8")
+                path.write_text(page_text(views), encoding="utf-8")
                 written = time.process_time() - start
                 page = browser.new_page(viewport=SIZE)
                 start = time.perf_counter()
