@@ -15,9 +15,9 @@ const SIZES: [attribute: number, size: number][] = [
   [0, 3],
   [1, 2],
   [2, 3],
-  [4, 2],
-  [5, 3],
-  [6, 1],
+  [3, 2],
+  [4, 3],
+  [5, 1],
 ];
 const FLOAT_BYTES = 4;
 const STRIDE = SIZES.reduce((sum, [, size]) => sum + size, 0);

@@ -102,12 +102,12 @@ export class Bodies {
   }
 
   /** Draw the flow, through which what lies behind it may be seen. */
-  seeThrough(draw: () => void): void {
+  seeThrough(draw: () => void, mixes = this.areBehind): void {
     if (!this.runs.length) return draw();
     const gl = this.graphics.context;
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(BEHIND[0], BEHIND[0]);
-    if (this.areBehind) {
+    if (mixes) {
       gl.enable(gl.BLEND);
       gl.blendColor(0, 0, 0, this.header.opacity);
       gl.blendFuncSeparate(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA, gl.ZERO, gl.ONE);
@@ -174,14 +174,18 @@ export class Bodies {
 
   /** Hide from the pointer what lies behind opaque faces. */
   hide(matrix: readonly number[], anchor: Vector): void {
-    const { runs, drawn, graphics } = this;
-    if (!runs.length || !drawn) return;
+    const { runs, graphics } = this;
+    if (!runs.length) return;
     const gl = graphics.context;
+    const drawn = (this.drawn ??= this.make());
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(BEHIND[1], BEHIND[1]);
     graphics.programs.use(this.programs[2], { u_matrix: matrix, u_anchor: anchor });
     gl.bindVertexArray(drawn.faces);
     for (const { faces: [first, count], clear } of runs) {
       if (!clear) gl.drawElements(gl.TRIANGLES, 3 * count, gl.UNSIGNED_INT, 12 * first);
     }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
     gl.bindVertexArray(null);
   }
 

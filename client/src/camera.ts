@@ -110,7 +110,7 @@ export class Camera {
     return [right, cross(right, ahead), ahead];
   }
 
-  /** What the triangles of a picture of so many rows are chosen by. */
+  /** What triangles and tiles are chosen by for a picture of so many rows. */
   sight(pixels: number): { eye: Vector | null; halfHeight: number; pixels: number } {
     const { parallel, position, view_angle: angle } = this.state;
     if (parallel) return { eye: null, halfHeight: this.height, pixels };
@@ -386,16 +386,11 @@ export function projection(surface: Surface, camera: Camera, anchor: Vector): nu
   return m;
 }
 
-/** The matrix whose picture is the one pixel of a view at (x, y). */
-export function atPixel(
-  matrix: readonly number[],
-  [x, y]: readonly [number, number],
-  [width, height]: readonly [number, number],
-): number[] {
-  const m = [...matrix];
-  for (let n = 0; n < 4; n += 1) {
-    m[4 * n] = (m[4 * n] - x * m[4 * n + 3]) * width;
-    m[4 * n + 1] = (m[4 * n + 1] - y * m[4 * n + 3]) * height;
-  }
-  return m;
+/** Uniforms of the rays through the pixels of a picture, as shaders/common/place.glsl has them. */
+export function rays({ center, frame }: Surface, camera: Camera, anchor: Vector, width: number, height: number) {
+  const [right, up] = camera.axes;
+  const { height: half, state, aspect } = camera;
+  const [x, y] = [scale(right, (2 * half * aspect) / width), scale(up, (2 * half) / height)];
+  const corner = add(add(subtract(state.focal_point, center), x, -width / 2), y, -height / 2);
+  return { u_rayCorner: subtract(toFrame(frame, corner), anchor), u_rayX: toFrame(frame, x), u_rayY: toFrame(frame, y) };
 }

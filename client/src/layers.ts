@@ -11,9 +11,8 @@ export interface LayersSize {
   levels: number;
 }
 
-/** Give a texture its size, which is bound then. */
-export function makeLayers(gl: WebGL2RenderingContext, texture: WebGLTexture, size: LayersSize): void {
-  const { width, height, layers, channels, levels } = size;
+/** Raise an error where a graphics card does not support the size of a texture. */
+export function checkSize(gl: WebGL2RenderingContext, width: number, height: number, layers = 1): void {
   const most = gl.getParameter(gl.MAX_TEXTURE_SIZE) as number;
   const mostLayers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number;
   if (Math.max(width, height) > most || layers > mostLayers) {
@@ -22,6 +21,12 @@ export function makeLayers(gl: WebGL2RenderingContext, texture: WebGLTexture, si
         `card supports at most ${most} x ${most} in ${mostLayers}; show fewer nodes`,
     );
   }
+}
+
+/** Give a texture its size, which is bound then. */
+export function makeLayers(gl: WebGL2RenderingContext, texture: WebGLTexture, size: LayersSize): void {
+  const { width, height, layers, channels, levels } = size;
+  checkSize(gl, width, height, layers);
   const target = gl.TEXTURE_2D_ARRAY;
   gl.bindTexture(target, texture);
   gl.texStorage3D(target, levels + 1, channels === 1 ? gl.R16F : gl.RGBA16F, width, height, layers);

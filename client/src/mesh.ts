@@ -1,6 +1,6 @@
 // The nodes of a surface as the arrays of a draw call, and values between nodes.
 
-import { shareOf, type Data, type Geometry, type Header, type Padding, type Paper } from "./protocol.ts";
+import { shareOf, type Data, type Geometry, type Header, type Padding } from "./protocol.ts";
 import { clamp, type Vector } from "./vectors.ts";
 
 /** What a node without a value has, far below every colour map, and the farthest share that others have. */
@@ -35,8 +35,20 @@ export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
   return grid(middles(shape[1], columns), middles(shape[0], rows));
 }
 
-export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
-  return grid(alongI, alongJ);
+/** Coordinates of columns and of rows side by side. */
+export function alongAxes(alongI: number[], alongJ: number[]): Float32Array {
+  const count = Math.max(alongI.length, alongJ.length);
+  return Float32Array.from({ length: 2 * count }, (_, n) => (n % 2 ? alongJ : alongI)[n >> 1] ?? 0);
+}
+
+/** Normals of any scale with a length of one. */
+export function unitNormals(data: Data): Float32Array {
+  const result = Float32Array.from(data);
+  for (let n = 0; n < data.length; n += 3) {
+    const size = Math.hypot(data[n], data[n + 1], data[n + 2]) || 1;
+    for (let k = n; k < n + 3; k += 1) result[k] /= size;
+  }
+  return result;
 }
 
 /** Values before and after, for each node or cell, as shares of the colour map's range. */

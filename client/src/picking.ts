@@ -1,15 +1,19 @@
-// The point of the surface at a place of the view: one pixel is drawn with the nodes' coordinates.
+// The point of the surface at a place of the view, from the triangle that its pixel shows.
 
-import { atPixel, projection, type Camera } from "./camera.ts";
-import { interpolated, type Corners } from "./mesh.ts";
+import type { Camera } from "./camera.ts";
+import { interpolated } from "./mesh.ts";
 import { placeOnEarth, cornersOn } from "./onearth.ts";
+import type { Layer, PlaceAt } from "./places.ts";
+import { nodeAt } from "./pointpath.ts";
 import type { Geometry, Header, Padding } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { fullIndex } from "./tilechoice.ts";
-import type { Layer } from "./tiles.ts";
 import { placeIn } from "./trianglemesh.ts";
 import type { Moment } from "./uniforms.ts";
-import { add, clamp, dot, fromFrame, subtract, type Vector } from "./vectors.ts";
+import { add, clamp, cross, dot, fromFrame, subtract, type Vector } from "./vectors.ts";
+
+/** Cells from the place at the middle of a pixel at most, as far as triangles are straight. */
+const FARTHEST = 16;
 
 export interface Point {
   position: number[];
@@ -30,39 +34,16 @@ export interface Found {
   place: [number, number];
 }
 
-/** The view in which a point is looked for. */
-export interface PickContext {
-  /** What is drawn; the whole, or the root and the tiles of a large surface. */
-  layers: Layer[];
-  camera: Camera;
-  moment: Moment;
-  anchor: Vector;
-  canvas: HTMLCanvasElement;
-}
-
-/** Point at (x, y), from -1 to 1, right and up; null beside the surface. */
-export function pickedPoint(context: PickContext, x: number, y: number): Found | null {
-  const { layers, camera, moment, anchor, canvas } = context;
-  const { graphics, header } = layers[0].scene;
-  const [program] = layers[0].scene.pickers;
-  const whole = projection(header.geometry, camera, anchor);
-  const matrix = atPixel(whole, [x, y], [canvas.width, canvas.height]);
-  const [before, after, between] = moment;
-  const bits = graphics.numbers(() => {
-    layers[0].scene.bodies.hide(matrix, anchor);
-    layers.forEach(({ scene }, n) => {
-      graphics.programs.use(program, { u_matrix: matrix, u_between: between, u_part: n });
-      scene.draw(before, after, anchor, false);
-    });
-  });
-  if (!bits[3]) return null;
-  const [u, v] = new Float32Array(bits.buffer, 0, 2);
-  const layer = layers[bits[2]];
+/** Point at (x, y), from -1 to 1, right and up, whose pixel shows a place; `root` is the whole surface. */
+export function pickedPoint(at: PlaceAt, root: Scene, camera: Camera, moment: Moment, [x, y]: [number, number]): Found {
+  const { layer, coordinate, triangle } = at;
   const { geometry } = layer.scene.header;
-  const near = geometry.triangles ? placeIn(bits[3] - 1, u, v) : placeAmong(geometry, u, v);
-  const position = positionAt(layer.scene, camera, layer.scene.cornersAt(near), x, y);
-  const place = placeOnEarth(layer.scene, near, position, layers[0].scene.parts.get("lonlat"));
-  const index = geometry.triangles ? place : wholeIndex(header, layer, place);
+  const near = geometry.triangles ? placeIn(triangle, ...coordinate) : placeAmong(geometry, ...coordinate);
+  const ray = camera.ray(x, y);
+  const beside = onRay(layer.scene, near, ray)[1];
+  const [position, there] = onRay(layer.scene, beside, ray); // in the next triangle, perhaps
+  const place = placeOnEarth(layer.scene, there, position, root.parts.get("lonlat"));
+  const index = geometry.triangles ? place : wholeIndex(root.header, layer, place);
   return { point: { position, index, values: valuesAt(layer.scene, moment, place) }, layer, place };
 }
 
@@ -83,16 +64,29 @@ function wholeIndex(header: Header, { key }: Layer, [i, j]: [number, number]): [
   return [at(i, column, columns), at(j, row, rows)];
 }
 
-/** Single precision finds the depth; the place itself is on the ray through the pointer. */
-function positionAt(scene: Scene, camera: Camera, corners: Corners, x: number, y: number) {
+/** Where a ray meets the triangle of a place, and the place there: that of a pixel is the one at its middle. */
+function onRay(scene: Scene, near: [number, number], [start, along]: [Vector, Vector]): [Vector, [number, number]] {
+  const { geometry } = scene.header;
   const { data } = scene.part("position");
-  const { frame, center } = scene.header.geometry;
-  const local = [0, 1, 2].map((k) => interpolated(corners, (n) => data[3 * n + k]));
-  const about = add(fromFrame(frame, local), center);
-  const [start, along] = camera.ray(x, y);
-  const ahead = camera.axes[2];
-  const depth = dot(subtract(about, start), ahead) / dot(along, ahead);
-  return add(start, along, depth);
+  const nodes = scene.cornersAt(near).map(([node]) => node);
+  const [a, b, c] = nodes.map((n) => add(fromFrame(geometry.frame, [...data.subarray(3 * n, 3 * n + 3)]), geometry.center));
+  const [first, second] = [subtract(b, a), subtract(c, a)];
+  const normal = cross(first, second);
+  const position = add(start, along, dot(normal, subtract(a, start)) / dot(normal, along));
+  const way = subtract(position, a);
+  const [s, t] = [cross(way, second), cross(first, way)].map((each) => dot(each, normal) / dot(normal, normal));
+  if (!(Math.max(Math.abs(s), Math.abs(t)) < FARTHEST)) {
+    // Seen from aside: the place itself is on the ray.
+    const about = nodeAt(scene, near);
+    return [add(start, along, dot(subtract(about, start), along) / dot(along, along)), near];
+  }
+  if (geometry.triangles) return [position, placeIn(Math.floor(near[1]), s, Math.max(t, 0))];
+  const [rows, columns] = geometry.shape;
+  const at = (of: (node: number) => number, count: number) => {
+    const [own, one, two] = nodes.map(of);
+    return clamp(own + s * (one - own) + t * (two - own), 0, count - 1);
+  };
+  return [position, [at((n) => n % columns, columns), at((n) => Math.floor(n / columns), rows)]];
 }
 
 /** Values of the scalars that are here, that of the colours first. */

@@ -13,7 +13,7 @@ import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part, Settings } from "./protocol.ts";
 import { samplesOf } from "./samples.ts";
 import type { Requests } from "./sources/source.ts";
-import type { Layer } from "./tiles.ts";
+import type { Layer } from "./places.ts";
 import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
 

@@ -9,13 +9,15 @@ const ATTRIBUTES = [
   "flowtexPosition",
   "flowtexCoordinate",
   "flowtexNormal",
-  "flowtexNoise",
   "flowtexScalar",
   "flowtexCorners",
   "flowtexRadius",
 ];
 /** Samplers, each in the texture unit of its place. */
-export const SAMPLERS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap", "u_shares"];
+export const SAMPLERS = [
+  ...["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap", "u_shares", "u_along", "u_nodes"],
+  ...["u_corners", "u_open", "u_places", "u_depths", "u_colours", "u_strides"],
+];
 
 export interface Program {
   program: WebGLProgram;
@@ -115,7 +117,7 @@ export class Programs {
     gl.useProgram(program);
     SAMPLERS.forEach((name, n) => {
       const sampler = entry.uniforms.get(name);
-      if (sampler) gl.uniform1i(sampler.location, n);
+      if (sampler && sampler.type !== gl.FLOAT_VEC2) gl.uniform1i(sampler.location, n); // as u_nodes of traces
     });
     entry.ready = true;
   }

@@ -1,22 +1,20 @@
 // Progressive drawing: a draft in the time that there is, then the full picture strip by strip.
 
-import { Camera, projection } from "./camera.ts";
+import { Camera, projection, rays } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
+import type { Layer, PlaceAt, Places } from "./places.ts";
 import type { Program } from "./programs.ts";
 import type { Settings } from "./protocol.ts";
-import { COARSEST_SCALE, draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
+import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
-import { hasArrows, isNear, uniforms, type Moment, type Uniform, type ViewState } from "./uniforms.ts";
+import { hasArrows, isNear, uniforms, type Moment, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
 const MOVING_LEAST_MS = 14;
 const STRIP_MS = 40;
-/** As many times more or fewer triangles, beside those that cost nothing, take another time. */
-const ALIKE = 1.3;
-const FEW_TRIANGLES = 50_000;
 /** Rows that are drawn with smooth outlines at a time. */
 const SMOOTH_ROWS = 256;
 
@@ -49,21 +47,13 @@ export interface DrawContext {
 /** What is drawn of a surface. */
 interface Content {
   readonly scene: Scene | null;
+  readonly places: Places | null;
   /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
-  arrange(shown: Moment): Scene[];
+  arrange(shown: Moment): Layer[];
   /** Whether outlines are smoothed. */
   readonly smooth: boolean;
   /** Whether more of what is to be seen is on its way. */
   readonly isComing: boolean;
-}
-
-/** What is drawn of a picture. */
-interface Region {
-  width: number;
-  height: number;
-  /** First row, from the top, and their number. */
-  top: number;
-  rows: number;
 }
 
 export class ProgressiveRenderer {
@@ -72,9 +62,6 @@ export class ProgressiveRenderer {
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
   private readonly pen: Pen;
-  /** The full picture while it is drawn. */
-  private readonly back = document.createElement("canvas");
-  private readonly backPen: Pen;
   /** The last full picture, with the camera that it shows. */
   private readonly last = document.createElement("canvas");
   private readonly lastPen: Pen;
@@ -91,11 +78,10 @@ export class ProgressiveRenderer {
   private draftVersion = 0;
   private rowsDone = 0;
   /** What is drawn of it, and whether there is more by now. */
-  private layers: Scene[] = [];
+  private layers: Layer[] = [];
   private isRefined = false;
-  /** Milliseconds that each strip and each draft takes, however few its pixels, and the triangles that it has. */
-  private fixed = { strip: 4, draft: 4 };
-  private triangles = 0;
+  /** Milliseconds that a draft takes beside its sums. */
+  private fixed = 4;
   /** Whether the picture on show has fewer pixels or samples than the full one. */
   private isCoarse = false;
 
@@ -104,9 +90,9 @@ export class ProgressiveRenderer {
     this.content = content;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
-    const { canvas, back, last, coarse } = this;
-    const pens = [canvas, back, last, coarse].map((each) => penOf(each, viewer.isClear ?? false));
-    [this.pen, this.backPen, this.lastPen, this.coarsePen] = pens;
+    const { canvas, last, coarse } = this;
+    const pens = [canvas, last, coarse].map((each) => penOf(each, viewer.isClear ?? false));
+    [this.pen, this.lastPen, this.coarsePen] = pens;
   }
 
   /** Begin another picture, of the same things where only the camera has changed. */
@@ -124,19 +110,17 @@ export class ProgressiveRenderer {
 
   /** Change the size; what is on show stays, stretched, until there is something better. */
   resize(width: number, height: number): void {
-    const { canvas, back, last } = this;
-    back.width = canvas.width;
-    back.height = canvas.height;
-    this.backPen?.drawImage(canvas, 0, 0);
+    const { canvas, coarse, last } = this;
+    coarse.width = canvas.width;
+    coarse.height = canvas.height;
+    this.coarsePen?.drawImage(canvas, 0, 0);
     canvas.width = last.width = width;
     canvas.height = last.height = height;
-    if (back.width > 1) this.pen?.drawImage(back, 0, 0, width, height);
-    back.width = width;
-    back.height = height;
+    if (coarse.width > 1) this.pen?.drawImage(coarse, 0, 0, width, height);
   }
 
   dispose(): void {
-    for (const canvas of [this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
+    for (const canvas of [this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; returns whether it is complete. */
@@ -171,22 +155,21 @@ export class ProgressiveRenderer {
     // Views that move share the time; at rest one after the other gets its whole picture.
     const crowd = moving ? this.graphics.waiting.size + 1 : 1;
     this.arrange(shown);
-    this.warm(program, shown);
     const price = program.price * this.factor(samples);
     const isPlaying = this.viewer.player.playing && !this.viewer.isHeld;
-    const time = movingTime(price, this.fixed.draft, width * height, samples, isPlaying);
+    const time = movingTime(price, this.fixed, width * height, samples, isPlaying);
     const budget = Math.max(time / crowd, MOVING_LEAST_MS);
-    const best = quality(price, this.fixed.draft, width * height, samples, budget);
+    const best = quality(price, this.fixed, width * height, samples, budget);
     const w = Math.max(Math.round(width * best.scale), 1);
     const h = Math.max(Math.round(height * best.scale), 1);
     this.draftVersion = this.version;
     const reuse = best.scale < 1 ? this.reuse() : null;
     if (!reuse?.covers) {
-      const region = { width: w, height: h, top: 0, rows: h };
-      this.timed(program, region, best.samples, () => {
-        this.render(program, shown, region, best.samples);
-        this.copy(this.pen, region, height, 0);
-      });
+      const started = performance.now();
+      this.place(shown, w, h);
+      const summed = this.sum(program, shown, 0, h, best.samples);
+      this.show(shown, false);
+      this.fixed += 0.5 * (clamp(performance.now() - started - summed, 0.5, 500) - this.fixed);
     }
     if (reuse && this.pen) {
       this.pen.imageSmoothingEnabled = !reuse.shifts;
@@ -204,29 +187,20 @@ export class ProgressiveRenderer {
   /** One more strip of the full picture, which is shown when it is complete. */
   private strip(program: Program, shown: Moment): boolean {
     const { width, height } = this.canvas;
-    const { settings } = this.viewer;
-    const { smooth } = this.content;
-    const samples = Number(settings.samples);
+    const samples = Number(this.viewer.settings.samples);
     if (this.rowsDone >= height) this.rowsDone = 0;
     if (this.rowsDone === 0) {
       this.arrange(shown);
       // What is on its way to the graphics card is waited for, or each tile would cost a picture.
       if (this.isRefined) return false;
     }
-    this.warm(program, shown);
+    this.place(shown, width, height);
     const price = program.price * this.factor(samples);
-    const most = Math.min(height - this.rowsDone, smooth ? SMOOTH_ROWS : height);
-    const rows = Math.min(rowsIn(STRIP_MS, price, this.fixed.strip, width, samples), most);
-    const region = { width, height, top: this.rowsDone, rows };
-    this.timed(program, region, samples, () => {
-      this.render(program, shown, region, samples, smooth);
-      // Smooth rows were put into the lowest ones of the canvas.
-      const drawn = smooth ? { ...region, height: rows, top: 0 } : region;
-      this.copy(this.backPen, drawn, drawn.height, this.rowsDone);
-    });
+    const rows = Math.min(height - this.rowsDone, rowsIn(STRIP_MS, price, width, samples));
+    this.sum(program, shown, this.rowsDone, rows, samples);
     this.rowsDone += rows;
     if (this.rowsDone < height) return false;
-    replace(this.pen, this.back);
+    this.show(shown, this.content.smooth);
     this.complete();
     this.drawLines(shown);
     return true;
@@ -291,58 +265,78 @@ export class ProgressiveRenderer {
     return settings.motion !== "off" || (player.varies && player.playing) ? motionFactor(samples) : 1;
   }
 
-  /** Draw, and learn what it costs. */
-  private timed(program: Program, region: Region, samples: number, draw: () => void): void {
-    const started = performance.now();
-    draw();
-    const spent = performance.now() - started;
-    const pixels = region.width * region.rows;
-    const factor = this.factor(samples);
-    const fixed = region.rows < region.height ? this.fixed.strip : this.fixed.draft;
-    program.price = learnedPrice(program.price, spent, fixed, pixels, samples, factor);
+  /** What is at (x, y), from -1 to 1, right and up; null beside the surface. */
+  placeAt(shown: Moment, x: number, y: number): PlaceAt | null {
+    const { places } = this.content;
+    this.place(shown, places?.width || this.canvas.width, places?.height || this.canvas.height);
+    return places?.at(x, y) ?? null;
   }
 
-  /**
-   * The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each.
-   * This is measured again for other triangles: of many, strips of few rows would take minutes.
-   */
-  private warm(program: Program, shown: Moment): void {
-    const triangles = this.layers.reduce((sum, layer) => sum + layer.triangles, 0);
-    const share = (triangles + FEW_TRIANGLES) / (this.triangles + FEW_TRIANGLES);
-    if (program.warm && share < ALIKE && share > 1 / ALIKE) return;
-    const { width, height } = this.canvas;
-    const row = { width, height, top: 0, rows: 1 };
-    const [w, h] = [width, height].map((n) => Math.max(Math.round(n * COARSEST_SCALE), 1));
-    if (!program.warm) this.render(program, shown, row, 1);
-    this.triangles = triangles;
-    const fixed = [row, { width: w, height: h, top: 0, rows: h }].map((region) => {
-      const started = performance.now();
-      this.render(program, shown, region, 1);
-      return clamp(performance.now() - started, 0.5, 500);
-    });
-    // Few pixels have most triangles to themselves, which a row hardly meets.
-    this.fixed = { strip: fixed[0], draft: fixed[1] };
-    program.warm = true;
-  }
-
-  /** Draw some rows of a picture. */
-  private render(program: Program, shown: Moment, region: Region, samples: number, smooth = false) {
-    const { graphics, viewer } = this;
+  /** Draw the places of a picture of a size, unless they are there. */
+  private place(shown: Moment, width: number, height: number): void {
+    const { viewer, layers, content } = this;
     const { camera } = viewer;
-    const { scene } = this.content;
-    if (!camera || !scene) return;
-    const gl = graphics.context;
-    const { width, height, top, rows } = region;
-    const view = viewer.view(shown, (viewer.ratio * height) / this.canvas.height);
-    const { canvas } = graphics;
+    if (!camera || !layers.length) return;
+    const { anchor } = viewer.view(shown, this.density(height));
+    content.places?.draw({ layers, camera, anchor, width, height });
+  }
+
+  /** Pixels drawn along one of the page. */
+  private density(height: number): number {
+    return (this.viewer.ratio * height) / this.canvas.height;
+  }
+
+  /** Compute some rows of a picture, and learn what it costs; returns the milliseconds. */
+  private sum(program: Program, shown: Moment, top: number, rows: number, samples: number): number {
+    const { places, scene } = this.content;
+    const { camera } = this.viewer;
+    if (!places || !scene || !camera) return 0;
+    const { width, height } = places;
+    const view = this.viewer.view(shown, this.density(height));
+    const draft = samples !== this.viewer.settings.samples || height !== this.canvas.height;
+    const valuesOf = (layer: Scene) => {
+      layer.bindNodes(view.anchor);
+      layer.bindTextures(shown[0], shown[1]);
+      return { ...this.values(layer, scene, camera, view, samples, draft), ...rays(layer.header.geometry, camera, view.anchor, width, height) };
+    };
+    // The first time is slow by itself.
+    if (!program.warm) places.sum(program, top, 1, valuesOf);
+    program.warm = true;
+    const started = performance.now();
+    places.sum(program, top, rows, valuesOf);
+    const spent = performance.now() - started;
+    program.price = learnedPrice(program.price, spent, width * rows, samples, this.factor(samples));
+    return spent;
+  }
+
+  /** Show the picture whose colours are there, with what is around the surface. */
+  private show(shown: Moment, smooth: boolean): void {
+    const { places } = this.content;
+    if (!places) return;
+    const { width, height } = places;
+    const { canvas } = this.graphics;
     if (canvas.width < width) canvas.width = width;
     if (canvas.height < height) canvas.height = height;
-    const bottom = height - top - rows;
+    const most = smooth ? SMOOTH_ROWS : height;
+    for (let bottom = 0; bottom < height; bottom += most) {
+      this.render(shown, bottom, Math.min(most, height - bottom), smooth);
+    }
+  }
+
+  /** Draw some rows of a picture, and copy them. */
+  private render(shown: Moment, bottom: number, rows: number, smooth: boolean): void {
+    const { graphics, viewer } = this;
+    const { camera } = viewer;
+    const { scene, places } = this.content;
+    if (!camera || !scene || !places) return;
+    const gl = graphics.context;
+    const { width, height } = places;
+    const view = viewer.view(shown, this.density(height));
     if (smooth) graphics.bindSmooth(width, rows);
     else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, smooth ? -bottom : 0, width, height);
+    gl.viewport(0, -bottom, width, height);
     gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(0, smooth ? 0 : bottom, width, rows);
+    gl.scissor(0, 0, width, rows);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LESS);
     gl.disable(gl.BLEND);
@@ -350,43 +344,38 @@ export class ProgressiveRenderer {
     const [r, g, b] = scene.header.background ?? [1, 1, 1];
     gl.clearColor(r, g, b, viewer.isClear ? 0 : 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
     const around: EarthView = { camera, anchor: view.anchor, width, height, ratio: viewer.ratio };
     scene.earth.drawGround(around);
     const { bodies } = scene;
     bodies.draw(around, "opaque");
     bodies.seeThrough(() => {
-      for (const layer of this.layers) {
-        graphics.programs.use(program, this.values(layer, scene, camera, view, samples, draft));
-        layer.draw(shown[0], shown[1], view.anchor, true);
-      }
+      if (!smooth) return places.show(scene.programs("surface"));
+      const matrix = projection(scene.header.geometry, camera, view.anchor);
+      places.triangles(scene.programs("smooth"), matrix, view.anchor, { u_bottom: bottom });
     });
-    this.drawArrows(shown, view, region, (layer) => this.values(layer, scene, camera, view, samples, draft));
+    this.drawArrows(shown, view, width, height);
     bodies.draw(around, "clear");
     scene.marks.draw({ ...around, ratio: view.density }, viewer.settings, shown);
     if (smooth) graphics.copySmooth(width, rows);
-    // Reading a pixel waits until everything is drawn.
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    this.copy(width, height, bottom, rows);
   }
 
   /** Draw arrows on what is drawn of the surface. */
-  private drawArrows(
-    shown: Moment,
-    view: ViewState,
-    { width, height }: Region,
-    values: (layer: Scene) => Record<string, Uniform>,
-  ): void {
+  private drawArrows(shown: Moment, view: ViewState, width: number, height: number): void {
     const { camera, settings } = this.viewer;
     const { scene } = this.content;
     if (!scene || !camera || !hasArrows(scene.header, settings)) return;
     const seen = { ...camera.sight(height / view.density), planes: camera.planes };
-    for (const [layer, placed] of scene.arrows.share(seen, settings, this.layers)) {
+    const draft = height !== this.canvas.height;
+    const layers = this.layers.map((layer) => layer.scene);
+    for (const [layer, placed] of scene.arrows.share(seen, settings, layers)) {
       const { arrows, header } = layer;
       const program = arrows.program(settings, isNear(header, settings, view));
       if (!program || !placed.length) continue;
       layer.bindTextures(shown[0], shown[1]);
       const painted = layer.scalarParts(shown[0], shown[1]);
-      arrows.draw(program, placed, painted, view.anchor, { ...values(layer), u_picture: [width, height] });
+      const values = this.values(layer, scene, camera, view, Number(settings.samples), draft);
+      arrows.draw(program, placed, painted, view.anchor, { ...values, u_picture: [width, height] });
     }
   }
 
@@ -419,23 +408,24 @@ export class ProgressiveRenderer {
     };
   }
 
-  /** Copy the rows that were drawn, to row `to` of a picture of another size. */
-  private copy(pen: Pen, region: Region, height: number, to: number): void {
+  /** Copy rows that were drawn, of a picture that may have another size. */
+  private copy(width: number, height: number, bottom: number, rows: number): void {
+    const { pen } = this;
     if (!pen) return;
-    const { width: w, height: h, top, rows } = region;
-    const { width } = this.canvas;
     let { canvas } = this.graphics;
-    let first = canvas.height - h + top;
-    pen.imageSmoothingEnabled = w !== width || h !== height;
+    let first = canvas.height - rows;
+    const [w, scaled] = [this.canvas.width, this.canvas.height / height];
+    pen.imageSmoothingEnabled = w !== width || scaled !== 1;
     if (pen.imageSmoothingEnabled) {
       // Alone, or what lies beside it would be smoothed into its edges.
       const { coarse, coarsePen } = this;
-      coarse.width = w;
+      coarse.width = width;
       coarse.height = rows;
-      coarsePen?.drawImage(canvas, 0, first, w, rows, 0, 0, w, rows);
+      coarsePen?.drawImage(canvas, 0, first, width, rows, 0, 0, width, rows);
       [canvas, first] = [coarse, 0];
     }
-    pen.clearRect(0, to, width, (rows * height) / h);
-    pen.drawImage(canvas, 0, first, w, rows, 0, to, width, (rows * height) / h);
+    const to = (height - bottom - rows) * scaled;
+    pen.clearRect(0, to, w, rows * scaled);
+    pen.drawImage(canvas, 0, first, width, rows, 0, to, w, rows * scaled);
   }
 }

@@ -82,14 +82,6 @@ export interface Geometry extends Surface {
   levels: number;
 }
 
-/** Cells along a side of a block, and limits of the errors: those of flowtex/rendering/mesh_levels.py. */
-export interface MeshLimits {
-  tileCells: number;
-  maxErrorPixels: number;
-  maxSideHeights: number;
-  leastDistance: number;
-}
-
 /** Numbers of the shading: those of flowtex/rendering/constants.py. */
 export interface Shading {
   toCones: number[];
@@ -283,7 +275,7 @@ export interface FormulaHeader {
 }
 
 type ShaderName =
-  "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
+  "vertex" | "place" | "fragment" | "surface" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
   | "arrowVertex" | "arrowFragment" | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
 /** Those of a client that traces. */
 type TraceShaderName = "trace" | "layers";
@@ -384,7 +376,8 @@ export interface Header {
     farCells: number;
     shading: Shading;
   };
-  mesh: MeshLimits;
+  /** Cells along a side of a block. */
+  mesh: { tileCells: number };
   /** What is added to the time of the first view, in a second one; null if that has its own. */
   timeShift?: number | null;
   /** What stands at the borders of the picture; by default what suits the surface. */

@@ -7,7 +7,7 @@ import { clamp } from "./vectors.ts";
 const PIXEL_COST = 8;
 /** Samples of a draft, and its least share of the width. */
 const DRAFT_SAMPLES = 9;
-export const COARSEST_SCALE = 0.2;
+const COARSEST_SCALE = 0.2;
 /** Greatest distance of two samples in a draft, in grains. */
 const DRAFT_SPACING = 1.4;
 /** Milliseconds for a picture while the user moves the view, and at most while an animation plays.
@@ -16,9 +16,8 @@ const MOVING_MS = 55;
 const PLAYING_MS = 125;
 /** Share of the width from which an animation has its grain: below it time is better spent on pixels. */
 const CLEAR_SCALE = 0.5;
-/** Least rows in a strip, and its longest time beside what each drawing takes. */
+/** Least rows in a strip. */
 const FEWEST_ROWS = 4;
-const LONGEST_STRIP_MS = 150;
 /** Price of a sample of a pixel, in milliseconds: at first, and below which a graphics card draws. */
 export const FIRST_PRICE_MS = 4e-5;
 export const CARD_PRICE_MS = 2e-6;
@@ -60,20 +59,9 @@ export function movingTime(
   return clamp(clear, MOVING_MS, PLAYING_MS);
 }
 
-/**
- * Rows of the full picture that can be drawn in a time; where a drawing takes long however few they are,
- * so many that most of the time is theirs.
- */
-export function rowsIn(
-  budget: number,
-  price: number,
-  fixed: number,
-  width: number,
-  samples: number,
-): number {
-  const row = price * width * (samples + PIXEL_COST);
-  const worthIt = Math.max(Math.min(3 * fixed, LONGEST_STRIP_MS), fixed);
-  return Math.max(Math.floor(Math.max(budget - fixed, worthIt) / row), FEWEST_ROWS);
+/** Rows of the full picture that can be summed in a time. */
+export function rowsIn(budget: number, price: number, width: number, samples: number): number {
+  return Math.max(Math.floor(budget / (price * width * (samples + PIXEL_COST))), FEWEST_ROWS);
 }
 
 /** As many times more a sample costs while grains move, as twice the samples are taken. */
@@ -85,12 +73,11 @@ export function motionFactor(samples: number): number {
 export function learnedPrice(
   price: number,
   spent: number,
-  fixed: number,
   pixels: number,
   samples: number,
   factor: number,
 ): number {
-  const latest = Math.max(spent - fixed, 0.05) / (pixels * (samples + PIXEL_COST) * factor);
+  const latest = Math.max(spent, 0.05) / (pixels * (samples + PIXEL_COST) * factor);
   // A slower measurement counts at once, a faster one gradually: a picture that is late is felt.
   return price + (latest - price) * (latest > price ? 0.7 : 0.3);
 }

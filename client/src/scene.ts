@@ -6,31 +6,23 @@ import { texelsOf } from "./colours.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
 import { Marks } from "./marks.ts";
-import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
-import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corners } from "./mesh.ts";
-import { MeshLevels, type Sight } from "./meshlevels.ts";
+import { checkSize, makeLayers, sendLayer, type LayersSize } from "./layers.ts";
+import { alongAxes, cornersAt, positions, shares, unitNormals, type Corners } from "./mesh.ts";
+import { mostDoublings } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part, type Settings } from "./protocol.ts";
 import type { TileKey } from "./tilechoice.ts";
 import { flowsOf, normalOf, positionOf, programsOf, Tracing, type Made } from "./tracer.ts";
-import {
-  atVertices,
-  cornersOf,
-  TriangleMesh,
-  vertexCorners,
-  vertexNormals,
-  vertexShares,
-} from "./trianglemesh.ts";
+import { cornersAndBlocks, cornersOf } from "./trianglemesh.ts";
 import type { Vector } from "./vectors.ts";
 
 /** Objects that are made of a part, by the part's name without its step. */
 const USERS: Record<string, string[]> = {
-  position: ["position", "coordinate"],
-  normal: ["normal"],
-  cells: ["index"],
-  mesh: ["index"],
-  triangles: ["index", "position", "coordinate", "corners", "normal", "scalar"],
-  blocks: ["index"],
+  position: ["nodes"],
+  normal: ["nodes"],
+  cells: ["cells"],
+  triangles: ["nodes", "cells", "scalar"],
+  blocks: ["cells"],
   cmap: ["cmap"],
   noise: ["noise"],
   step: ["step"],
@@ -46,6 +38,10 @@ export type Four = [number, number, number, number];
 
 /** Bytes of four numbers in half precision, with those of the mip levels. */
 const TEXEL_BYTES = 8 * (4 / 3);
+/** Triangles in a row of the texture of their corners. */
+const CORNERS_WIDTH = 2048;
+/** Samplers of textures with layers. */
+const ARRAYS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_nodes"];
 /** Number of all scenes. */
 let count = 0;
 
@@ -59,14 +55,14 @@ export class Scene {
   readonly marks: Marks;
   readonly tile: TileKey | null;
   anchor: Vector = [0, 0, 0];
+  /** Changes with the surface, and what stands beside it. */
+  version = 0;
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
-  /** Levels of the mesh's blocks, and of their borders. */
-  private drawn: { levels: Int8Array; joins: Int8Array } | null = null;
-  private meshLevels: MeshLevels | TriangleMesh | null = null;
+  private most: Int8Array | null = null;
   /** Slices that are being traced, by their key, and what stands in it for parts without a digest. */
   private tracing = "";
-  private readonly number = (count += 1);
+  readonly number = (count += 1);
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>, tile: TileKey | null = null) {
     this.tile = tile;
@@ -79,10 +75,12 @@ export class Scene {
     this.marks = new Marks(graphics, header, parts);
   }
 
-  /** Whether the programs are built of what is drawn beside the surface; asks for them. */
-  isReady(settings: Settings): boolean {
+  /** Whether the programs are built that draw the scene, maybe with smooth outlines; asks for them. */
+  isReady(settings: Settings, smooth = false): boolean {
     const programs = [false, true].map((isClose) => this.arrows.program(settings, isClose));
-    const others = [this.earth.isReady, this.bodies.isReady, this.marks.isReady(settings)];
+    const names = (["place", "surface", "smooth", "probe"] as const).filter((name) => smooth || name !== "smooth");
+    const own = names.map((name) => this.programs(name).ready);
+    const others = [...own, this.earth.isReady, this.bodies.isReady, this.marks.isReady(settings)];
     return others.every(Boolean) && programs.every((program) => program?.ready ?? true);
   }
 
@@ -218,14 +216,16 @@ export class Scene {
   /** Drop the objects of a part that has changed. */
   forget(name: string): void {
     const [kind, step] = name.split("/");
-    if (USERS[kind]?.includes("index")) this.meshLevels = this.drawn = null;
     if (["position", "cells", "triangles"].includes(kind)) this.arrows.forget();
     const sliced = ["slices", "extra", "flow"].includes(kind);
-    if (!sliced && kind !== "scalars") this.earth.forget(name);
+    if (!sliced && kind !== "scalars") {
+      this.earth.forget(name);
+      this.version += 1;
+      this.most = null;
+    }
     if (BODY_PARTS.includes(kind)) this.bodies.dispose();
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
     if (SOURCES.includes(kind)) this.dropSlices(NaN, NaN);
-    this.drop("array");
   }
 
   private drop(name: string): void {
@@ -278,52 +278,21 @@ export class Scene {
     return object;
   }
 
-  private buffer(name: string, key: string, data: () => Data, elements = false) {
-    const gl = this.graphics.context;
-    const fill = (buffer: WebGLBuffer) => {
-      const target = elements ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;
-      const numbers = data();
-      gl.bindVertexArray(null);
-      gl.bindBuffer(target, buffer);
-      gl.bufferData(target, numbers as AllowSharedBufferSource, gl.STATIC_DRAW);
-      return numbers.length;
-    };
-    return this.take(name, "Buffer", key, () => gl.createBuffer(), fill);
+  /** Places of the blocks, which are drawn by themselves. */
+  get blocks(): Part {
+    return this.part("mesh");
   }
 
-  private mesh(): MeshLevels | TriangleMesh {
-    if (this.meshLevels) return this.meshLevels;
+  /** Most doublings of the nodes of each block. */
+  get doublings(): Int8Array {
     const { geometry, mesh } = this.header;
-    if (geometry.triangles) {
-      return (this.meshLevels = new TriangleMesh(this.part("mesh"), this.part("blocks")));
-    }
-    const { shape, periodic } = geometry;
-    const parts = { blocks: this.part("mesh").data, cells: this.parts.get("cells")?.data };
-    return (this.meshLevels = new MeshLevels({ shape, periodic, ...parts }, mesh));
+    return (this.most ??= mostDoublings(geometry, this.blocks, this.part("position").data, mesh.tileCells));
   }
 
   /** Nodes around a place (i, j) of the surface, and their shares. */
   cornersAt(place: [number, number]): Corners {
     const { triangles, shape } = this.header.geometry;
     return triangles ? cornersOf(this.part("triangles").data, place) : cornersAt(shape, place);
-  }
-
-  /** Levels of the mesh's blocks for a view, and their rows and columns. */
-  levels(sight: Sight): { levels: Int8Array; shape: [number, number] } {
-    return { levels: this.mesh().levels(sight), shape: this.mesh().shape };
-  }
-
-  get hasTriangles(): boolean {
-    return this.drawn !== null;
-  }
-
-  /** Draw other triangles: those of some levels of the blocks and of their borders. */
-  setTriangles(levels: Int8Array, joins: Int8Array = new Int8Array()): void {
-    const { drawn } = this;
-    if (drawn && String([levels, joins]) === String([drawn.levels, drawn.joins])) return;
-    this.drawn = { levels, joins };
-    this.drop("index");
-    this.drop("array");
   }
 
   /** Whether the slices of some steps are on the graphics card. */
@@ -343,57 +312,64 @@ export class Scene {
     for (const step of steps) this.slices(step);
   }
 
-  private bindNodes(before: number, after: number, anchor: Vector): void {
+  /** Have positions and normals in their unit, and the nodes of triangles, or which cells are drawn. */
+  bindNodes(anchor: Vector): void {
     const gl = this.graphics.context;
-    const steps = String(this.scalarParts(before, after));
-    const stale = steps !== this.scalarSteps ? ["scalar", "array"] : [];
-    if (anchor.some((x, k) => x !== this.anchor[k])) stale.push("position", "array");
-    for (const name of stale) this.drop(name);
-    this.scalarSteps = steps;
+    const { shape, triangles, planar } = this.header.geometry;
+    if (anchor.some((x, k) => x !== this.anchor[k])) this.drop("nodes");
     this.anchor = anchor;
-    const fill = (array: WebGLVertexArrayObject) => this.fillArray(array, before, after);
-    const make = () => gl.createVertexArray();
-    gl.bindVertexArray(this.take("array", "VertexArray", "", make, fill));
+    const [height, width] = this.nodesSize;
+    const nodes = this.texture("nodes", this.key(["position", "normal"], width, anchor), (texture) => {
+      checkSize(gl, width, height);
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      const data = new Float32Array((planar ? 3 : 6) * width * height);
+      data.set(positions(this.part("position").data, anchor));
+      if (!planar) data.set(unitNormals(this.part("normal").data), 3 * width * height);
+      const size = [width, height, planar ? 1 : 2] as const;
+      gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, gl.RGB32F, ...size, 0, gl.RGB, gl.FLOAT, data);
+      nearest(gl, gl.TEXTURE_2D_ARRAY);
+    });
+    const open = () => this.parts.get("cells")?.data ?? Uint8Array.of(1);
+    const cells = triangles
+      ? this.table("cells", this.key(["triangles", "blocks"]), gl.RGBA32UI, CORNERS_WIDTH, () =>
+          cornersAndBlocks(this.part("triangles").data, this.part("blocks").data),
+        )
+      : this.table("cells", this.key(["cells"], shape), gl.R8UI, this.parts.has("cells") ? shape[1] - 1 : 1, open);
+    this.bind("u_nodes", nodes);
+    this.bind(triangles ? "u_corners" : "u_open", cells);
   }
 
-  private fillArray(array: WebGLVertexArrayObject, before: number, after: number): void {
+  /** Rows and columns of nodes, those of triangles as they are wrapped. */
+  private get nodesSize(): [number, number] {
+    const { shape, triangles, rows, columns } = this.header.geometry;
+    return triangles ? [rows.size, columns.size] : shape;
+  }
+
+  private bind(sampler: string, texture: WebGLTexture | null): void {
     const gl = this.graphics.context;
-    const { geometry, paper, scalars } = this.header;
-    const { shape, rows, columns } = geometry;
-    const { levels, joins } = this.drawn ?? { levels: new Int8Array(), joins: new Int8Array() };
-    const key = (names: string[], ...rest: unknown[]) => this.key(["triangles", ...names], ...rest);
-    const cells = () => this.mesh().triangles(levels, joins);
-    const drawn = key(["cells", "mesh", "blocks"], shape, [...levels], [...joins]);
-    const index = this.buffer("index", drawn, cells, true);
-    const corners = geometry.triangles ? this.part("triangles").data : null;
-    const vertices = <T extends Data>(values: T, size: number, flat?: boolean) =>
-      corners ? atVertices(values, flat ? corners.map((_: number, n: number) => n / 3) : corners, size) : values;
-    const nodes = () =>
-      vertices(positions(this.part("position").data, this.anchor), 3);
-    const normal = geometry.planar ? null : this.part("normal").data;
-    const normals = <T extends Data>(nodal: T) =>
-      corners ? vertexNormals(nodal, this.part("position").data, corners) : nodal;
-    const [colour, values] = this.shares(before, after);
-    const grid = JSON.stringify([shape, rows, columns, corners?.length]);
-    const place = () => (corners ? vertexShares(corners.length / 3) : coordinates(geometry));
-    let type: number = gl.FLOAT;
-    if (normal instanceof Int8Array) type = gl.BYTE;
-    if (normal instanceof Int16Array) type = gl.SHORT;
-    const attributes: [WebGLBuffer | null, number, number][] = [
-      [this.buffer("position", key(["position"], this.anchor), nodes), 3, gl.FLOAT],
-      [this.buffer("coordinate", grid, place), 2, gl.FLOAT],
-      [normal && this.buffer("normal", key(["normal"]), () => normals(normal)), 3, type],
-      [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
-      [corners && this.buffer("scalar", colour, () => vertices(values(), 2, scalars.flat)), 2, gl.FLOAT],
-      [corners && this.buffer("corners", key([]), () => vertexCorners(corners)), 3, gl.FLOAT],
-    ];
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
-    attributes.forEach(([buffer, size, kind], n) => {
-      if (!buffer) return;
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.enableVertexAttribArray(n);
-      gl.vertexAttribPointer(n, size, kind, kind !== gl.FLOAT, 0, 0);
+    gl.activeTexture(gl.TEXTURE0 + SAMPLERS.indexOf(sampler));
+    gl.bindTexture(ARRAYS.includes(sampler) ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, texture);
+    gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
+  }
+
+  /** A texture of numbers that are looked up one by one, in rows of a width. */
+  private table(name: string, key: string, inner: number, width: number, values: () => Data): WebGLTexture {
+    const gl = this.graphics.context;
+    const formats: Record<number, [format: number, type: number, channels: number]> = {
+      [gl.RGBA32UI]: [gl.RGBA_INTEGER, gl.UNSIGNED_INT, 4],
+      [gl.R8UI]: [gl.RED_INTEGER, gl.UNSIGNED_BYTE, 1],
+      [gl.RG32F]: [gl.RG, gl.FLOAT, 2],
+      [gl.RGBA32F]: [gl.RGBA, gl.FLOAT, 4],
+    };
+    const [format, type, channels] = formats[inner];
+    return this.texture(name, key, (texture) => {
+      const data = values();
+      const height = Math.ceil(data.length / channels / width);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+      const all = filled(data, channels * width * height) as AllowSharedBufferSource & ArrayBufferView;
+      gl.texImage2D(gl.TEXTURE_2D, 0, inner, width, height, 0, format, type, all);
+      nearest(gl, gl.TEXTURE_2D);
     });
   }
 
@@ -405,19 +381,6 @@ export class Scene {
     const key = this.key(["triangles", ...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
     const make = () => shares(painted.map((name) => this.part(name).data), scalars);
     return [key, make];
-  }
-
-  /** The same where fragments look them up. */
-  private nodalShares(before: number, after: number): WebGLTexture {
-    const gl = this.graphics.context;
-    const [rows, columns] = this.header.geometry.shape;
-    const [key, values] = this.shares(before, after);
-    return this.texture("scalar", key, (texture) => {
-      gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, columns, rows, 0, gl.RG, gl.FLOAT, values());
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    });
   }
 
   private texture(name: string, key: string, fill: (texture: WebGLTexture) => void): WebGLTexture {
@@ -451,11 +414,12 @@ export class Scene {
     });
   }
 
-  /** Programs that find a point, and what the slices have there; they may not be ready yet. */
-  get pickers(): [place: Program, texels: Program] {
+  /** The program that draws places, the surface with its colours or with smooth outlines, or looks up texels. */
+  programs(name: "place" | "surface" | "smooth" | "probe"): Program {
     const { programs } = this.graphics;
-    const { vertex, pick, fullVertex, probe } = this.header.shaders;
-    return [programs.get(vertex, pick), programs.get(fullVertex, probe)];
+    const { vertex, place, fullVertex, surface, probe } = this.header.shaders;
+    if (name === "smooth") return programs.get(vertex, surface, "FLOWTEX_SMOOTH");
+    return name === "place" ? programs.get(vertex, place) : programs.get(fullVertex, name === "probe" ? probe : surface);
   }
 
   /** What the slices of a step have at some texels, four at most: channels by layer, and by texel. */
@@ -470,7 +434,7 @@ export class Scene {
       gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
       gl.bindVertexArray(null);
       const places = texels.flatMap((n) => [n % width, Math.floor(n / width)]);
-      graphics.programs.use(this.pickers[1], { u_texels: places });
+      graphics.programs.use(this.programs("probe"), { u_texels: places });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     };
     const bits = graphics.numbers(draw, texels.length, slices.count);
@@ -504,18 +468,6 @@ export class Scene {
     if (floats && size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
   }
 
-  private colourMap(): WebGLTexture {
-    const gl = this.graphics.context;
-    const { scalars } = this.header;
-    return this.texture("cmap", this.key(["cmap"], scalars.beyond), (texture) => {
-      gl.bindTexture(gl.TEXTURE_2D, texture);
-      const data = texelsOf(this.parts.get("cmap")?.data ?? new Uint8Array(4), scalars);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, data.length / 4, 1, 0, gl.RGBA, gl.FLOAT, data);
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    });
-  }
-
   /** Drop the slices of steps that are neither shown nor next. */
   private dropSlices(before: number, after: number): void {
     const next = after + 1 < this.header.slices.steps ? after + 1 : 0;
@@ -525,40 +477,37 @@ export class Scene {
     }
   }
 
-  /** Have the slices of a moment, and images, in their units. */
+  /** Have the slices of a moment, colours and images in their units. */
   bindTextures(before: number, after: number): void {
     const gl = this.graphics.context;
-    const { geometry, paper, scalars } = this.header;
+    const { paper, scalars } = this.header;
     const repeat = paper?.repeat ?? [false, false];
-    const units = [
-      this.slices(before),
-      after === before ? null : this.slices(after),
-      paper && this.image("noise", paper.picture ? [true, true] : repeat),
-      paper && this.image("step", repeat),
-      this.colourMap(),
-      geometry.triangles || scalars.name === null ? null : this.nodalShares(before, after),
-    ];
-    units.forEach((texture, n) => {
-      gl.activeTexture(gl.TEXTURE0 + n);
-      gl.bindTexture(n < 4 ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, texture);
-    });
-    gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
+    const steps = String(this.scalarParts(before, after));
+    if (steps !== this.scalarSteps) this.drop("scalar");
+    this.scalarSteps = steps;
+    this.dropSlices(before, after);
+    this.bind("u_slices", this.slices(before));
+    this.bind("u_slicesNext", after === before ? null : this.slices(after));
+    this.bind("u_noiseImage", paper && this.image("noise", paper.picture ? [true, true] : repeat));
+    this.bind("u_stepImage", paper && this.image("step", repeat));
+    const colours = texelsOf(this.parts.get("cmap")?.data ?? new Uint8Array(4), scalars);
+    this.bind("u_cmap", this.table("cmap", this.key(["cmap"], scalars.beyond), gl.RGBA32F, colours.length / 4, () => colours));
+    const [key, values] = this.shares(before, after);
+    this.bind("u_shares", scalars.name === null ? null : this.table("scalar", key, gl.RG32F, this.nodesSize[1], values));
+    const along = () => alongAxes(paper?.alongI ?? [], paper?.alongJ ?? []);
+    this.bind("u_along", paper && this.table("along", "", gl.RG32F, Math.max(paper.alongI.length, paper.alongJ.length), along));
   }
+}
 
-  /** Number of the triangles that are drawn. */
-  get triangles(): number {
-    return (this.resources.get("index")?.count ?? 0) / 3;
-  }
+function nearest(gl: WebGL2RenderingContext, target: number): void {
+  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+}
 
-  /** Draw all cells with a program that is in use. */
-  draw(before: number, after: number, anchor: Vector, textures: boolean): void {
-    const gl = this.graphics.context;
-    this.bindNodes(before, after, anchor);
-    if (textures) {
-      this.dropSlices(before, after);
-      this.bindTextures(before, after);
-    }
-    gl.drawElements(gl.TRIANGLES, this.resources.get("index")?.count ?? 0, gl.UNSIGNED_INT, 0);
-    gl.bindVertexArray(null);
-  }
+/** Numbers with zeros behind them. */
+function filled<T extends Data>(data: T, length: number): T {
+  if (data.length === length) return data;
+  const all = new (data.constructor as new (length: number) => T)(length);
+  all.set(data);
+  return all;
 }

@@ -144,12 +144,12 @@ export class Pyramid {
   }
 }
 
-function isSeen({ planes }: TileView, [x, y, z, radius]: Data | number[]): boolean {
+export function isSeen({ planes }: Pick<TileView, "planes">, [x, y, z, radius]: Data | number[]): boolean {
   return planes.every((p) => dot(p, [x, y, z]) + p[3] >= -radius * length(p.slice(0, 3)));
 }
 
 /** Greatest size of the cells of a block in pixels. */
-function cellSize({ eye, halfHeight, pixels }: TileView, [x, y, z, radius, size]: Data | number[]): number {
+export function cellSize({ eye, halfHeight, pixels }: Omit<TileView, "planes" | "cellPixels">, [x, y, z, radius, size]: Data | number[]): number {
   const away = eye ? Math.max(length(subtract([x, y, z], eye)) - radius, size) : 1;
   return (size * 0.5 * pixels) / (halfHeight * away);
 }

@@ -6,7 +6,7 @@
 
 import type { Camera } from "./camera.ts";
 import { placesOf } from "./formula.ts";
-import { join, type Region } from "./meshlevels.ts";
+import type { Layer } from "./places.ts";
 import {
   isOfStep,
   stepOf,
@@ -44,12 +44,6 @@ const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
 const STEPS_HELD = { slices: 4, flow: 24 };
-
-/** A part of the surface that is drawn, with the tile that it is. */
-export interface Layer {
-  scene: Scene;
-  key: TileKey;
-}
 
 interface Tile {
   parts: Map<string, Part>;
@@ -90,7 +84,6 @@ export class Tiles {
     steps: [],
     names: "",
   };
-  private drawn = "";
   private count = 0;
   private isWaiting = false;
   private hasAsked = false;
@@ -171,52 +164,18 @@ export class Tiles {
     scene?.forget("cmap");
   }
 
-  /** Choose what is drawn at a moment, and its triangles. */
-  arrange([before, after]: Moment): Scene[] {
-    const { camera, canvas } = this.host;
+  /** Choose what is drawn at a moment. */
+  arrange([before, after]: Moment): Layer[] {
+    const { camera } = this.host;
     if (!camera) return [];
-    const steps = [...new Set([before, after])];
-    const shown = this.choose(camera, steps);
-    const layers: Layer[] = [{ scene: this.root, key: [this.root.header.pyramid?.depth ?? 0, 0, 0] }];
-    const names = [ROOT];
-    for (const name of shown.keys()) {
-      const scene = this.tiles.get(name)?.scene;
-      if (!scene) continue;
-      names.push(name);
-      layers.push({ scene, key: keyOf(name) });
-    }
-    const sight = camera.sight(canvas.height);
-    const parts = layers.map(({ scene, key }, n): Region => {
-      const { levels, shape } = scene.levels(sight);
-      for (const finer of shown.get(names[n]) ?? []) this.hide(levels, shape[1], finer, names[n]);
-      const { pyramid } = this.root.header;
-      const [row, column] = key.slice(1).map((at) => (at * (pyramid?.tileBlocks ?? 0)) << key[0]);
-      return { step: key[0], row, column, shape, levels };
+    const shown = this.choose(camera, [...new Set([before, after])]);
+    this.layers = [ROOT, ...[...shown.keys()].filter((name) => name !== ROOT)].flatMap((name) => {
+      const scene = name === ROOT ? this.root : this.tiles.get(name)?.scene;
+      const covered = (shown.get(name) ?? []).flatMap((finer) => (this.pyramid ? [this.pyramid.finerPart(keyOf(finer), name)] : []));
+      const key: TileKey = name === ROOT ? [this.root.header.pyramid?.depth ?? 0, 0, 0] : keyOf(name);
+      return scene ? [{ scene, key, covered }] : [];
     });
-    this.layers = layers;
-    this.setTriangles(names, parts);
-    return layers.map(({ scene }) => scene);
-  }
-
-  /** Leave out the blocks that a finer tile covers. */
-  private hide(levels: Int8Array, columns: number, finer: string, above: string): void {
-    const [row, column, size] = this.pyramid?.finerPart(keyOf(finer), above) ?? [0, 0, 0];
-    for (let j = row; j < Math.min(row + size, levels.length / columns); j += 1) {
-      levels.fill(-1, j * columns + column, j * columns + Math.min(column + size, columns));
-    }
-  }
-
-  /** Draw as few triangles as the view needs, without a crack between tiles. */
-  private setTriangles(names: string[], parts: Region[]): void {
-    const drawn = String(parts.map(({ levels }, n) => [names[n], levels]));
-    if (drawn === this.drawn && this.layers.every(({ scene }) => scene.hasTriangles)) return;
-    this.drawn = drawn;
-    const { geometry, mesh, pyramid, formula } = this.root.header;
-    const most = Math.log2(mesh.tileCells);
-    const blocks = pyramid?.blocks[0] ?? parts[0].shape;
-    // No crack opens in a plane.
-    const joins = geometry.triangles || formula ? [] : join(parts, blocks, geometry.periodic, most);
-    parts.forEach(({ levels }, n) => this.layers[n].scene.setTriangles(levels, joins[n]));
+    return this.layers;
   }
 
   /** The tiles to show, with those that cover parts of them; asks for others. */

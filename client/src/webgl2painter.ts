@@ -5,6 +5,7 @@
 
 import type { Painter, View } from "./painter.ts";
 import { pickedPoint, type Found } from "./picking.ts";
+import { Places, type Layer } from "./places.ts";
 import { ProgressiveRenderer } from "./progressive.ts";
 import type { Program } from "./programs.ts";
 import type { Header } from "./protocol.ts";
@@ -16,6 +17,7 @@ import { isNear, variantOf, type Moment } from "./uniforms.ts";
 export class WebGL2Painter implements Painter {
   scene: Scene | null = null;
   tiles: Tiles | null = null;
+  places: Places | null = null;
   shown: Moment | null = null;
   private readonly view: View;
   private readonly renderer: ProgressiveRenderer;
@@ -37,12 +39,14 @@ export class WebGL2Painter implements Painter {
     this.leave();
     this.scene = new Scene(view.graphics, header, view.parts);
     this.tiles = new Tiles(view, this.scene);
+    this.places = new Places(view.graphics);
   }
 
   private leave(): void {
     this.tiles?.dispose();
     this.scene?.dispose();
-    this.tiles = this.scene = null;
+    this.places?.dispose();
+    this.tiles = this.scene = this.places = null;
   }
 
   dispose(): void {
@@ -63,10 +67,10 @@ export class WebGL2Painter implements Painter {
   }
 
   /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
-  arrange(shown: Moment): Scene[] {
-    const scenes = this.tiles?.arrange(shown) ?? [];
+  arrange(shown: Moment): Layer[] {
+    const layers = this.tiles?.arrange(shown) ?? [];
     this.view.root.dataset.tiles = String(this.tiles?.pending ?? 0);
-    return scenes;
+    return layers;
   }
 
   /** Whether outlines are smoothed in the full picture: on a processor it would take many times as long. */
@@ -122,9 +126,9 @@ export class WebGL2Painter implements Painter {
 
   /** The program that draws at the present settings, from near or from afar, also while no time goes by. */
   private program(header: Header, isClose = this.isClose(header), still = !this.view.player.playing): Program {
-    const { vertex, fragment } = header.shaders;
+    const { fullVertex, fragment } = header.shaders;
     const variant = variantOf(header, this.view.settings, isClose, still);
-    return this.view.graphics.programs.get(vertex, fragment, ...variant);
+    return this.view.graphics.programs.get(fullVertex, fragment, ...variant);
   }
 
   private isClose(header: Header): boolean {
@@ -149,34 +153,30 @@ export class WebGL2Painter implements Painter {
     scene.prepare();
     if (!shown || !view.camera) return;
     if (program.error) return view.panel.fail("The shader does not compile with this graphics driver.", program.error);
-    if (!program.ready || !scene.isReady(view.settings)) return view.request();
+    if (!program.ready || !scene.isReady(view.settings, this.smooth)) return view.request();
     const isComplete = !view.sharp && this.renderer.draw(program, shown, until);
     if (isComplete) {
-      void scene.pickers; // the pointer asks for them next,
-      if (header.slices.critical) this.program(header, true); // the wheel for this,
+      if (header.slices.critical) this.program(header, true); // the wheel asks for this next,
       if (view.player.varies) this.program(header, this.isClose(header), false); // and the player for this
     }
     view.painted(isComplete);
   }
 
-  /** Whether the programs that find points are built. */
+  /** Whether the surface is there, and the programs that find points are built. */
   get canPick(): boolean {
-    const { scene, view } = this;
+    const { scene, view, shown } = this;
     const { graphics } = view;
-    return !!scene && !graphics.isLost && !!graphics.gl && scene.pickers.every(({ ready }) => ready);
+    return !!scene && !!shown && !graphics.isLost && !!graphics.gl && scene.isReady(view.settings);
   }
 
   find(x: number, y: number): Found | null {
-    const { tiles, shown, view } = this;
-    const { camera, canvas } = view;
-    if (!tiles?.layers.length || !camera || !shown) return null;
-    const { anchor } = view.view(shown, 1);
-    const found = pickedPoint({ layers: tiles.layers, camera, moment: shown, anchor, canvas }, x, y);
-    const { marks } = tiles.layers[0].scene;
-    if (found) {
-      const at = { place: [x, y] as [number, number], position: found.point.position, height: view.root.clientHeight };
-      found.point.mark = marks.at(at, camera, view.settings, shown);
-    }
+    const { tiles, shown, scene, view } = this;
+    const { camera } = view;
+    const at = tiles?.layers.length && shown ? this.renderer.placeAt(shown, x, y) : null;
+    if (!at || !camera || !shown || !scene) return null;
+    const found = pickedPoint(at, scene, camera, shown, [x, y]);
+    const pointed = { place: [x, y] as [number, number], position: found.point.position, height: view.root.clientHeight };
+    found.point.mark = scene.marks.at(pointed, camera, view.settings, shown);
     return found;
   }
 }

@@ -2,17 +2,17 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
-  atPixel,
   Camera,
   fitted,
   isSamePlace,
   projection,
+  rays,
   widened,
   type CameraLimits,
   type CameraState,
 } from "../src/camera.ts";
 import type { Geometry } from "../src/protocol.ts";
-import { add, scale, subtract, toFrame, type Vector } from "../src/vectors.ts";
+import { add, dot, length, scale, subtract, toFrame, type Vector } from "../src/vectors.ts";
 import { assertClose } from "./close.ts";
 
 interface Case {
@@ -102,16 +102,27 @@ for (const [name, example] of Object.entries(cases)) {
   });
 }
 
-test("one pixel of the view can be all that is drawn", () => {
-  const example = cases.flat;
-  const m = projection(example.geometry, cameraOf(example), [0, 0, 0]);
-  const [x, y] = [0.25, -0.5];
-  const pixel = atPixel(m, [x, y], [300, 200]);
-  // What was at (x, y) is in the middle now, and one pixel away is at the border.
-  const at = (k: number, p: Vector) => pixel[k] * p[0] + pixel[4 + k] * p[1] + pixel[12 + k];
-  const p: Vector = [(x - m[12]) / m[0], (y - m[13]) / m[5], 0];
-  assertClose([at(0, p), at(1, p)], [0, 0]);
-  assertClose(at(0, [p[0] + 1 / 300 / m[0], p[1], 0]), 1);
+test("the ray through a pixel meets what is seen there", () => {
+  for (const example of Object.values(cases)) {
+    const camera = cameraOf(example);
+    const { geometry, points } = example;
+    const [width, height] = [300, 200];
+    const anchor: Vector = [0.1, -0.2, 0.3];
+    const { u_rayCorner, u_rayX, u_rayY } = rays(geometry, camera, anchor, width, height);
+    const local = (point: readonly number[]) => subtract(toFrame(geometry.frame, subtract(point, geometry.center)), anchor);
+    for (const point of points) {
+      const place = camera.project(point);
+      if (!place) continue;
+      const [x, y] = place.map((at, axis) => (0.5 + 0.5 * at) * [width, height][axis]);
+      const there = add(add(u_rayCorner, u_rayX, x), u_rayY, y);
+      const toEye = camera.state.parallel
+        ? toFrame(geometry.frame, camera.axes[2])
+        : subtract(there, local(camera.state.position));
+      const away = subtract(local(point), there);
+      const across = subtract(away, scale(toEye, dot(away, toEye) / dot(toEye, toEye)));
+      assert.ok(length(across) < 1e-9 * camera.distance);
+    }
+  }
 });
 
 test("a first camera is widened for narrower views, and any other left alone", () => {

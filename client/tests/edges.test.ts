@@ -10,7 +10,6 @@ import { eastNorth, lonLatOf } from "../src/lonlat.ts";
 import { grainAt, mover, pathThrough, type PathPlace } from "../src/pointpath.ts";
 import { isOfStep, shareOf, type Earth, type Geometry, type Header } from "../src/protocol.ts";
 import type { Scene } from "../src/scene.ts";
-import { vertexNormals } from "../src/trianglemesh.ts";
 import { rotated, type Vector } from "../src/vectors.ts";
 import { assertClose } from "./close.ts";
 import { texelsOf } from "./texels.ts";
@@ -49,14 +48,6 @@ test("where nothing is known there is no place on the Earth, and what rests has 
   const [east, north] = eastNorth(globe, [0, 0, 2], [1, 0, 0], undefined); // at the pole
   assert.ok(Number.isFinite(east) && Number.isFinite(north));
   assert.equal(lonLatOf({ ...globe, map: [0, 0, 1, 1] } as unknown as Earth, [0, 0, 0], undefined), null);
-});
-
-test("at a sharp edge the normal is that of the triangle, as long and on the side that it was", () => {
-  const positions = Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0);
-  const triangle = Uint32Array.of(0, 1, 2);
-  const normals = vertexNormals(Float32Array.of(3, 0, 0.1, 3, 0, -0.1, 0, 0, 3), positions, triangle);
-  const long = Math.hypot(3, 0.1);
-  assertClose([...normals], [0, 0, long, 0, 0, -long, 0, 0, 3], 1e-6);
 });
 
 const eye = (position: Vector, more: Partial<CameraState> = {}): CameraState => ({

@@ -23,6 +23,7 @@ const LAYERS = [
   "bodies",
   "marks",
   "scene",
+  "places",
   "tiles",
   "pointpath pixelsum progressive",
   "onearth",

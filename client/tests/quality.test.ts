@@ -46,22 +46,18 @@ test("few samples are never made more", () => {
 });
 
 test("strips have as many rows as there is time for, and a few at least", () => {
-  const rows = rowsIn(40, 1e-5, 4, 1000, 49);
-  assert.ok(rows * 1000 * (49 + 8) * 1e-5 <= 36);
-  assert.equal(rowsIn(40, 1, 4, 1000, 49), 4);
-  // With many triangles most of the time is spent on rows, none of which waits much longer.
-  const time = (fixed: number) => rowsIn(40, 1e-5, fixed, 1000, 49) * 1000 * (49 + 8) * 1e-5;
-  assert.ok(time(40) > 119 && time(40) <= 120);
-  assert.ok(time(100) <= 150 && time(300) > 299);
+  const rows = rowsIn(40, 1e-5, 1000, 49);
+  assert.ok(rows * 1000 * (49 + 8) * 1e-5 <= 40 && rows > 60);
+  assert.equal(rowsIn(40, 1, 1000, 49), 4);
 });
 
 test("slower is believed at once, faster by and by", () => {
-  const spent = (price: number) => 4 + price * 1e6 * (49 + 8);
-  const slower = learnedPrice(1e-6, spent(1e-5), 4, 1e6, 49, 1);
-  const faster = learnedPrice(1e-5, spent(1e-6), 4, 1e6, 49, 1);
+  const spent = (price: number) => price * 1e6 * (49 + 8);
+  const slower = learnedPrice(1e-6, spent(1e-5), 1e6, 49, 1);
+  const faster = learnedPrice(1e-5, spent(1e-6), 1e6, 49, 1);
   assert.ok(Math.abs(slower - 7.3e-6) < 1e-9);
   assert.ok(Math.abs(faster - 7.3e-6) < 1e-9);
-  assert.ok(Math.abs(learnedPrice(1e-5, spent(1e-5), 4, 1e6, 49, 1) - 1e-5) < 1e-12);
+  assert.ok(Math.abs(learnedPrice(1e-5, spent(1e-5), 1e6, 49, 1) - 1e-5) < 1e-12);
 });
 
 test("moving grains take twice the samples", () => {

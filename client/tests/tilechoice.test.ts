@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { join, type Region } from "../src/meshlevels.ts";
-import type { MeshLimits, PyramidHeader } from "../src/protocol.ts";
+import type { PyramidHeader } from "../src/protocol.ts";
 import {
   cellPixels,
   cover,
@@ -21,24 +20,18 @@ interface View {
   shown: Record<string, string[]>;
 }
 
-interface Tiles<V extends View> {
+interface Tiles {
   pyramid: PyramidHeader;
   places: number[];
-  views: V[];
-}
-
-interface JoinedView extends View {
-  regions: (Omit<Region, "levels"> & { levels: number[]; joined: number[]; borders: number[] })[];
+  views: View[];
 }
 
 // What Python computes: tests/rendering/test_client_numbers.py.
 const read = (name: string) => JSON.parse(readFileSync(new URL(name, import.meta.url), "utf8"));
-const data: Tiles<JoinedView> & { periodic: [boolean, boolean]; limits: MeshLimits } = read("tiles.json");
-const triangles: Tiles<View> = read("triangles.json");
+const data: Tiles = read("tiles.json");
+const triangles: Tiles = read("triangles.json");
 
-const all = [data, triangles].flatMap(({ views, ...tiles }) =>
-  (views as View[]).map((view) => ({ ...tiles, ...view })),
-);
+const all = [data, triangles].flatMap(({ views, ...tiles }) => views.map((view) => ({ ...tiles, ...view })));
 
 for (const [n, { pyramid: header, places, view, chosen, wanted, ready, shown }] of all.entries()) {
   test(`tiles are chosen as Python does: view ${n}`, () => {
@@ -51,20 +44,6 @@ for (const [n, { pyramid: header, places, view, chosen, wanted, ready, shown }] 
     assert.deepEqual(wantedTiles(choices).sort(), [...wanted].sort());
     const covered = cover(choices, (name) => ready.includes(name));
     assert.deepEqual(Object.fromEntries(covered), shown);
-  });
-}
-
-for (const [n, { regions }] of data.views.entries()) {
-  test(`tiles join as in Python: view ${n}`, () => {
-    const parts = regions.map((region) => ({ ...region, levels: Int8Array.from(region.levels) }));
-    const most = Math.log2(data.limits.tileCells);
-    const borders = join(parts, data.pyramid.blocks[0], data.periodic, most);
-    regions.forEach((region, k) => {
-      assert.deepEqual([...parts[k].levels], region.joined);
-      // Borders of what is not drawn are of no use.
-      const drawn = (values: number[]) => values.filter((_, at) => region.joined[at >> 2] >= 0);
-      assert.deepEqual(drawn([...borders[k]]), drawn(region.borders));
-    });
   });
 }
 

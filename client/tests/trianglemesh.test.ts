@@ -1,30 +1,13 @@
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { interpolated } from "../src/mesh.ts";
-import type { Part } from "../src/protocol.ts";
-import {
-  atVertices,
-  cornersOf,
-  placeIn,
-  TriangleMesh,
-  vertexCorners,
-  vertexShares,
-} from "../src/trianglemesh.ts";
-
-const part = (data: Part["data"], shape: number[]): Part => ({ data, shape, digest: "" });
+import { cornersAndBlocks, cornersOf, placeIn } from "../src/trianglemesh.ts";
 
 /** Two triangles between four nodes. */
 const TRIANGLES = Uint32Array.of(0, 1, 2, 2, 1, 3);
 
-test("each triangle has vertices of its own", () => {
-  const pairs = Int16Array.of(0, 1, 10, 11, 20, 21, 30, 31);
-  const apart = atVertices(pairs, TRIANGLES, 2);
-  assert.ok(apart instanceof Int16Array);
-  assert.deepEqual([...apart], [0, 1, 10, 11, 20, 21, 20, 21, 10, 11, 30, 31]);
-  assert.deepEqual([...vertexShares(2)], [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
-  const corners = [...vertexCorners(TRIANGLES)];
-  assert.deepEqual(corners, [0, 1, 2, 0, 1, 2, 0, 1, 2, 2, 1, 3, 2, 1, 3, 2, 1, 3]);
+test("a triangle has its nodes and the blocks in which it lies", () => {
+  assert.deepEqual([...cornersAndBlocks(TRIANGLES, Uint16Array.of(1, 1 << 15))], [0, 1, 2, 1, 2, 1, 3, 1 << 15]);
 });
 
 test("a place is in a triangle, and values there are linear", () => {
@@ -46,38 +29,5 @@ test("the second corner belongs to its triangle, and not to the next", () => {
       [0, 1, 2],
     );
     assert.ok(Math.abs(interpolated(corners, (node) => node) - 1) < 1e-6);
-  }
-});
-
-test("triangles of blocks that are drawn are drawn once", () => {
-  // The last of 16 blocks, the first, and both.
-  const blocks = part(Uint16Array.of(1 << 15, 1, (1 << 15) | 1), [3]);
-  const mesh = new TriangleMesh(part(new Float32Array(80), [4, 4, 5]), blocks);
-  assert.deepEqual(mesh.shape, [4, 4]);
-  const levels = mesh.levels();
-  assert.deepEqual([...mesh.triangles(levels)], [0, 1, 2, 3, 4, 5, 6, 7, 8]);
-  levels[0] = -1;
-  assert.deepEqual([...mesh.triangles(levels)], [0, 1, 2, 6, 7, 8]);
-  levels.fill(-1);
-  levels[0] = 0;
-  assert.deepEqual([...mesh.triangles(levels)], [3, 4, 5, 6, 7, 8]);
-});
-
-interface Drawn {
-  mesh: { shape: number[]; blocks: number[] };
-  drawn: { levels: number[]; triangles: number; checksum: number }[];
-}
-
-test("the triangles of blocks are those of Python", () => {
-  // tests/rendering/test_client_numbers.py
-  const file = new URL("triangles.json", import.meta.url);
-  const { mesh, drawn }: Drawn = JSON.parse(readFileSync(file, "utf8"));
-  const blocks = part(Uint16Array.from(mesh.blocks), [mesh.blocks.length]);
-  const made = new TriangleMesh(part(new Float32Array(), mesh.shape), blocks);
-  for (const { levels, triangles, checksum } of drawn) {
-    const index = made.triangles(Int8Array.from(levels));
-    assert.equal(index.length, 3 * triangles);
-    const sum = index.reduce((result, vertex) => (31 * result + vertex) % 1000003, 0);
-    assert.equal(sum, checksum);
   }
 });

@@ -176,25 +176,27 @@ right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<
 focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}
 let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(
 depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=
-ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];
-for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
-LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
-max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
-min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
-samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),fewer,samples)}}function movingTime(price,fixed,pixels,samples,isPlaying){
+ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function rays({center,frame},camera,anchor,width,height){let[right,
+up]=camera.axes,{height:half,state,aspect}=camera,[x,y]=[scale2(right,2*half*aspect/width),scale2(up,2*half/height)],corner=add(
+add(subtract2(state.focal_point,center),x,-width/2),y,-height/2);return{u_rayCorner:subtract2(toFrame(frame,corner),anchor),
+u_rayX:toFrame(frame,x),u_rayY:toFrame(frame,y)}}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,
+Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,
+samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:
+{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),fewer,samples)}}function movingTime(price,fixed,pixels,samples,isPlaying){
 if(!isPlaying)return MOVING_MS;let fewer=Math.min(DRAFT_SAMPLES,samples),clear=fixed+price*pixels*CLEAR_SCALE**2*(fewer+
-PIXEL_COST);return clamp(clear,MOVING_MS,PLAYING_MS)}function rowsIn(budget,price,fixed,width,samples){let row2=price*width*
-(samples+PIXEL_COST),worthIt=Math.max(Math.min(3*fixed,LONGEST_STRIP_MS),fixed);return Math.max(Math.floor(Math.max(budget-
-fixed,worthIt)/row2),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
-let latest=Math.max(spent-fixed,.05)/(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}
-function draftUniforms(settings,samples,density){let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].
-map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,
-u_spacing:clamp(stretched,.1,Math.max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
+PIXEL_COST);return clamp(clear,MOVING_MS,PLAYING_MS)}function rowsIn(budget,price,width,samples){return Math.max(Math.floor(
+budget/(price*width*(samples+PIXEL_COST))),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+
+PIXEL_COST)}function learnedPrice(price,spent,pixels,samples,factor){let latest=Math.max(spent,.05)/(pixels*(samples+PIXEL_COST)*
+factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){let[grain,spacing,
+all]=[settings.grain,settings.spacing,settings.samples].map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*
+spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stretched,.1,Math.max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
 precision highp float;
 precision highp int;
-`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners","flo\
-wtexRadius"],SAMPLERS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
-this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
+`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],SAMPLERS=[
+"u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_p\
+laces","u_depths","u_colours","u_strides"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){this.
+graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
 "Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
 fragment,...defines].join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,
@@ -212,11 +214,12 @@ gl.getProgramInfoLog(program)].filter(Boolean).join(`
 entry.shaders=[];let count2=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count2;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
 /\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
-name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
-entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{
-location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location,numbers):
-type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===gl.FLOAT_VEC4?
-gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement(
+name);sampler&&sampler.type!==gl.FLOAT_VEC2&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.
+graphics.context;gl.useProgram(entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(
+name);if(!uniform)continue;let{location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?
+gl.uniform1fv(location,numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(
+location,numbers):type===gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,
+!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement(
 "canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
@@ -266,16 +269,18 @@ push([first,count2])}return runs}var NO_VALUE=-1e9,MOST_RANGES=500;function posi
 return data;let result2=new Float32Array(data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}
 function grid(us,vs){let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=
 u,result2[n++]=v2;return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.
-from({length:count2},(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({
-alongI,alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars){let nodes=steps[0]?.length??0,result2=new Float32Array(
-2*nodes),place=shareOf(scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*
-n+k]=Number.isFinite(share)?clamp(share,-MOST_RANGES,MOST_RANGES):NO_VALUE}}),result2}function cornersAt([rows,columns],[
-i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+
-left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],
-[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+share*value(
-node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
+from({length:count2},(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function alongAxes(alongI,alongJ){
+let count2=Math.max(alongI.length,alongJ.length);return Float32Array.from({length:2*count2},(_,n)=>(n%2?alongJ:alongI)[n>>
+1]??0)}function unitNormals(data){let result2=Float32Array.from(data);for(let n=0;n<data.length;n+=3){let size=Math.hypot(
+data[n],data[n+1],data[n+2])||1;for(let k=n;k<n+3;k+=1)result2[k]/=size}return result2}function shares(steps,scalars){let nodes=steps[0]?.
+length??0,result2=new Float32Array(2*nodes),place=shareOf(scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=
+1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?clamp(share,-MOST_RANGES,MOST_RANGES):NO_VALUE}}),result2}
+function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],
+[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);return[
+[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce(
+(sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
-start,along2]=camera.ray(x,y),nearest2=dot2(start,along2),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
+start,along2]=camera.ray(x,y),nearest3=dot2(start,along2),square=nearest3**2-dot2(start,start)+earth.radius**2,depth=-nearest3-
 Math.sqrt(square);return depth>0?add(start,along2,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
 d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
@@ -334,17 +339,18 @@ root;let look=()=>{let before=String(this.colour);this.update(),String(this.colo
 look);for(let element of[document.documentElement,document.body])lifetime.watch(observer,element,{attributeFilter:THEME});
 lifetime.listen(isDarkWished(),"change",look)}update(){let{root}=this;if(!root.parentElement)return;this.colour=groundAround(
 root.parentElement);let[r,g,b]=this.colour.map(value=>Math.round(255*value));root.classList.toggle("flowtex-dark",(.299*
-r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",`rgb(${r} ${g} ${b})`)}};function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
-mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
-`a texture of ${width} x ${height} texels in ${layers} layers is needed, but this graphics card supports at most ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(
-target,levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
-let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
-1){if(gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,
-w,h]=halved(texels,w,h,channels)}}var Poles=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(poles,nodes,rays){let[rows,columns]=nodes;this.poles=
-poles,this.nodes=nodes,this.rays=rays,this.isAlongJ=poles[0]?.component!==0,[this.lines,this.cells]=this.isAlongJ?[rows,
+r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",`rgb(${r} ${g} ${b})`)}};function checkSize(gl,width,height,layers=1){let most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.
+MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(`a texture of ${width} x ${height}\
+ texels in ${layers} layers is needed, but this graphics card supports at most ${most} x ${most} in ${mostLayers}; show \
+fewer nodes`)}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size;checkSize(gl,width,height,
+layers);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,channels===1?gl.R16F:
+gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(
+target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,
+gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){let format=channels===
+1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=1){if(gl.texSubImage3D(
+gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,w,h]=halved(texels,
+w,h,channels)}}var Poles=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(poles,nodes,rays2){let[rows,columns]=nodes;this.poles=
+poles,this.nodes=nodes,this.rays=rays2,this.isAlongJ=poles[0]?.component!==0,[this.lines,this.cells]=this.isAlongJ?[rows,
 columns-1]:[columns,rows-1];let more=poles.reduce((sum,pole)=>sum+this.depth(pole)+1,0);this.size={width:columns+(this.isAlongJ?
 0:more),height:rows+(this.isAlongJ?more:0)}}laidOut(own){if(!this.poles.length)return own;let[rows,columns]=this.nodes,{
 width,height}=this.size,result2=new Float32Array(4*width*height);for(let j=0;j<rows;j+=1)result2.set(own.subarray(4*columns*
@@ -417,9 +423,9 @@ n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);retu
 fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){let data=this.numbers(
 `flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,unknown=Number(this.trace.uncertain??!1),whole=new Float32Array(
 4*nodes);for(let n=0;n<nodes;n+=1)whole[4*n]=data[(n+1)*channels-1-unknown],whole[4*n+1]=unknown*data[(n+1)*channels-1];
-return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest2]=["open","nearest"].map(name=>this.find(name)?.data),
+return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest3]=["open","nearest"].map(name=>this.find(name)?.data),
 cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*
-n+1+k]=nearest2?nearest2[2*n+k]:0}return cells}padded(){let data=this.data("padded"),result2=new Float32Array(data.length/
+n+1+k]=nearest3?nearest3[2*n+k]:0}return cells}padded(){let data=this.data("padded"),result2=new Float32Array(data.length/
 3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*n+k]=data[3*n+k];return result2}flowTexture(step){let{
 width,height}=this.poles.size,gl=this.graphics.context,texture=this.flows.get(step)??this.texture(width,height,gl.RGBA32F,
 this.flow(step));this.flows.delete(step),this.flows.set(step,texture);for(let[other,old]of this.flows){if(this.flows.size<=
@@ -437,7 +443,7 @@ TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(st
 context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],size={
 width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();this.result=result2,gl.activeTexture(
 gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.width,poles.size.height,gl.RGBA32F,
-this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[this.texture(columns,rows,gl.RGBA32F,
+this.flow(step)),rays2=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[this.texture(columns,rows,gl.RGBA32F,
 this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,rows,gl.RGBA32F,this.wholeSpeed(
 step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,uniforms2={u_flow:0,u_cells:1,
 u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,u_longest:trace.longest??ENDLESS,
@@ -454,7 +460,7 @@ sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[p
 entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
 header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
 stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
-gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays],composer??follow,{u_lagEarlier:earlier,
+gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays2],composer??follow,{u_lagEarlier:earlier,
 u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),at=next,!((asked+=rows*columns)<PASS_NODES)&&(gl.readPixels(
 0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),asked=0,yield)}}[before,now]=[now,at],m||(first=now);let isUnknown=trace.
 uncertain&&m===UNKNOWN_LAYER,fourth=m===1&&!side?SPEED:isUnknown?UNKNOWN:NOTHING;m&&layer(start+m,slopes,[now[0],now[0]],
@@ -675,19 +681,10 @@ c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mar
 !(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.place(value),0,1)}%`)}};function legendTicks({scalars}){
 if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,
 scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??
-ticks[2]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
-size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
-function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
-let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
-length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
-n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
-own.map(x=>x*(alike<0?-scale3:scale3)),3*k)}}return result2}function vertexCorners(triangles){let result2=new Float32Array(
-3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+n%3];return result2}function placeIn(triangle,second,third){
-return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(
-j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
-this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
-let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
-end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+ticks[2]}var MOST_SHARE=.9999999;function cornersAndBlocks(triangles,blocks){return Uint32Array.from({length:4*blocks.length},(_,n)=>n%
+4<3?triangles[3*(n>>2)+n%4]:blocks[n>>2])}function placeIn(triangle,second,third){return[third,triangle+Math.min(Math.max(
+second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(j),[second,third]=[j-number,i];return[1-
+second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -828,26 +825,27 @@ filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!
 !1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
 level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
 let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
-(Math.min((low+1)*step,nodes-1)-low*step)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
-scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
-before,after,between3]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between3,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
-return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,near=geometry.
-triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),position=positionAt(layer.scene,camera,layer.scene.cornersAt(
-near),x,y),place=placeOnEarth(layer.scene,near,position,layers[0].scene.parts.get("lonlat")),index=geometry.triangles?place:
-wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,place)},layer,place}}function placeAmong({
-rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-1);return[at(u,columns,
-shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,[level,row2,
-column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
-n+tile*side,level,nodes);return[at(i,column,columns),at(j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{
-data}=scene.part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+
-k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,
-start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}function valuesAt(scene,moment,place){let{header,parts}=scene,
-{scalars,geometry}=header,corners=cornersOn(scene,place),cell=geometry.triangles?Math.floor(place[1]):corners[0][0],[from,
-to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[scalars,
-...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
-null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
-each.flat?value(cell):interpolated(corners,value)}return values}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
+(Math.min((low+1)*step,nodes-1)-low*step)}var FARTHEST=16;function pickedPoint(at,root,camera,moment,[x,y]){let{layer,coordinate,triangle}=at,{geometry}=layer.scene.
+header,near=geometry.triangles?placeIn(triangle,...coordinate):placeAmong(geometry,...coordinate),ray=camera.ray(x,y),beside=onRay(
+layer.scene,near,ray)[1],[position,there]=onRay(layer.scene,beside,ray),place=placeOnEarth(layer.scene,there,position,root.
+parts.get("lonlat")),index=geometry.triangles?place:wholeIndex(root.header,layer,place);return{point:{position,index,values:valuesAt(
+layer.scene,moment,place)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
+share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
+i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
+j,row2,rows)]}function onRay(scene,near,[start,along2]){let{geometry}=scene.header,{data}=scene.part("position"),nodes=scene.
+cornersAt(near).map(([node])=>node),[a,b,c]=nodes.map(n=>add(fromFrame(geometry.frame,[...data.subarray(3*n,3*n+3)]),geometry.
+center)),[first,second]=[subtract2(b,a),subtract2(c,a)],normal=cross2(first,second),position=add(start,along2,dot2(normal,
+subtract2(a,start))/dot2(normal,along2)),way=subtract2(position,a),[s,t]=[cross2(way,second),cross2(first,way)].map(each=>dot2(
+each,normal)/dot2(normal,normal));if(!(Math.max(Math.abs(s),Math.abs(t))<FARTHEST)){let about=nodeAt(scene,near);return[
+add(start,along2,dot2(subtract2(about,start),along2)/dot2(along2,along2)),near]}if(geometry.triangles)return[position,placeIn(
+Math.floor(near[1]),s,Math.max(t,0))];let[rows,columns]=geometry.shape,at=(of,count2)=>{let[own,one,two]=nodes.map(of);return clamp(
+own+s*(one-own)+t*(two-own),0,count2-1)};return[position,[at(n=>n%columns,columns),at(n=>Math.floor(n/columns),rows)]]}function valuesAt(scene,moment,place){
+let{header,parts}=scene,{scalars,geometry}=header,corners=cornersOn(scene,place),cell=geometry.triangles?Math.floor(place[1]):
+corners[0][0],[from,to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[
+scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.
+name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.
+name]=each.flat?value(cell):interpolated(corners,value)}return values}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
 let element=document.createElementNS(SVG2,tag);for(let[name,value]of Object.entries(attributes))element.setAttribute(name,
 `${value}`);return element}function fitting2(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,
 -y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(
@@ -1605,7 +1603,73 @@ return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.ra
 anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
 frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
 return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
-timeOf(shown),clock:player.clock,still:!player.playing,density,pixel:2*camera.height/Math.max(rows*density,1)}}function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+timeOf(shown),clock:player.clock,still:!player.playing,density,pixel:2*camera.height/Math.max(rows*density,1)}}var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
+shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(let n=0;n<positions2.length;n+=3){if(Number.
+isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
+Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
+columns&&(most[row2*columns+column]=0)}return most}function seenBlocks({shape:shape2,data},camera,pixels,covered,most){let[
+rows,columns,size]=shape2,sight={...camera.sight(pixels),planes:camera.planes},levels=new Int8Array(rows*columns).fill(-1),
+box=[1,1,-1,-1];for(let block=0;block<levels.length;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],
+place=data.subarray(size*(block+1)-PLACE3,size*(block+1));if(covered.some(([j,i,n])=>row2>=j&&row2<j+n&&column>=i&&column<
+i+n)||!isSeen(sight,place))continue;let level=Math.floor(Math.log2(MOST_SIDE_PX/cellSize(sight,place)));levels[block]=Math.
+min(Math.max(level,0),most[block]),boundsOf(camera,place).forEach((side,n)=>box[n]=n<2?Math.min(box[n],side):Math.max(box[n],
+side))}return{levels,box}}function boundsOf(camera,[x,y,z,radius]){let[right,up,ahead]=camera.axes,{parallel,position,focal_point:focus}=camera.
+state,way=subtract2([x,y,z],parallel?focus:position),ends2=[-radius,radius].map(by=>camera.at(add([x,y,z],ahead,by)).height);
+if(!(ends2[0]>0))return[-1,-1,1,1];let[low,high]=[-radius,radius].map(by=>[dot2(way,right)/camera.aspect,dot2(way,up)].map(
+(at,axis)=>ends2.map(height=>(at+by/(axis?1:camera.aspect))/height)));return[...low.map(each=>Math.min(...each)),...high.
+map(each=>Math.max(...each))]}var MOST_SQUARES=1024,UNITS2=["u_places","u_depths","u_colours","u_strides"].map(name=>SAMPLERS.indexOf(name)),Places=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(graphics){
+this.graphics=graphics}draw({layers,camera,anchor,width,height}){let drawn=layers.map(({scene,covered})=>[scene.number,scene.
+version,covered]),key=JSON.stringify([drawn,camera.state,camera.aspect,anchor,width,height]);if(key===this.key)return;Object.
+assign(this,{key,layers,width,height});let gl=this.graphics.context,{frames}=this.make(width,height),[{scene:root}]=layers,
+most=Math.min(...layers.map(({key:[step]})=>step))+Math.log2(root.header.mesh.tileCells);this.seen=layers.map(({scene,covered,
+key:[step]})=>{let doublings=scene.doublings.map(own=>Math.max(Math.min(own,most-step),0));return seenBlocks(scene.blocks,
+camera,height,covered,doublings)}),this.sendStrides(),gl.bindFramebuffer(gl.FRAMEBUFFER,frames[0]),gl.viewport(0,0,width,
+height),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.clearBufferuiv(
+gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT);let matrix=projection(root.header.geometry,camera,anchor);root.bodies.
+hide(matrix,anchor),root.bodies.seeThrough(()=>this.triangles(root.programs("place"),matrix,anchor),!1)}triangles(program,matrix,anchor,values={}){
+let{graphics,layers,seen}=this,gl=graphics.context,{mesh,pyramid,geometry}=layers[0].scene.header,[rows,columns]=pyramid?.
+shapes[0]??geometry.shape;this.bind(),gl.bindVertexArray(null),layers.forEach(({scene,key:[step,...tile]},n)=>{let{levels}=seen[n],
+{columns:u,rows:v2,shape:shape2,triangles}=scene.header.geometry,[top,left]=tile.map(at=>at*mesh.tileCells*(pyramid?.tileBlocks??
+0)*2**step);scene.bindNodes(anchor),graphics.programs.use(program,{...values,u_matrix:matrix,u_layer:n+1,u_blocks:levels.
+reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),u_part:[left,top,step],u_lastNode:[columns-1,rows-1,this.squares],
+u_closed:[Number(geometry.periodic[1]),Number(geometry.periodic[0])],u_blockCells:mesh.tileCells,u_slicesSize:[u.size,v2.
+size],u_padding:[u.before,v2.before]}),triangles&&gl.drawArrays(gl.TRIANGLES,0,scene.part("triangles").data.length);let across=scene.
+blocks.shape[1];levels.forEach((level,block)=>{if(level<0||triangles)return;let first=[block%across,Math.floor(block/across)].
+map(at=>at*mesh.tileCells),[x,y]=first.map((at,k)=>Math.ceil(Math.min(mesh.tileCells,shape2[1-k]-1-at)/2**level));graphics.
+programs.use(program,{u_block:[...first,level,x]}),gl.drawArrays(gl.TRIANGLES,0,6*x*y)})})}sum(program,top,rows,valuesOf){
+let{graphics,width,height,target}=this,gl=graphics.context,bottom=height-top-rows;gl.bindFramebuffer(gl.FRAMEBUFFER,target?.
+frames[1]??null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(gl.DEPTH_TEST),gl.disable(gl.BLEND),
+gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.seen[n].box.map((at,side)=>(.5+
+.5*at)*(side%2?height:width)),[x,y]=[Math.max(Math.floor(left),0),Math.max(Math.floor(low),bottom)],[w,h]=[Math.min(Math.
+ceil(right),width)-x,Math.min(Math.ceil(high),bottom+rows)-y];if(w<=0||h<=0)return;gl.scissor(x,y,w,h);let values=valuesOf(
+scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.TRIANGLES,0,3)}),gl.readPixels(
+0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}show(program){let gl=this.graphics.
+context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.use(program,{u_bottom:0}),gl.drawArrays(gl.TRIANGLES,
+0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[column,row2]=[[x,this.width],[y,this.height]].map(([at,
+size])=>clamp(Math.floor((.5+.5*at)*size),0,size-1)),bits=new Uint32Array(4);gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??
+null),gl.readPixels(column,row2,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null);let[u,
+v2]=new Float32Array(bits.buffer,0,2);return bits[3]?{layer:layers[bits[3]-1],coordinate:[u,v2],triangle:bits[2]}:null}dispose(){
+let{graphics,target}=this;for(let texture of target?.textures??[])graphics.free("Texture",texture);for(let frame of target?.
+frames??[])graphics.free("Framebuffer",frame);this.target=null,this.key=""}sendStrides(){let{layers,seen,target}=this,gl=this.
+graphics.context,[{scene:root}]=layers,{pyramid,geometry}=root.header,finest=geometry.triangles?[1,1]:pyramid?.blocks[0]??
+root.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),0);let scale3=2**-this.squares,
+[rows,columns]=finest.map(n=>Math.ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.forEach(({scene,key:[step,
+...tile]},n)=>{let across=scene.blocks.shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{if(level<0||geometry.
+triangles)return;let[[top,bottom],[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{let first=(at+tile[k]*
+(pyramid?.tileBlocks??0))*size;return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});for(let j=top;j<
+bottom;j+=1)for(let i=left+j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),gl.activeTexture(
+gl.TEXTURE0+UNITS2[3]),gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.
+texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{target,
+graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,size={
+width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.RGBA32UI,
+gl.DEPTH_COMPONENT24,gl.RGBA8,0].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(gl.
+TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,
+gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),frames=[[textures[0],
+textures[1]],[textures[2]]].map(attached=>{let frame=graphics.counted(gl.createFramebuffer());return gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame),attached.forEach((texture,n)=>{let point=n?gl.DEPTH_ATTACHMENT:gl.COLOR_ATTACHMENT0;gl.framebufferTexture2D(
+gl.FRAMEBUFFER,point,gl.TEXTURE_2D,texture,0)}),frame});return this.key=key,this.target={frames,textures,...size}}bind(){
+let gl=this.graphics.context;UNITS2.forEach((unit3,n)=>{gl.activeTexture(gl.TEXTURE0+unit3),gl.bindTexture(gl.TEXTURE_2D,
+this.target?.textures[n]??null)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -1615,86 +1679,85 @@ m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(befor
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
 abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;if(shifts)
-for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(
-0,0,picture.width,picture.height),pen?.drawImage(picture,0,0)}var penOf=(canvas,alpha)=>canvas.getContext("2d",{alpha}),
-ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
+for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(0,0,picture.width,picture.
+height),pen?.drawImage(picture,0,0)}var penOf=(canvas,alpha)=>canvas.getContext("2d",{alpha}),ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;last=document.
 createElement("canvas");lastPen;lastCamera=null;coarse=document.createElement("canvas");coarsePen;front=document.createElement(
-"canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
-strip:4,draft:4};triangles=0;isCoarse=!1;constructor(viewer,content){this.viewer=viewer,this.content=content,this.graphics=
-viewer.graphics,this.canvas=viewer.canvas;let{canvas,back,last,coarse}=this,pens=[canvas,back,last,coarse].map(each=>penOf(
-each,viewer.isClear??!1));[this.pen,this.backPen,this.lastPen,this.coarsePen]=pens}restart(cameraOnly=!1){cameraOnly||(this.
-lastCamera=null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.
-rowsDone=0),this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.
-height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&
-this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.back,this.
-last,this.coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==
-this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&
-!this.isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||
-this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.
-content.arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),
-crowd=moving?this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(
-samples),isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,
-isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),
-w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
-scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
-()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
+"canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(viewer,content){
+this.viewer=viewer,this.content=content,this.graphics=viewer.graphics,this.canvas=viewer.canvas;let{canvas,last,coarse}=this,
+pens=[canvas,last,coarse].map(each=>penOf(each,viewer.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=pens}restart(cameraOnly=!1){
+cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.
+isComing)&&(this.rowsDone=0),this.isRefined=!0}resize(width,height){let{canvas,coarse,last}=this;coarse.width=canvas.width,
+coarse.height=canvas.height,this.coarsePen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=
+height,coarse.width>1&&this.pen?.drawImage(coarse,0,0,width,height)}dispose(){for(let canvas of[this.last,this.coarse,this.
+front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)
+return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.
+isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.
+viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.content.
+arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?
+this.graphics.waiting.size+1:1;this.arrange(shown);let price=program.price*this.factor(samples),isPlaying=this.viewer.player.
+playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed,width*height,samples,isPlaying),budget=Math.max(time/crowd,
+MOVING_LEAST_MS),best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.
+max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.
+covers){let started=performance.now();this.place(shown,w,h);let summed=this.sum(program,shown,0,h,best.samples);this.show(
+shown,!1),this.fixed+=.5*(clamp(performance.now()-started-summed,.5,500)-this.fixed)}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
 !reuse.shifts,this.pen.setTransform(...reuse.matrix),replace(this.pen,this.last),this.pen.setTransform(1,0,0,1,0,0)),this.
 isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),
-this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{settings}=this.viewer,
-{smooth}=this.content,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.
-arrange(shown),this.isRefined))return!1;this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.
-min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),
-most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
-region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
-rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(replace(this.pen,this.back),this.complete(),this.drawLines(shown),
-!0)}drawLines(shown){let{front,frontPen,graphics}=this,{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.
-canvas;if(!scene||!camera||!frontPen)return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;
-let{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){
-let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
-(canvas.height=height),front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.
-height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,
-width,height,ratio}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=
-this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,replace(this.lastPen,this.canvas),camera&&!player.playing&&
-(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.
-viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
-state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
-geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
-now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
-player.varies&&player.playing?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();
-let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.
-height?this.fixed.strip:this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){
-let triangles=this.layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);
-if(program.warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[
-width,height].map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=
-triangles;let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(
-program,shown,region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=
-!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,{camera}=viewer,{scene}=this.content;if(!camera||
-!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.
-height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-
-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
-height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
-gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?
-0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.
-height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;
-bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(program,this.values(
-layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,
-layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.
-density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(
-4))}drawArrows(shown,view,{width,height},values){let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||
-!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),planes:camera.planes};for(let[layer,
-placed]of scene.arrows.share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(
-header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(
-shown[0],shown[1]);arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({
-header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get(
-"noise")?.shape??null,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{
-...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
-header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,
-u_padding:[columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],
-u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
-if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
-if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
-coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,
-rows*height/h),pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,samples=Number(this.viewer.
+settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;
+this.place(shown,width,height);let price=program.price*this.factor(samples),rows=Math.min(height-this.rowsDone,rowsIn(STRIP_MS,
+price,width,samples));return this.sum(program,shown,this.rowsDone,rows,samples),this.rowsDone+=rows,this.rowsDone<height?
+!1:(this.show(shown,this.content.smooth),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
+{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.canvas;if(!scene||!camera||!frontPen)return;let{earth,
+bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify([state,aspect,
+width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
+earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
+height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=look}this.pen?.
+drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=
+this.version,replace(this.lastPen,this.canvas),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.
+limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.viewer,{scene}=this.content;if(!scene?.header.
+geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.
+header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
+camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
+let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies&&player.playing?motionFactor(samples):1}placeAt(shown,x,y){
+let{places}=this.content;return this.place(shown,places?.width||this.canvas.width,places?.height||this.canvas.height),places?.
+at(x,y)??null}place(shown,width,height){let{viewer,layers,content}=this,{camera}=viewer;if(!camera||!layers.length)return;
+let{anchor}=viewer.view(shown,this.density(height));content.places?.draw({layers,camera,anchor,width,height})}density(height){
+return this.viewer.ratio*height/this.canvas.height}sum(program,shown,top,rows,samples){let{places,scene}=this.content,{camera}=this.
+viewer;if(!places||!scene||!camera)return 0;let{width,height}=places,view=this.viewer.view(shown,this.density(height)),draft=samples!==
+this.viewer.settings.samples||height!==this.canvas.height,valuesOf=layer=>(layer.bindNodes(view.anchor),layer.bindTextures(
+shown[0],shown[1]),{...this.values(layer,scene,camera,view,samples,draft),...rays(layer.header.geometry,camera,view.anchor,
+width,height)});program.warm||places.sum(program,top,1,valuesOf),program.warm=!0;let started=performance.now();places.sum(
+program,top,rows,valuesOf);let spent=performance.now()-started;return program.price=learnedPrice(program.price,spent,width*
+rows,samples,this.factor(samples)),spent}show(shown,smooth){let{places}=this.content;if(!places)return;let{width,height}=places,
+{canvas}=this.graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let most=smooth?
+SMOOTH_ROWS:height;for(let bottom=0;bottom<height;bottom+=most)this.render(shown,bottom,Math.min(most,height-bottom),smooth)}render(shown,bottom,rows,smooth){
+let{graphics,viewer}=this,{camera}=viewer,{scene,places}=this.content;if(!camera||!scene||!places)return;let gl=graphics.
+context,{width,height}=places,view=viewer.view(shown,this.density(height));smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,-bottom,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,rows),gl.enable(
+gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[
+1,1,1];gl.clearColor(r,g,b,viewer.isClear?0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let around2={camera,anchor:view.
+anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),
+bodies.seeThrough(()=>{if(!smooth)return places.show(scene.programs("surface"));let matrix=projection(scene.header.geometry,
+camera,view.anchor);places.triangles(scene.programs("smooth"),matrix,view.anchor,{u_bottom:bottom})}),this.drawArrows(shown,
+view,width,height),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),
+smooth&&graphics.copySmooth(width,rows),this.copy(width,height,bottom,rows)}drawArrows(shown,view,width,height){let{camera,
+settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.
+sight(height/view.density),planes:camera.planes},draft=height!==this.canvas.height,layers=this.layers.map(layer=>layer.scene);
+for(let[layer,placed]of scene.arrows.share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,
+isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.
+scalarParts(shown[0],shown[1]),values=this.values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,
+placed,painted,view.anchor,{...values,u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
+let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
+null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
+noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
+u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,u_padding:[columns.before,rows.before],
+u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,
+u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(width,height,bottom,rows){let{pen}=this;if(!pen)return;
+let{canvas}=this.graphics,first=canvas.height-rows,[w,scaled]=[this.canvas.width,this.canvas.height/height];if(pen.imageSmoothingEnabled=
+w!==width||scaled!==1,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=width,coarse.height=rows,coarsePen?.
+drawImage(canvas,0,first,width,rows,0,0,width,rows),[canvas,first]=[coarse,0]}let to=(height-bottom-rows)*scaled;pen.clearRect(
+0,to,w,rows*scaled),pen.drawImage(canvas,0,first,width,rows,0,to,w,rows*scaled)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1706,8 +1769,8 @@ length2(away);return[0,1].flatMap(side=>[2,3].flatMap(end=>[-1,1].map(sign=>[sid
 a,b]=[normal(side),normal(end)],sum=add(scale2(cross2(b,away),-planes[side][3]),cross2(away,a),-planes[end][3]),both=cross2(
 a,b);return scale2(add(sum,both,dot2(away,center)+sign*reach),1/dot2(both,away))})}sees(view,point,reach){let slack=reach+
 this.limits.around*view.pixels*pixelAt(view,point);return view.planes.every(p=>dot2(p,point)+p[3]>=-slack*length2(p))}make(wanted){
-let[view,spacing]=wanted,{limits,sums,whole}=this,{extent,center}=this.surface.geometry,total2=sums[sums.length-1]??0,nearest2=view.
-eye?Math.max(length2(subtract2(center,view.eye))-.5*extent,0):1,least=limits.closer*spacing*pixelOf(view,nearest2),radius=extent,
+let[view,spacing]=wanted,{limits,sums,whole}=this,{extent,center}=this.surface.geometry,total2=sums[sums.length-1]??0,nearest3=view.
+eye?Math.max(length2(subtract2(center,view.eye))-.5*extent,0):1,least=limits.closer*spacing*pixelOf(view,nearest3),radius=extent,
 seeds=whole[0],parts=null;for(let octave=0;octave<limits.mostOctaves;octave+=1){let area=limits.candidateArea*radius**2;
 if(total2<=limits.mostCandidates*area)whole[octave+1]??=this.grown(seeds,this.spread(octave,area),radius),seeds=whole[octave+
 1];else{parts??=Array.from(sums,(_,cell)=>wholeCell(cell)),parts=this.divided(parts.filter(part=>this.isNeeded(part,wanted,
@@ -1736,13 +1799,13 @@ let shares2=[(1-j)*(1-i),(1-j)*i,j*(1-i),j*i],result2=new Array(size).fill(0);fo
 1)result2[k]+=shares2[n]*nodal[size*corners[n]+k];return result2}var Neighbours=class{most;cubes=new Map;constructor(most){
 this.most=most}cube(point){return point.map(x=>Math.floor(x/this.most))}add(point){let key=cubeKey(...this.cube(point)),
 there=this.cubes.get(key);there?there.push(point):this.cubes.set(key,[point])}distance(point){let[i,j,k]=this.cube(point),
-nearest2=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
-cubes.get(key)??[])nearest2=Math.min(nearest2,length2(subtract2(point,other)))}return nearest2}},OCTAVE_PRIME=2654435769,
+nearest3=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
+cubes.get(key)??[])nearest3=Math.min(nearest3,length2(subtract2(point,other)))}return nearest3}},OCTAVE_PRIME=2654435769,
 SEED_PRIME=2246822507,HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return Math.imul(i,2376512323)^
 Math.imul(j,3625334849)^Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=
 Math.imul(hash^hash>>>HASH_SHIFT,factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){
 return{cell,low:[0,0],size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({
-halfHeight,pixels},away)=>2*halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
+halfHeight,pixels},away)=>2*halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
 length===b.length&&a.every((each,n)=>each===b[n]),levelOf=({tile})=>tile?.[0]??1/0,Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isClose){let{shaders,geometry}=this.header;if(!hasArrows(
 this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
@@ -1794,9 +1857,9 @@ runs.length>0&&this.header.opacity<1}get programs(){let{programs}=this.graphics,
 header.shaders;return[programs.get(bodyVertex,bodyFragment),programs.get(lineVertex,lineFragment,"FLOWTEX_BODY"),programs.
 get(bodyVertex,bodyFragment,"FLOWTEX_HIDING")]}get isReady(){return!this.runs.length||this.programs.every(({ready})=>ready)}dispose(){
 let{drawn,graphics}=this;if(drawn){for(let buffer of drawn.buffers)graphics.free("Buffer",buffer);graphics.free("VertexA\
-rray",drawn.faces),graphics.free("VertexArray",drawn.pieces),this.drawn=null}}seeThrough(draw){if(!this.runs.length)return draw();
-let gl=this.graphics.context;gl.enable(gl.POLYGON_OFFSET_FILL),gl.polygonOffset(BEHIND[0],BEHIND[0]),this.areBehind&&(gl.
-enable(gl.BLEND),gl.blendColor(0,0,0,this.header.opacity),gl.blendFuncSeparate(gl.CONSTANT_ALPHA,gl.ONE_MINUS_CONSTANT_ALPHA,
+rray",drawn.faces),graphics.free("VertexArray",drawn.pieces),this.drawn=null}}seeThrough(draw,mixes=this.areBehind){if(!this.
+runs.length)return draw();let gl=this.graphics.context;gl.enable(gl.POLYGON_OFFSET_FILL),gl.polygonOffset(BEHIND[0],BEHIND[0]),
+mixes&&(gl.enable(gl.BLEND),gl.blendColor(0,0,0,this.header.opacity),gl.blendFuncSeparate(gl.CONSTANT_ALPHA,gl.ONE_MINUS_CONSTANT_ALPHA,
 gl.ZERO,gl.ONE)),draw(),gl.disable(gl.BLEND),gl.disable(gl.POLYGON_OFFSET_FILL)}draw({camera,anchor,width,height,ratio},kind){
 let isClear=kind==="clear",runs=this.runs.filter(({clear})=>clear===isClear);if(!runs.length)return;let{header,graphics}=this,
 {geometry}=header,gl=graphics.context,[faces,pieces]=this.programs,drawn=this.drawn??=this.make(),matrix=projection(geometry,
@@ -1811,24 +1874,25 @@ pieces:[first,count2],width:thickness}of runs)if(count2){graphics.programs.use(p
 buffer,size,type,bytes,at]of[[drawn.ends,3,gl.FLOAT,ENDS_BYTES,0],[drawn.colours,4,gl.UNSIGNED_BYTE,COLOURS_BYTES,2]]){gl.
 bindBuffer(gl.ARRAY_BUFFER,buffer);for(let end of[0,1])gl.vertexAttribPointer(at+end,size,type,size===4,bytes,bytes*(first+
 end/2))}gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.bindVertexArray(null),gl.depthMask(!0),gl.disable(gl.BLEND)}hide(matrix,anchor){
-let{runs,drawn,graphics}=this;if(!runs.length||!drawn)return;let gl=graphics.context;graphics.programs.use(this.programs[2],
-{u_matrix:matrix,u_anchor:anchor}),gl.bindVertexArray(drawn.faces);for(let{faces:[first,count2],clear}of runs)clear||gl.
-drawElements(gl.TRIANGLES,3*count2,gl.UNSIGNED_INT,12*first);gl.bindVertexArray(null)}drawLabels(pen,{camera,anchor,width,
-height,ratio}){let{geometry}=this.header,m=projection(geometry,camera,anchor);for(let{text,position,size,color,plate}of this.
-labels){let p=subtract2(toFrame(geometry.frame,subtract2(position,geometry.center)),anchor),[x,y,,w]=[0,1,2,3].map(k=>m[k]*
-p[0]+m[4+k]*p[1]+m[8+k]*p[2]+m[12+k]);if(w<=0)continue;let[left,bottom]=[(.5+.5*x/w)*width,(.5-.5*y/w)*height],letters=size*
-ratio,margin=PLATE_MARGIN*letters;pen.font=`600 ${letters}px system-ui, sans-serif`,pen.textBaseline="middle";let[wide,high]=[
-pen.measureText(text).width+2*margin,letters+2*margin];pen.fillStyle=css(plate),pen.beginPath(),pen.roundRect(left,bottom-
-high,wide,high,margin),pen.fill(),pen.fillStyle=css(color),pen.fillText(text,left+margin,bottom-.5*high)}}make(){let{graphics,
-parts}=this,gl=graphics.context,[points,normals,colours,corners,pieces]=BODY_PARTS.map(name=>parts.get(name)?.data??[]),
-array=()=>{let made=graphics.counted(gl.createVertexArray());return gl.bindVertexArray(made),made},buffer=(data,target=gl.
-ARRAY_BUFFER)=>{let made=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,made),gl.bufferData(target,data,
-gl.STATIC_DRAW),made},faces=array(),buffers=[[points,3,gl.FLOAT],[normals,3,gl.BYTE],[colours,4,gl.UNSIGNED_BYTE]].map(([
-data,size,type],n)=>{let made=buffer(data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,type!==
-gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,
-pieces,3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
-n,1);return gl.bindVertexArray(null),{faces,pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};
-function css([r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
+let{runs,graphics}=this;if(!runs.length)return;let gl=graphics.context,drawn=this.drawn??=this.make();gl.enable(gl.POLYGON_OFFSET_FILL),
+gl.polygonOffset(BEHIND[1],BEHIND[1]),graphics.programs.use(this.programs[2],{u_matrix:matrix,u_anchor:anchor}),gl.bindVertexArray(
+drawn.faces);for(let{faces:[first,count2],clear}of runs)clear||gl.drawElements(gl.TRIANGLES,3*count2,gl.UNSIGNED_INT,12*
+first);gl.disable(gl.POLYGON_OFFSET_FILL),gl.bindVertexArray(null)}drawLabels(pen,{camera,anchor,width,height,ratio}){let{
+geometry}=this.header,m=projection(geometry,camera,anchor);for(let{text,position,size,color,plate}of this.labels){let p=subtract2(
+toFrame(geometry.frame,subtract2(position,geometry.center)),anchor),[x,y,,w]=[0,1,2,3].map(k=>m[k]*p[0]+m[4+k]*p[1]+m[8+
+k]*p[2]+m[12+k]);if(w<=0)continue;let[left,bottom]=[(.5+.5*x/w)*width,(.5-.5*y/w)*height],letters=size*ratio,margin=PLATE_MARGIN*
+letters;pen.font=`600 ${letters}px system-ui, sans-serif`,pen.textBaseline="middle";let[wide,high]=[pen.measureText(text).
+width+2*margin,letters+2*margin];pen.fillStyle=css(plate),pen.beginPath(),pen.roundRect(left,bottom-high,wide,high,margin),
+pen.fill(),pen.fillStyle=css(color),pen.fillText(text,left+margin,bottom-.5*high)}}make(){let{graphics,parts}=this,gl=graphics.
+context,[points,normals,colours,corners,pieces]=BODY_PARTS.map(name=>parts.get(name)?.data??[]),array=()=>{let made=graphics.
+counted(gl.createVertexArray());return gl.bindVertexArray(made),made},buffer=(data,target=gl.ARRAY_BUFFER)=>{let made=graphics.
+counted(gl.createBuffer());return gl.bindBuffer(target,made),gl.bufferData(target,data,gl.STATIC_DRAW),made},faces=array(),
+buffers=[[points,3,gl.FLOAT],[normals,3,gl.BYTE],[colours,4,gl.UNSIGNED_BYTE]].map(([data,size,type],n)=>{let made=buffer(
+data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,type!==gl.FLOAT,0,0),made});buffers.push(buffer(
+corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,pieces,3)),paints=buffer(atEnds(colours,pieces,
+4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return gl.bindVertexArray(null),{faces,
+pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};function css([r,g,b,opacity=1]){return`rgb(${[
+r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
 "from saddle":[],"to saddle":[],"stable orbit":[],"unstable orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,
 most.points);n+=1){let kind=points[ROW*n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;
 for(let n=0;n<lines.length/ROW;n+=1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let names=number&
@@ -1880,166 +1944,112 @@ data[ROW*n+k])),point=add(fromFrame(geometry.frame,[a,b,c]),geometry.center),see
 ...subtract2(point,position))>4*REACH_PX*pixel)continue;let away=.5*height*Math.hypot((seen[0]-place[0])*camera.aspect,seen[1]-
 place[1]);away<least&&([kind,least]=[structure?.kinds[number]?.name??"",away])}return kind}dispose(){this.graphics.free(
 "Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=this.drawn=null}};function nearest([
-before,after,between3]){return between3<.5?before:after}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
-(_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
-this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
-limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
-{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=size-PLACE3-1;return Int8Array.
-from({length:count2},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
-size-PLACE3),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
-pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],side=cell*
-scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels||Number.isFinite(error)&&side<=1)||side>limits.maxSideHeights*
-pixels)break}return level})}triangles(levels,joins){let sizes=Array.from(levels,level=>level<0?0:this.limits.tileCells>>
-level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,0)),end=0;return levels.forEach((level,block)=>{level>=
-0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){let{rows,columns,
-limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row2=rows[Math.floor(block/columns.
-length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),snapped=(place,size,border)=>place===
-size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<count2;b+=1){let y=Math.min(b*step,row2.
-cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===count2-1)&&(px=snapped(px,column.
-cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row2.cells,a?right:left)),nodes[b*count2+a]=(row2.first+py)*
-shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=q,index[end++]=
-r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape2[0]-2);for(let a=0;a<count2-
-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*(shape2[1]-1)+x])continue;
-let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,r),put(p,r,s)}}return end}},
-NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
-1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along2){
-return line*this.strides[0]+along2*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),
-this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};
-function eachBlock({step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row2+(shape2[0]<<step),rows),
-right=Math.min(column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape2[1];for(let i=column;i<
-right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count2,closed)=>closed?
-(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
-least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
-min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
-blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
-value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
-strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
-Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
-blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
-([line,along2],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along2);values[at]=Math.
-max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
-part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
-column,shape:shape2,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,
-1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(
-own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,
-line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
-end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
-end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
-ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
+before,after,between3]){return between3<.5?before:after}var USERS={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
+"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*
+(4/3),CORNERS_WIDTH=2048,ARRAYS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
 this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
-header,parts)}isReady(settings){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[this.earth.
-isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.ready??!0)}missing(before,after){
-let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",
-...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.bodies?.runs.length&&names.push(...BODY_PARTS),
-geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?names.push(...flowsOf(
-this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.
-push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(
-names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).map(name=>name.startsWith("flow/")?
-stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;
-if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
-let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
-max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[
-...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.
-shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.
-split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;
-if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(["padded"],name,trace);return this.put("position",
-digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.
-put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){
-let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,
-{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,
-step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),texture=null;
-if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,tracked=key||`${this.number} ${step}`;this.tracing!==
-tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.get(tracked)??new Tracing(graphics,header,
-trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.advance(until),!texture)return!1;this.stopTracing()}
-return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.
-digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.
-set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&
-(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.
-graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(
-`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes(
-"index")&&(this.meshLevels=this.drawn=null),["position","cells","triangles"].includes(kind)&&this.arrows.forget();let sliced=[
-"slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name),BODY_PARTS.includes(kind)&&this.
-bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.
-dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
-(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
-key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.
-bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(
-name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
+header,parts)}isReady(settings,smooth=!1){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[
+...["place","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(name).ready),this.
+earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.ready??
+!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.
+parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.bodies?.runs.length&&
+names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?
+names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(
+`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.
+push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).
+map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.
+scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:
+[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,
+paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??
+[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,
+geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.
+shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
+let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
+["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
+planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.
+every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,
+trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.
+resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,
+trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
+get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
+advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
+let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),
+digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.
+missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
+tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
+parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
+step]=name.split("/");["position","cells","triangles"].includes(kind)&&this.arrows.forget();let sliced=["slices","extra",
+"flow"].includes(kind);!sliced&&kind!=="scalars"&&(this.earth.forget(name),this.version+=1,this.most=null),BODY_PARTS.includes(
+kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(
+kind)&&this.dropSlices(NaN,NaN)}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.
+users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
+for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),
+this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(
+name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
+resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
 graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
 key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
-whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
-meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.
-part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},
-mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").
-data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
-[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
-[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
-columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
-steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
-this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
-anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
-array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,paper,scalars}=this.
-header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
-key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,
-[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
-null,vertices=(values2,size,flat)=>corners?atVertices(values2,flat?corners.map((_,n)=>n/3):corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify(
-[shape2,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;
-normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("\
-position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.
-buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
-2,gl.FLOAT],[corners&&this.buffer("scalar",colour,()=>vertices(values(),2,scalars.flat)),2,gl.FLOAT],[corners&&this.buffer(
-"corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
-index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
-n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,
-painted=this.scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,
-scalars.log),()=>shares(painted.map(name=>this.part(name).data),scalars)]}nodalShares(before,after){let gl=this.graphics.
-context,[rows,columns]=this.header.geometry.shape,[key,values]=this.shares(before,after);return this.texture("scalar",key,
-texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.texImage2D(gl.TEXTURE_2D,0,gl.RG32F,columns,rows,0,gl.RG,gl.FLOAT,values()),
-gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.
-NEAREST)})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
-fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
-extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
-shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
-channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
-n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
-k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
-levels},layer)})}get pickers(){let{programs}=this.graphics,{vertex,pick,fullVertex,probe}=this.header.shaders;return[programs.
-get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){let{graphics,header}=this,gl=graphics.context,{slices,
-geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
-gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(n=>[n%width,Math.floor(n/width)]);graphics.
-programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,
-slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+
-n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
-let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.floor(Math.log2(Math.max(width,height))),
-size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
-0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<size.
-layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}colourMap(){
-let gl=this.graphics.context,{scalars}=this.header;return this.texture("cmap",this.key(["cmap"],scalars.beyond),texture=>{
-gl.bindTexture(gl.TEXTURE_2D,texture);let data=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);gl.texImage2D(
-gl.TEXTURE_2D,0,gl.RGBA32F,data.length/4,1,0,gl.RGBA,gl.FLOAT,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<
-this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,
-next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,
-paper,scalars}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&
-this.image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.
-name===null?null:this.nodalShares(before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<
-4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.
-resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;this.bindNodes(before,
-after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),gl.drawElements(gl.TRIANGLES,this.
-resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
+whole&&graphics.common.set(whole,resource),object}get blocks(){return this.part("mesh")}get doublings(){let{geometry,mesh}=this.
+header;return this.most??=mostDoublings(geometry,this.blocks,this.part("position").data,mesh.tileCells)}cornersAt(place){
+let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(
+shape2,place)}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,
+geometry}=this.header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*
+slices.count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(anchor){
+let gl=this.graphics.context,{shape:shape2,triangles,planar}=this.header.geometry;anchor.some((x,k)=>x!==this.anchor[k])&&
+this.drop("nodes"),this.anchor=anchor;let[height,width]=this.nodesSize,nodes=this.texture("nodes",this.key(["position","\
+normal"],width,anchor),texture=>{checkSize(gl,width,height),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture);let data=new Float32Array(
+(planar?3:6)*width*height);data.set(positions(this.part("position").data,anchor)),planar||data.set(unitNormals(this.part(
+"normal").data),3*width*height);let size=[width,height,planar?1:2];gl.texImage3D(gl.TEXTURE_2D_ARRAY,0,gl.RGB32F,...size,
+0,gl.RGB,gl.FLOAT,data),nearest2(gl,gl.TEXTURE_2D_ARRAY)}),open=()=>this.parts.get("cells")?.data??Uint8Array.of(1),cells=triangles?
+this.table("cells",this.key(["triangles","blocks"]),gl.RGBA32UI,CORNERS_WIDTH,()=>cornersAndBlocks(this.part("triangles").
+data,this.part("blocks").data)):this.table("cells",this.key(["cells"],shape2),gl.R8UI,this.parts.has("cells")?shape2[1]-
+1:1,open);this.bind("u_nodes",nodes),this.bind(triangles?"u_corners":"u_open",cells)}get nodesSize(){let{shape:shape2,triangles,
+rows,columns}=this.header.geometry;return triangles?[rows.size,columns.size]:shape2}bind(sampler,texture){let gl=this.graphics.
+context;gl.activeTexture(gl.TEXTURE0+SAMPLERS.indexOf(sampler)),gl.bindTexture(ARRAYS.includes(sampler)?gl.TEXTURE_2D_ARRAY:
+gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}table(name,key,inner,width,values){let gl=this.graphics.
+context,formats={[gl.RGBA32UI]:[gl.RGBA_INTEGER,gl.UNSIGNED_INT,4],[gl.R8UI]:[gl.RED_INTEGER,gl.UNSIGNED_BYTE,1],[gl.RG32F]:[
+gl.RG,gl.FLOAT,2],[gl.RGBA32F]:[gl.RGBA,gl.FLOAT,4]},[format,type,channels]=formats[inner];return this.texture(name,key,
+texture=>{let data=values(),height=Math.ceil(data.length/channels/width);gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
+gl.UNPACK_ALIGNMENT,1);let all=filled(data,channels*width*height);gl.texImage2D(gl.TEXTURE_2D,0,inner,width,height,0,format,
+type,all),nearest2(gl,gl.TEXTURE_2D)})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,painted=this.
+scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,scalars.log),
+()=>shares(painted.map(name=>this.part(name).data),scalars)]}texture(name,key,fill){let gl=this.graphics.context;return this.
+take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
+/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
+part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
+texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
+let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
+this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}programs(name){let{programs}=this.graphics,
+{vertex,place,fullVertex,surface,probe}=this.header.shaders;return name==="smooth"?programs.get(vertex,surface,"FLOWTEX_\
+SMOOTH"):name==="place"?programs.get(vertex,place):programs.get(fullVertex,name==="probe"?probe:surface)}texels(step,texels){
+let{graphics,header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),
+draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.
+flatMap(n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.programs("probe"),{u_texels:places}),gl.drawArrays(
+gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{
+let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;
+return this.texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,
+levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
+()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.
+graphics;makeLayers(gl,texture,size);for(let n=0;n<size.layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(
+n));floats2&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.
+steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(
+stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper,scalars}=this.header,repeat=paper?.
+repeat??[!1,!1],steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=
+steps,this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:
+this.slices(after)),this.bind("u_noiseImage",paper&&this.image("noise",paper.picture?[!0,!0]:repeat)),this.bind("u_stepI\
+mage",paper&&this.image("step",repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.
+bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.
+shares(before,after);this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));
+let along2=()=>alongAxes(paper?.alongI??[],paper?.alongJ??[]);this.bind("u_along",paper&&this.table("along","",gl.RG32F,
+Math.max(paper.alongI.length,paper.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)
+return data;let all=new data.constructor(length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){
 this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.
@@ -2054,52 +2064,45 @@ if(!scene||(Object.assign(scene.header,colours),this.giveMap(tile),scene.forget(
 steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))))continue;let others=[...parts.keys()].filter(name=>name.
 startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){return{parts:new Map,scene:void 0,used:this.
 count}}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
-before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
-camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
-keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
-sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.
-get(names[n])??[])this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(
-at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,
-this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.
-pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(
--1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[
-names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,
-mesh,pyramid,formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.
-triangles||formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(
-levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
-this.pyramid??=new Pyramid(header.pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose(
-{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
-1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
-LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
-name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(
-choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.
-filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.
-keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
-failed.has(this.need(name,some))),found=names.map(name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
-[level,row2,column]));)[level,row2,column]=[level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});
-return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
-null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;
-return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
-this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),
-!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=
-!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.
-tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.
-flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),
-steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
-scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
-/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
-STEPS_HELD2[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
-tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
-this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
-(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
-tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;shown=null;view;renderer;next=[];constructor(view){this.view=view,this.renderer=
-new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2, which is needed to dr\
-aw the picture.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(header){
-let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts),this.tiles=new Tiles(view,this.scene)}leave(){
-this.tiles?.dispose(),this.scene?.dispose(),this.tiles=this.scene=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
-this.renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
-let scenes2=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}get smooth(){
+before,after]){let{camera}=this.host;if(!camera)return[];let shown=this.choose(camera,[...new Set([before,after])]);return this.
+layers=[ROOT,...[...shown.keys()].filter(name=>name!==ROOT)].flatMap(name=>{let scene=name===ROOT?this.root:this.tiles.get(
+name)?.scene,covered=(shown.get(name)??[]).flatMap(finer=>this.pyramid?[this.pyramid.finerPart(keyOf(finer),name)]:[]),key=name===
+ROOT?[this.root.header.pyramid?.depth??0,0,0]:keyOf(name);return scene?[{scene,key,covered}]:[]}),this.layers}choose(camera,steps){
+let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
+pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/
+ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){
+let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(
+choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);
+for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,
+steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,
+steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){
+let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.
+map(name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row2,column]));)[level,row2,column]=
+[level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});return[...new Set(found)].filter(name=>name!==
+ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.
+length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??
+!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.
+now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),!0)}ask(){let{requests,lifetime}=this.host;
+!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=!0,lifetime.later(()=>{if(this.isWaiting=
+!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.tiles.get(name)?.scene?.lacking(
+step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.flatMap(step=>lacking(name,step))),
+steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),steps)},REQUEST_MS))}trim(steps){
+let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.
+header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.
+flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-STEPS_HELD2[kind],0))){
+let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(tile,`${each}/${step}`);
+let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,
+each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.
+source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();
+for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cm\
+ap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];constructor(view){this.view=view,
+this.renderer=new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2, which i\
+s needed to draw the picture.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari\
+.")}open(header){let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts),this.tiles=new Tiles(
+view,this.scene),this.places=new Places(view.graphics)}leave(){this.tiles?.dispose(),this.scene?.dispose(),this.places?.
+dispose(),this.tiles=this.scene=this.places=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){this.
+renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
+let layers=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),layers}get smooth(){
 let{header,options}=this.view;return options.smooth!==void 0||!header?options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get isComing(){
 return!!this.tiles?.missing.length}get lacking(){let[before,after]=this.view.player.moment;return this.scene?.missing(before,
 after)??[]}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))]}make(steps,until){return this.
@@ -2112,20 +2115,20 @@ wantMarks(marks),view.root.dataset.lacking=String(lacking.length+marks.length||+
 this.renderer.leavesOut,marks.length>0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.
 slice(0,2))!==String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),
 shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header),still=!this.view.player.playing){
-let{vertex,fragment}=header.shaders,variant=variantOf(header,this.view.settings,isClose,still);return this.view.graphics.
-programs.get(vertex,fragment,...variant)}isClose(header){let{view}=this;if(!view.camera)return!1;let seen=view.view([0,0,
-0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(
-part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,{graphics,header}=view;if(graphics.isLost||
+let{fullVertex,fragment}=header.shaders,variant=variantOf(header,this.view.settings,isClose,still);return this.view.graphics.
+programs.get(fullVertex,fragment,...variant)}isClose(header){let{view}=this;if(!view.camera)return!1;let seen=view.view(
+[0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).
+some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,{graphics,header}=view;if(graphics.isLost||
 !graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.next=[],view.advance(now);let shown=this.
 available(until);view.camera||view.place();let program=this.program(header);if(scene.prepare(),!shown||!view.camera)return;
 if(program.error)return view.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.
-ready||!scene.isReady(view.settings))return view.request();let isComplete=!view.sharp&&this.renderer.draw(program,shown,
-until);isComplete&&(scene.pickers,header.slices.critical&&this.program(header,!0),view.player.varies&&this.program(header,
-this.isClose(header),!1)),view.painted(isComplete)}get canPick(){let{scene,view}=this,{graphics}=view;return!!scene&&!graphics.
-isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}find(x,y){let{tiles,shown,view}=this,{camera,canvas}=view;if(!tiles?.
-layers.length||!camera||!shown)return null;let{anchor}=view.view(shown,1),found=pickedPoint({layers:tiles.layers,camera,
-moment:shown,anchor,canvas},x,y),{marks}=tiles.layers[0].scene;if(found){let at={place:[x,y],position:found.point.position,
-height:view.root.clientHeight};found.point.mark=marks.at(at,camera,view.settings,shown)}return found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+ready||!scene.isReady(view.settings,this.smooth))return view.request();let isComplete=!view.sharp&&this.renderer.draw(program,
+shown,until);isComplete&&(header.slices.critical&&this.program(header,!0),view.player.varies&&this.program(header,this.isClose(
+header),!1)),view.painted(isComplete)}get canPick(){let{scene,view,shown}=this,{graphics}=view;return!!scene&&!!shown&&!graphics.
+isLost&&!!graphics.gl&&scene.isReady(view.settings)}find(x,y){let{tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.
+length&&shown?this.renderer.placeAt(shown,x,y):null;if(!at||!camera||!shown||!scene)return null;let found=pickedPoint(at,
+scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.point.position,height:view.root.clientHeight};return found.
+point.mark=scene.marks.at(pointed,camera,view.settings,shown),found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};camera=null;sharp=!1;frames=0;isVisible=!0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
 this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.
@@ -2349,11 +2352,11 @@ view),view.scenes=embedded.map(source=>{let{header}=source;return{header,parts:[
 {view,filled:(async()=>{let{viewers}=view;for(let[n,source]of embedded.entries())for(let[m,part]of source.parts.entries()){
 report?.(n,m,source.parts.length);let unpacked=await source.kept(part);if(view.viewers!==viewers)return;viewers[n].setPart(
 unpacked)}isComing=!1;for(let viewer of viewers)viewer.change()})()}}function packedModule(scene,openStore){let mount=(element,settings={},height=HEIGHT_PX)=>{
-let{view,filled}=showPacked(element,scene,openStore);view.style.height=`${height}px`;for(let[name,value]of Object.entries(
-settings))for(let viewer of view.viewers)viewer.followSetting(name,value);return filled.catch(error=>view.first?.panel.fail(
-"The flow cannot be drawn.",error.message)),view};return{mount,render:({model,el})=>{let named=scene.headers[0].table.map(
-({name})=>[name,model.get(name)]),settings=Object.fromEntries(named.filter(([,value])=>value!=null)),view=mount(el,settings,
-Number(model.get("height"))||HEIGHT_PX);return()=>{view.dispose(),view.remove()}}}}function partsOfPage(){return Array.from(document.querySelectorAll("script[data-part]"),element=>{element.remove();let{view,
+let{view,filled:filled2}=showPacked(element,scene,openStore);view.style.height=`${height}px`;for(let[name,value]of Object.
+entries(settings))for(let viewer of view.viewers)viewer.followSetting(name,value);return filled2.catch(error=>view.first?.
+panel.fail("The flow cannot be drawn.",error.message)),view};return{mount,render:({model,el})=>{let named=scene.headers[0].
+table.map(({name})=>[name,model.get(name)]),settings=Object.fromEntries(named.filter(([,value])=>value!=null)),view=mount(
+el,settings,Number(model.get("height"))||HEIGHT_PX);return()=>{view.dispose(),view.remove()}}}}function partsOfPage(){return Array.from(document.querySelectorAll("script[data-part]"),element=>{element.remove();let{view,
 part=""}=element.dataset;return[Number(view),JSON.parse(part),element.textContent??""]})}async function openPage(openStore){
 let place=document.getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("l\
 oading");try{let headers=await unzipped(document.getElementById("headers")?.textContent??"").json(),look=()=>{status.hidden=
@@ -2361,11 +2364,11 @@ oading");try{let headers=await unzipped(document.getElementById("headers")?.text
 the flow because it has no WebGL2; this is a still picture.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&
 (watch.disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=[
 "data-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let scene={headers,parts:partsOfPage()},
-{view,filled}=showPacked(place,scene,openStore,(n,part,parts)=>{let which=headers.length>1?` of view ${n+1}`:"";loading.
-lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener("keydow\
-n",event=>forwardKeys(root,event)),await filled,loading.textContent="Drawing the first picture"}catch(error){loading.remove(),
-status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
- be drawn here: ${reason}`,error}}var Messages=class{hasSteps=!0;hasMarks=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal,_has,mark)=>{
+{view,filled:filled2}=showPacked(place,scene,openStore,(n,part,parts)=>{let which=headers.length>1?` of view ${n+1}`:"";
+loading.lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener(
+"keydown",event=>forwardKeys(root,event)),await filled2,loading.textContent="Drawing the first picture"}catch(error){loading.
+remove(),status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The fl\
+ow cannot be drawn here: ${reason}`,error}}var Messages=class{hasSteps=!0;hasMarks=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal,_has,mark)=>{
 let request=String(Math.random());return this.send({kind:"load",request,key,steps,...mark&&{mark}}),signal.addEventListener(
 "abort",()=>{this.requests.delete(request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.
 set(request,error=>error?reject(new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),

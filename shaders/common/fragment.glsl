@@ -1,5 +1,7 @@
 // The texture of a fragment.
 
+//#include common/place.glsl
+
 #ifdef FLOWTEX_PAPER
 // Called outside of any branch: derivatives are not defined behind one.
 float flowtexValue(vec2 coordinate, vec2 noise)
@@ -8,8 +10,6 @@ float flowtexValue(vec2 coordinate, vec2 noise)
   return flowtexFragment(coordinate, noise, flowtexDx(noise), flowtexDy(noise), level);
 }
 #else
-//#include common/place.glsl
-
 float flowtexValueAt(FlowtexPlace place)
 {
 #if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS) || defined(FLOWTEX_SPARSE)

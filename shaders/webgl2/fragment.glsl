@@ -1,24 +1,18 @@
-in vec3 flowtexPositionOut;
-in vec2 flowtexCoordinateOut;
-#ifndef FLOWTEX_PLANAR
-in vec3 flowtexNormalOut;
-#endif
-#ifdef FLOWTEX_TRIANGLES
-flat in vec3 flowtexCornersOut;
-in float flowtexScalarOut;
-flat in float flowtexFlatOut;
-#endif
-#ifdef FLOWTEX_PAPER
-in vec2 flowtexNoiseOut;
-#endif
+// The colour of a pixel of a layer, by its place.
+#define FLOWTEX_DEFERRED
 
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl
-
 //#include webgl2/mapped.glsl
-#ifndef FLOWTEX_TRIANGLES
-uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
+uniform highp usampler2D u_places; // as webgl2/place.glsl writes them
+uniform int u_layer;
+#ifdef FLOWTEX_TRIANGLES
+uniform highp usampler2D u_corners; // as in webgl2/vertex.glsl
 #endif
+#ifdef FLOWTEX_PAPER
+uniform highp sampler2D u_along; // coordinates of columns and rows in the noise
+#endif
+uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
 uniform bool u_flat;       // values belong to cells: they lie at first nodes, or are those of triangles
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
@@ -29,12 +23,19 @@ uniform float u_opacity;
 
 out vec4 flowtexOut;
 
-#ifndef FLOWTEX_TRIANGLES
-// The share at a place, in the triangles of its cell: those that are drawn may cover many cells.
-float flowtexShareAt(vec2 coordinate)
+// The share at a place, between the corners of its triangle.
+float flowtexShareAt(vec2 coordinate, int triangle)
 {
+  ivec2 size = textureSize(u_shares, 0);
+#ifdef FLOWTEX_TRIANGLES
+  vec3 shares = flowtexShares(coordinate);
+  vec2 share = mat3x2(texelFetch(u_shares, flowtexNodes[0], 0).xy, texelFetch(u_shares, flowtexNodes[1], 0).xy,
+                      texelFetch(u_shares, flowtexNodes[2], 0).xy) * shares;
+  if (u_flat)
+    share = texelFetch(u_shares, ivec2(triangle % size.x, triangle / size.x), 0).xy;
+#else
   vec2 at = coordinate * u_slicesSize - 0.5 - u_padding;
-  ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), textureSize(u_shares, 0) - 2);
+  ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), size - 2);
   vec2 part = clamp(at - vec2(cell), 0.0, 1.0);
   float least = min(part.x, part.y);
   float most = max(part.x, part.y);
@@ -44,31 +45,46 @@ float flowtexShareAt(vec2 coordinate)
     + least * texelFetch(u_shares, cell + 1, 0).xy;
   if (u_flat)
     share = texelFetch(u_shares, cell, 0).xy;
+#endif
 #ifdef FLOWTEX_UNSTEADY
   return mix(share.x, share.y, u_between);
 #else
   return share.x;
 #endif
 }
+
+#ifdef FLOWTEX_PAPER
+// The texture at a place, whose coordinate in the noise is linear between the nodes.
+float flowtexPaperAt(FlowtexPlace place)
+{
+  vec2 at = place.coordinate * u_slicesSize - 0.5 - u_padding;
+  ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), textureSize(u_nodes, 0).xy - 2);
+  vec2 first = vec2(texelFetch(u_along, ivec2(cell.x, 0), 0).x, texelFetch(u_along, ivec2(cell.y, 0), 0).y);
+  vec2 change = vec2(texelFetch(u_along, ivec2(cell.x + 1, 0), 0).x, texelFetch(u_along, ivec2(cell.y + 1, 0), 0).y) - first;
+  vec2 scale = change * u_slicesSize;
+  return flowtexFragment(place.coordinate, first + change * (at - vec2(cell)), scale * place.byX, scale * place.byY,
+                         flowtexSliceLevel(place.byX, place.byY));
+}
 #endif
 
 void main()
 {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  uvec4 drawn = texelFetch(u_places, pixel, 0);
+  if (int(drawn.w) != u_layer)
+    discard;
+  int triangle = int(drawn.z);
 #ifdef FLOWTEX_TRIANGLES
-  flowtexSetCorners(flowtexCornersOut);
+  int width = textureSize(u_corners, 0).x;
+  flowtexSetCorners(vec3(texelFetch(u_corners, ivec2(triangle % width, triangle / width), 0).xyz));
 #endif
-#if defined(FLOWTEX_PAPER)
-  float textured = flowtexValue(flowtexCoordinateOut, flowtexNoiseOut);
-#elif defined(FLOWTEX_PLANAR)
-  float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, vec3(0.0, 0.0, 1.0));
+  FlowtexPlace place = flowtexFindPlace(vec2(pixel) + 0.5, uintBitsToFloat(drawn.xy));
+#ifdef FLOWTEX_PAPER
+  float textured = flowtexPaperAt(place);
 #else
-  float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, flowtexNormalOut);
+  float textured = flowtexValueAt(place);
 #endif
-#ifdef FLOWTEX_TRIANGLES
-  vec3 colour = u_mapped ? flowtexMapped(u_flat ? flowtexFlatOut : flowtexScalarOut) : u_colour;
-#else
-  vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(flowtexCoordinateOut)) : u_colour;
-#endif
+  vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(place.coordinate, triangle)) : u_colour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_PICTURE
@@ -78,11 +94,7 @@ void main()
 #endif
   if (u_lit)
   {
-#ifdef FLOWTEX_PLANAR
-    float facing = abs(u_toEye.z);
-#else
-    float facing = abs(dot(normalize(flowtexNormalOut), u_toEye));
-#endif
+    float facing = abs(dot(normalize(place.normal), u_toEye));
     colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
   // One layer before the ground: no order of drawing to keep.

@@ -21,7 +21,6 @@ from triangle_meshes import random_plane
 
 import flowtex
 from flowtex import FlowField
-from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
 from flowtex.field.dates import date_text
 from flowtex.field.earth import MapLines, Projection
@@ -32,8 +31,7 @@ from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
-from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_limits
-from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
+from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import Marks
@@ -43,7 +41,7 @@ from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import as_picture
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.structure import DRAWN_EXTENTS, shared_structure
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace.store import SliceStore
@@ -322,53 +320,6 @@ def test_the_client_gets_the_limits_of_the_camera() -> None:
     assert {name: limits[name] for name in vars(CAMERA_LIMITS)} == vars(CAMERA_LIMITS)
 
 
-def checksum(triangles: Indices) -> int:
-    """A number that tells sets of triangles apart."""
-    result = 0
-    for nodes in sorted(sorted(t) for t in triangles.tolist()):
-        for node in nodes:
-            result = (31 * result + node) % 1_000_003
-    return result
-
-
-def bumpy() -> dict[str, Any]:
-    """A rough mesh with a hole: its errors, and the levels and triangles of three views."""
-    y, x = np.mgrid[0:131, 0:70].astype(float)
-    points = np.stack([x, y, 3 * np.sin(0.2 * x) * (y > 60)], axis=-1)
-    cells = np.ones((130, 69), dtype=bool)
-    cells[100:104, 30:50] = False
-    mesh = MeshLevels(points, cells, (False, True))
-    views = []
-    for eye, half, pixels in (
-        (None, 70.0, 300),
-        (None, 4000.0, 300),
-        (np.array([30.0, -40.0, 60.0]), 0.27, 500),
-    ):
-        levels = mesh.levels(eye, half, pixels)
-        triangles = mesh.triangles(levels)
-        views.append(
-            {
-                "sight": {"eye": plain(eye), "halfHeight": half, "pixels": pixels},
-                "levels": levels.ravel().tolist(),
-                "triangles": len(triangles),
-                "checksum": checksum(triangles),
-            }
-        )
-    return {
-        "shape": [131, 70],
-        "periodic": [False, True],
-        # JSON has no infinity.
-        "tiles": np.minimum(mesh.records, 1e30).ravel().tolist(),
-        "hole": [100, 104, 30, 50],
-        "limits": mesh_limits(),
-        "views": views,
-    }
-
-
-def test_mesh_levels_for_the_client() -> None:
-    check("mesh.json", bumpy())
-
-
 def name_of(key: TileKey | None) -> str:
     """Name of a tile in the client."""
     return "" if key is None else "/".join(map(str, key))
@@ -385,7 +336,7 @@ LOOKS: list[Look] = [
 
 def asked(
     pyramid: Pyramid, look: Look, rng: np.random.Generator, cell_pixels: float
-) -> tuple[dict[str, Any], dict[TileKey | None, list[TileKey]]]:
+) -> dict[str, Any]:
     """Return what a view asks for, and what is shown while some of it is not ready."""
     eye, half, sides = look
     planes = np.array([[s * (k == a) for k in range(3)] + [-s * at] for a, s, at in sides])
@@ -393,7 +344,7 @@ def asked(
     chosen = choose_tiles(pyramid, view)
     ready = {key for key in chosen if key is None or rng.random() < 0.7}
     shown = cover(chosen, ready.__contains__)
-    told = {
+    return {
         "view": {"eye": plain(eye), "halfHeight": half, "pixels": 500.0}
         | {"planes": plain(view.planes), "cellPixels": cell_pixels},
         "chosen": {
@@ -404,54 +355,26 @@ def asked(
         "ready": sorted(map(name_of, ready)),
         "shown": {name_of(key): list(map(name_of, some)) for key, some in shown.items()},
     }
-    return told, shown
 
 
 def tiled(seed: int) -> dict[str, Any]:
-    """Tiles of a surface that some views ask for, that are shown in part, and how they join."""
+    """Tiles of a surface that some views ask for, and that are shown in part."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[0:1:260j, 0:1.6:401j]
     points = np.stack([x, y, 0.1 * np.sin(4 * x)], axis=-1)
     field = FlowField.from_arrays(points, np.ones((260, 401, 3)), periodic="i")
     pyramid = Pyramid(field)
     data = ClientData(Scene(field).textures, pyramid=pyramid)
-    views = []
-    for look in LOOKS:
-        told, shown = asked(pyramid, look, rng, 2.0)
-        regions = []
-        for key, finer in shown.items():
-            level = pyramid.depth if key is None else key.level
-            places = pyramid.places(level)[pyramid.blocks_of(key)]
-            levels = rng.integers(0, 7, places.shape[:2])
-            for child in finer:
-                levels[finer_part(pyramid, child, key)] = -1
-            row, column = ((TILE_BLOCKS * at) << level for at in (key or (0, 0, 0))[1:])
-            regions.append(Region(level, row, column, levels))
-        given = [plain(region.levels.ravel()) for region in regions]
-        joins = join(regions, pyramid.blocks, field.periodic)
-        views.append(
-            {
-                **told,
-                "regions": [
-                    {"step": r.step, "row": int(r.row), "column": int(r.column)}
-                    | {"shape": list(r.levels.shape), "levels": levels}
-                    | {"joined": plain(r.levels.ravel())}
-                    | {"borders": plain(np.moveaxis(borders, 0, -1).ravel())}
-                    for r, levels, borders in zip(regions, given, joins, strict=True)
-                ],
-            }
-        )
+    views = [asked(pyramid, look, rng, 2.0) for look in LOOKS]
     return {
         "pyramid": data.constants()["pyramid"],
         "places": plain(data.surface()["places"].astype(float).ravel()),
-        "periodic": [False, True],
-        "limits": mesh_limits(),
         "views": views,
     }
 
 
 def tiled_triangles(seed: int) -> dict[str, Any]:
-    """Tiles of triangles that some views ask for, and the triangles of their blocks."""
+    """Tiles of triangles that some views ask for."""
     rng = np.random.default_rng(seed)
     points, triangles = random_plane(rng, 700, grading=4)
     velocity = np.ones_like(points) * [1, 0.5, 0]
@@ -459,18 +382,11 @@ def tiled_triangles(seed: int) -> dict[str, Any]:
     pyramid = TrianglePyramid(field)
     geometry = pyramid.root_geometry
     data = ClientData(TextureSet(geometry, SliceStore(pyramid.root)), pyramid=pyramid)
-    surface, blocks = data.surface(), TriangleBlocks(geometry)
-    hidden = [[-1, 0, 0, 0], [0, 0, -1, -1], [-1] * 4, [0] * 4]
+    places = data.surface()["places"].astype(float)
     return {
         "pyramid": data.constants()["pyramid"],
-        "places": plain(np.nan_to_num(surface["places"].astype(float), neginf=-1e30).ravel()),
-        "views": [asked(pyramid, look, rng, 16.0)[0] for look in LOOKS],
-        "mesh": {"shape": surface["mesh"].shape, "blocks": plain(surface["blocks"])},
-        "drawn": [
-            {"levels": levels, "triangles": len(drawn), "checksum": checksum(drawn)}
-            for levels in hidden
-            for drawn in [blocks.triangles(np.reshape(levels, (2, 2)))]
-        ],
+        "places": plain(np.nan_to_num(places, neginf=-1e30).ravel()),
+        "views": [asked(pyramid, look, rng, 16.0) for look in LOOKS],
     }
 
 

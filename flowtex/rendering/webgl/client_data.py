@@ -48,7 +48,7 @@ from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client, pairs of a vertex and a fragment shader, and those of one that traces.
-SHADERS = ("vertex", "fragment", "pick", "full_vertex", "probe")
+SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe")
 SHADER_PAIRS, TRACE_SHADERS = ("line", "ground", "body", "arrow"), ("trace", "layers")
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
