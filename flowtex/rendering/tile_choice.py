@@ -31,6 +31,8 @@ class TileView:
     #: Planes around what is seen, (N, 4): a point is inside where p . (x, y, z, 1) >= 0.
     planes: Floats
     cell_pixels: float = CELL_PIXELS  #: Pixels of a cell above which the next level is drawn.
+    #: Blocks of level 0 that nothing hides, (rows, columns); ``None`` where that is not known.
+    visible: Bools | None = None
 
     def sees(self, blocks: Floats) -> Bools:
         """Return which blocks (J, I, 5) of a mesh may be in view."""
@@ -78,6 +80,10 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
         rows, columns = pyramid.blocks_of(key)
         places = pyramid.places(level)[rows, columns]
         seen, pixels = view.sees(places), view.cell_sizes(places)
+        if (visible := view.visible) is not None:
+            for axis, count in enumerate(visible.shape):
+                visible = np.logical_or.reduceat(visible, np.arange(0, count, 1 << level), axis)
+            seen &= visible[rows, columns]
         coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
         shown = seen & ~coarse
         children = pyramid.children(key) if coarse.any() else []

@@ -1,11 +1,10 @@
 // VTK puts a geometry shader in when it draws edges; what it does not pass on is lost. VTK names
 // the outputs of a stage by it: VSOutput, GSOutput.
+#ifndef FLOWTEX_DEFERRED
 in vec2 flowtexCoordinateVSOutput[];
 out vec2 flowtexCoordinateGSOutput;
-#ifndef FLOWTEX_DEFERRED
 in vec3 flowtexPositionVSOutput[];
 out vec3 flowtexPositionGSOutput;
-#endif
 #ifdef FLOWTEX_TRIANGLES
 flat in vec4 flowtexCornersVSOutput[];
 flat out vec4 flowtexCornersGSOutput;
@@ -13,4 +12,5 @@ flat out vec4 flowtexCornersGSOutput;
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput[];
 out vec2 flowtexNoiseGSOutput;
+#endif
 #endif

@@ -1,10 +1,10 @@
 #ifndef FLOWTEX_DEFERRED
     flowtexPositionGSOutput = flowtexPositionVSOutput[i];
-#endif
     flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
 #ifdef FLOWTEX_TRIANGLES
     flowtexCornersGSOutput = flowtexCornersVSOutput[i];
 #endif
 #ifdef FLOWTEX_PAPER
     flowtexNoiseGSOutput = flowtexNoiseVSOutput[i];
+#endif
 #endif

@@ -1,9 +1,8 @@
+#ifndef FLOWTEX_DEFERRED
 in vec2 flowtexCoordinate;
 out vec2 flowtexCoordinateVSOutput;
-#ifndef FLOWTEX_DEFERRED
 in vec3 flowtexPosition;
 out vec3 flowtexPositionVSOutput;
-#endif
 #ifdef FLOWTEX_TRIANGLES
 in vec4 flowtexCorners; // numbers of the three nodes and of the triangle, the same at each
 flat out vec4 flowtexCornersVSOutput;
@@ -11,4 +10,5 @@ flat out vec4 flowtexCornersVSOutput;
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;
 out vec2 flowtexNoiseVSOutput;
+#endif
 #endif

@@ -1,10 +1,10 @@
-  flowtexCoordinateVSOutput = flowtexCoordinate;
 #ifndef FLOWTEX_DEFERRED
+  flowtexCoordinateVSOutput = flowtexCoordinate;
   flowtexPositionVSOutput = flowtexPosition;
-#endif
 #ifdef FLOWTEX_TRIANGLES
   flowtexCornersVSOutput = flowtexCorners;
 #endif
 #ifdef FLOWTEX_PAPER
   flowtexNoiseVSOutput = flowtexNoise;
+#endif
 #endif

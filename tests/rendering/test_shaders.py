@@ -45,7 +45,7 @@ def test_every_uniform_that_is_declared_is_set() -> None:
         shaders.shader_source,
         (
             *("common/uniforms.glsl", "common/arrow.glsl", "common/place.glsl"),
-            *(f"vtk/{name}.glsl" for name in ("fragment_dec", "mapped", "sum_fragment")),
+            *(f"vtk/{path.name}" for path in (shaders.shader_folder() / "vtk").iterdir()),
         ),
     )
     declared = set(re.findall(r"^uniform .*?(u_\w+)", "\n".join(texts), re.M))

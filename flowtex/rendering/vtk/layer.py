@@ -212,7 +212,18 @@ class FlowLayer:
         near = is_near(self.textures, self._settings, self.view)
         sparse = is_sparse(self.textures, self._settings)
         found = variants(self.textures, moving=moving, near=near, sparse=sparse)
-        return found | {"FLOWTEX_DEFERRED"} if self.deferred else found
+        if not self.deferred:
+            return found
+        return found | {"FLOWTEX_DEFERRED"} | ({"FLOWTEX_OWN"} if self._has_own_colours else set())
+
+    @property
+    def _has_own_colours(self) -> bool:
+        """Whether VTK's colours are needed: those of vertices, or with edges."""
+        prop, colours = self.actor.prop, self._colours
+        if colours is None:
+            alike = prop.GetAmbientColor() == prop.GetDiffuseColor()
+            return bool(prop.show_edges or self._mapper.GetScalarVisibility() or not alike)
+        return bool(prop.show_edges) and not colours.on_cells
 
     def _write_text(self, renderer: Any) -> None:
         self.deferred = is_deferred(self.actor, renderer, self.textures)
@@ -220,15 +231,14 @@ class FlowLayer:
         if variant == self._variant:
             return
         self._variant = variant
-        arrays = {"flowtexCoordinate": COORDINATE}
+        arrays = {"flowtexCoordinate": COORDINATE, "flowtexPosition": POSITION}
         if self.textures.geometry.corners is not None:
             arrays["flowtexCorners"] = CORNERS
         if self.textures.paper is not None:
             arrays["flowtexNoise"] = NOISE
         if not self.deferred:
-            arrays["flowtexPosition"] = POSITION
             self._write_position()
-        map_attributes(self._mapper, arrays)
+        map_attributes(self._mapper, {} if self.deferred else arrays)
         insert_text(self.actor, OWNER, "", variant, before=True)
 
     def _write_position(self) -> None:
@@ -251,7 +261,7 @@ class FlowLayer:
         values["u_padding"] = float(before), float(above)
         arrows = has_arrows(self.textures, self._settings)
         coloured = arrows and self._settings.arrow_color == "scalars"
-        values["u_mapped"] = self._colours is not None
+        values["u_mapped"] = self._colours is not None and not self._has_own_colours
         values["u_flat"] = self._colours is not None and self._colours.on_cells
         values["u_plain"] = coloured and self._colours is not None
         values["u_plainColour"] = tuple(self.actor.prop.color.float_rgb)
@@ -348,6 +358,7 @@ class FlowLayer:
         renderer = self._renderer()
         if renderer is None:
             return
+        self._follow_colours()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
         eye = (
@@ -397,7 +408,6 @@ class FlowLayer:
 
         Blocks that are out of view have -1.
         """
-        self._follow_colours()
         prop = self.actor.prop
         levels = self.mesh_levels.levels(view.eye, view.half_height, renderer.GetSize()[1])
         if prop.show_edges or prop.style != "Surface":

@@ -193,6 +193,7 @@ class MappedColours(NamedTuple):
         places = low + (np.arange(-1, count + 1) + 0.5) / count * (high - low)
         inside = 10**places if self.table.UsingLogScale() else places
         self.table.SetRange(self.low, self.high)
+        self.table.BuildSpecialColors()  # which VTK does only when it draws
         values = numpy_to_vtk(np.append(inside, np.nan), deep=True)
         mapped = vtk_to_numpy(self.table.MapScalars(values, 0, 0)) / 255
         mapped[:, 3] = 0.0

@@ -27,16 +27,27 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkTextureObject,
 )
 
-from flowtex._util.array_types import Floats, Ints
+from flowtex._util.array_types import Floats, Floats32, Ints
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
-from flowtex.rendering.vtk.mesh import COORDINATE, CORNERS, FlowMapper, map_attributes
+from flowtex.rendering.vtk.mesh import (
+    COORDINATE,
+    CORNERS,
+    FlowMapper,
+    map_attributes,
+    set_triangles,
+)
 
-#: OpenGL's numbers of blending, of it and of the tests of depth and of the scissor, and of the
-#: colours of a buffer.
-BLEND, TESTS, COLOUR_BUFFER = 0x0BE2, (0x0BE2, 0x0B71, 0x0C11), 0x4000
+#: OpenGL's numbers of what it can do,
+BLEND, SCISSOR, DEPTH_TEST = 0x0BE2, 0x0C11, 0x0B71
+#: and of comparisons.
+EQUAL, ALWAYS = 0x0202, 0x0207
+#: Most layers, a power of two: their numbers are depths.
+MOST_LAYERS = 4096
 #: VTK begins shaders with what it writes for these.
 MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
+#: Pixels from one to the next of those in which it is looked for tiles.
+SKIPPED = 3
 #: Before the actors are drawn, but after all else that waits for the start of a frame.
 LAST = -1.0
 
@@ -50,6 +61,7 @@ class DeferredPasses:
         self._parts: weakref.WeakKeyDictionary[FlowLayer, _Part] = weakref.WeakKeyDictionary()
         self._places = vtkRenderer()
         self._places.AutomaticLightCreationOff()
+        self._alone: tuple[weakref.ref[FlowLayer], _Part, vtkRenderer] | None = None
         self._observed = renderer.AddObserver("StartEvent", weak_callback(self._draw), LAST)
 
     @classmethod
@@ -75,22 +87,20 @@ class DeferredPasses:
             return
         self._follow(layers)
         window = renderer.GetRenderWindow()
-        buffers, state = _buffers.setdefault(window, _Buffers()), window.GetState()
+        state = window.GetState()
         state.Push()
         state.PushFramebufferBindings()
-        buffers.fit(window)
-        buffers.places.bind()
-        self._places.SetRenderWindow(window)
-        self._places.SetViewport(renderer.GetViewport())
-        self._places.SetActiveCamera(renderer.GetActiveCamera())
-        self._places.Render()
-        buffers.sums.bind()
+        buffers = self._draw_places(self._places, renderer)
         places = buffers.places.texture
-        for name in TESTS:
-            state.vtkglDisable(name)
-        state.vtkglClearColor(0.0, 0.0, 0.0, 0.0)
-        state.vtkglClear(COLOUR_BUFFER)
         places.Activate()
+        buffers.sums.bind()
+        for name in (BLEND, SCISSOR):
+            state.vtkglDisable(name)
+        state.vtkglEnable(DEPTH_TEST)
+        state.vtkglDepthMask(True)
+        state.vtkglDepthFunc(ALWAYS)
+        buffers.number(window)
+        state.vtkglDepthFunc(EQUAL)
         camera = renderer.GetActiveCamera()
         matrix = camera.GetCompositeProjectionTransformMatrix(renderer.GetTiledAspectRatio(), -1, 1)
         view = np.asarray(pv.array_from_vtkmatrix(matrix), dtype=float)
@@ -102,6 +112,45 @@ class DeferredPasses:
         places.Deactivate()
         state.PopFramebufferBindings()
         state.Pop()
+
+    def places(self, layer: FlowLayer) -> Floats32:
+        """Return places (N, 4) that are seen of a layer by itself, with all of its triangles.
+
+        There are enough pixels to find what covers a few of them.
+        """
+        renderer = self._renderer()
+        assert renderer is not None
+        if self._alone is None or self._alone[0]() is not layer:
+            part, alone = _Part(layer, whole=True), vtkRenderer()
+            alone.AutomaticLightCreationOff()
+            alone.AddActor(part.actor)
+            self._alone = weakref.ref(layer), part, alone
+        _, part, alone = self._alone
+        part.follow(1)
+        window = renderer.GetRenderWindow()
+        state = window.GetState()
+        state.Push()
+        state.PushFramebufferBindings()
+        texture = self._draw_places(alone, renderer).places.texture
+        state.PopFramebufferBindings()
+        state.Pop()
+        size = texture.GetWidth(), texture.GetHeight()
+        pixels = np.empty((size[1], size[0], 4), np.float32)
+        texture.Download().Download2D(VTK_FLOAT, pixels.reshape(-1), [*size], 4, [0, 0])
+        (left, low), (width, height) = _part_of(window, renderer)
+        seen = pixels[low : low + height : SKIPPED, left : left + width : SKIPPED].reshape(-1, 4)
+        return seen[seen[:, 3] > 0]
+
+    def _draw_places(self, places: vtkRenderer, renderer: pv.Renderer) -> _Buffers:
+        window = renderer.GetRenderWindow()
+        buffers = _buffers.setdefault(window, _Buffers())
+        buffers.fit(window)
+        buffers.places.bind()
+        places.SetRenderWindow(window)
+        places.SetViewport(renderer.GetViewport())
+        places.SetActiveCamera(renderer.GetActiveCamera())
+        places.Render()
+        return buffers
 
     def _follow(self, layers: list[FlowLayer]) -> None:
         for layer in [*self._parts]:
@@ -132,7 +181,7 @@ class _Target:
         self.texture, self.frame = vtkTextureObject(), vtkOpenGLFramebufferObject()
         self._depth = vtkTextureObject()
 
-    def fit(self, window: vtkOpenGLRenderWindow, size: tuple[int, int], *, depth: bool) -> None:
+    def fit(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
         """Have as many pixels as a window."""
         if (self.texture.GetWidth(), self.texture.GetHeight()) == size:
             return
@@ -141,9 +190,8 @@ class _Target:
         self.texture.Allocate2D(*size, 4, VTK_FLOAT)
         self.frame.Bind()
         self.frame.AddColorAttachment(0, self.texture)
-        if depth:
-            self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
-            self.frame.AddDepthAttachment(self._depth)
+        self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
+        self.frame.AddDepthAttachment(self._depth)
 
     def bind(self) -> None:
         """Have the next draws go there."""
@@ -151,17 +199,69 @@ class _Target:
         self.frame.ActivateDrawBuffer(0)
 
 
+class _Rectangle:
+    """A program that draws a rectangle of pixels, with the text of a fragment shader."""
+
+    def __init__(self, name: str, variant: frozenset[str]) -> None:
+        self._texts = [
+            MARKS + shader_text(f"vtk/{text}.glsl", variant)
+            for text in ("sum_vertex", f"{name}_fragment")
+        ]
+        self._vertices = vtkOpenGLVertexArrayObject()
+        self._program: vtkShaderProgram | None = None
+
+    @property
+    def program(self) -> vtkShaderProgram:
+        """The program, which is in use."""
+        assert self._program is not None
+        return self._program
+
+    def use(self, window: vtkOpenGLRenderWindow) -> None:
+        """Have uniforms go to this program."""
+        cache = window.GetShaderCache()
+        if self._program is None:
+            self._program = cache.ReadyShaderProgram(self._texts[0], self._texts[1], "")
+        else:
+            cache.ReadyShaderProgram(self._program)
+
+    def draw(
+        self,
+        frame: vtkOpenGLFramebufferObject,
+        window: vtkOpenGLRenderWindow,
+        box: tuple[int, int, int, int],
+        depth: float,
+    ) -> None:
+        """Draw first and end of columns and rows of a frame buffer, at a depth from 0 to 1."""
+        self.program.SetUniformf("u_depth", 2 * depth - 1)
+        frame.StartNonOrtho(*window.GetActualSize())
+        window.GetState().vtkglViewport(0, 0, *window.GetActualSize())
+        # VTK draws it narrower by up to a pixel; the depths of what is beside it are others.
+        left, right, low, high = box
+        first, last = max(left - 1, 0), max(low - 1, 0)
+        frame.RenderQuad(first, right, last, high, self.program, self._vertices)
+
+
 class _Buffers:
     """The textures of one window: its renderers draw one after another, so they share them."""
 
     def __init__(self) -> None:
         self.places, self.sums = _Target(), _Target()
+        self._numbers = _Rectangle("depth", frozenset())
 
     def fit(self, window: vtkOpenGLRenderWindow) -> None:
         """Have as many pixels as a window."""
         width, height = window.GetActualSize()
-        self.places.fit(window, (width, height), depth=True)
-        self.sums.fit(window, (width, height), depth=False)
+        self.places.fit(window, (width, height))
+        self.sums.fit(window, (width, height))
+
+    def number(self, window: vtkOpenGLRenderWindow) -> None:
+        """Write the numbers of layers as depths."""
+        self._numbers.use(window)
+        program = self._numbers.program
+        program.SetUniformi("u_places", self.places.texture.GetTextureUnit())
+        program.SetUniformf("u_layers", MOST_LAYERS)
+        width, height = window.GetActualSize()
+        self._numbers.draw(self.sums.frame, window, (0, width, 0, height), 0.0)
 
 
 #: Of renderers, and of windows.
@@ -172,14 +272,17 @@ _buffers: weakref.WeakKeyDictionary[vtkOpenGLRenderWindow, _Buffers] = weakref.W
 class _Part:
     """What the passes draw of one layer."""
 
-    def __init__(self, layer: FlowLayer) -> None:
-        self._layer = weakref.ref(layer)
-        self.actor = pv.Actor(mapper=FlowMapper(layer.mesh))
+    def __init__(self, layer: FlowLayer, *, whole: bool = False) -> None:
+        self._layer, self._whole = weakref.ref(layer), whole
+        mesh = layer.mesh
+        if whole:
+            mesh, levels = mesh.copy(deep=False), layer.mesh_levels
+            set_triangles(mesh, levels.triangles(np.zeros(levels.blocks.shape[:2], np.int64)))
+        self.actor = pv.Actor(mapper=FlowMapper(mesh))
         self.actor.mapper.scalar_visibility = False
         self.actor.prop.lighting = False
         self._number = 0
         self._variant: frozenset[str] | None = None
-        self._program: vtkShaderProgram | None = None
         observe_draws(self.actor.mapper, self._before_places)
 
     def follow(self, number: int) -> None:
@@ -187,7 +290,7 @@ class _Part:
         layer = self._layer()
         assert layer is not None
         self._number = number
-        if self.actor.mapper.dataset is not layer.mesh:
+        if self.actor.mapper.dataset is not layer.mesh and not self._whole:
             self.actor.mapper.SetInputData(layer.mesh)
         shown, prop = layer.actor, self.actor.prop
         prop.culling = shown.prop.culling
@@ -200,8 +303,7 @@ class _Part:
         variant = layer.variant
         if variant == self._variant:
             return
-        self._variant, self._program = variant, None
-        self._vertices = vtkOpenGLVertexArrayObject()
+        self._variant, self._sum = variant, _Rectangle("sum", variant)
         arrays = {"flowtexCoordinate": COORDINATE}
         if "FLOWTEX_TRIANGLES" in variant:
             arrays["flowtexCorners"] = CORNERS
@@ -211,34 +313,23 @@ class _Part:
     def sum(self, buffers: _Buffers, view: Floats, corner: Ints, size: Ints) -> None:
         """Sum the pixels of the layer, in a part of the window with a corner and a size."""
         layer = self._layer()
-        assert layer is not None and self._variant is not None and layer.window is not None
+        assert layer is not None and layer.window is not None
         box = layer.box(view, size)
         if box is None:
             return
-        cache = layer.window.GetShaderCache()
-        if self._program is None:
-            vertex, fragment = (
-                MARKS + shader_text(f"vtk/sum_{stage}.glsl", self._variant)
-                for stage in ("vertex", "fragment")
-            )
-            self._program = cache.ReadyShaderProgram(vertex, fragment, "")
-        else:
-            cache.ReadyShaderProgram(self._program)
-        program = self._program
+        self._sum.use(layer.window)
+        program = self._sum.program
         layer.before_draw(program)
         program.SetUniformi("u_places", buffers.places.texture.GetTextureUnit())
-        program.SetUniformf("u_layer", self._number)
         origin, along, up = layer.rays(view, size)
         origin -= corner[0] * along + corner[1] * up
         for name, value in (("u_rayCorner", origin), ("u_rayX", along), ("u_rayY", up)):
             program.SetUniform3f(name, value.tolist())
-        frame, (left, right, low, high) = buffers.sums.frame, box
-        frame.StartNonOrtho(*layer.window.GetActualSize())
-        layer.window.GetState().vtkglViewport(0, 0, *layer.window.GetActualSize())
+        left, right, low, high = box
         x, y = corner.tolist()
-        # VTK draws it narrower by up to a pixel; what is beside it has no place of the layer.
-        left, low = max(left + x - 1, 0), max(low + y - 1, 0)
-        frame.RenderQuad(left, right + x, low, high + y, program, self._vertices)
+        inside = (left + x, right + x, low + y, high + y)
+        depth = self._number / MOST_LAYERS
+        self._sum.draw(buffers.sums.frame, layer.window, inside, depth)
 
     def _before_places(self, program: vtkShaderProgram | None) -> None:
         layer = self._layer()

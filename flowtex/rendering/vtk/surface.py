@@ -221,6 +221,9 @@ class FlowSurface:
             return {None: []}
         steps = sorted({*self._moment[:2]})
         choices = choose_tiles(loader.pyramid, view)
+        if self._base.deferred and any(not loader.get(k, steps) for k in wanted_tiles(choices)):
+            visible = loader.pyramid.visible_blocks(self._passes.places(self._base))
+            choices = choose_tiles(loader.pyramid, replace(view, visible=visible))
         loader.request(wanted_tiles(choices), steps)
         if not self._goes_on():
             loader.wait()

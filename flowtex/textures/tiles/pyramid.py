@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
@@ -138,6 +138,20 @@ class Pyramid:
         """Rows and columns of blocks at level 0."""
         rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.nodes)
         return rows, columns
+
+    def visible_blocks(self, places: Floats32) -> Bools:
+        """Return which blocks of level 0, (rows, columns), have some of the places of a pass.
+
+        Those are (N, 4): a coordinate in the root's textures, or shares of a triangle, its number,
+        and one more.
+        """
+        geometry = self.root_geometry
+        size, before = np.array(geometry.size[::-1]), geometry.padding[::-1]
+        cell = (places[:, :2] * size - 0.5 - before) * (1 << self.depth) // BLOCK_CELLS
+        column, row = np.clip(cell.astype(int), 0, np.array(self.blocks[::-1]) - 1).T
+        visible = np.zeros(self.blocks, dtype=bool)
+        visible[row, column] = True
+        return visible
 
     def places(self, level: int) -> Floats:
         """Return where the blocks of a level lie, as :func:`block_places` does, from the root.

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.triangles.arrays import corner_ends
 from flowtex.textures.texture_set import TextureSet
@@ -89,6 +89,17 @@ class TrianglePyramid(Pyramid):
         places = np.empty((2**steps, 2**steps, 5))
         places[self._boxes.places(steps)] = np.column_stack([center, radius, size])
         return places
+
+    def visible_blocks(self, places: Floats32) -> Bools:
+        """Return which blocks of level 0 have some of the places, as of structured surfaces."""
+        geometry = self.root_geometry
+        triangles = geometry.triangles[np.unique(places[:, 2].astype(np.intp))]
+        corners = geometry.points[0][triangles]
+        points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
+        parts = self._boxes.members(points, points, self._steps(0))
+        visible = np.zeros(self.blocks, dtype=bool)
+        visible[self._boxes.places(self._steps(0))] = [len(part) > 0 for part in parts]
+        return visible
 
     def children(self, key: TileKey | None) -> list[TileKey]:
         """Return tiles of the next level that cover a tile, or the root for ``None``."""
