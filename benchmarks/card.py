@@ -44,9 +44,9 @@ HEADINGS = (
 
 #: What client/src/programs.ts has before a shader's text, and texture units of the samplers.
 PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n"
-UNITS = {"u_slices": 0, "u_cmap": 4, "u_shares": 5}
-#: Attributes of the nodes with the count of their numbers, and what stands for no value there.
-ATTRIBUTES = {"flowtexPosition": 3, "flowtexCoordinate": 2}
+UNITS = {"u_slices": 0, "u_cmap": 4, "u_shares": 5, "u_nodes": 7, "u_open": 9, "u_places": 10}
+UNITS["u_strides"] = 13
+#: What stands for no value at a node.
 NO_VALUE = -1e9
 
 #: What client/src/tracer.ts has: the lag up to which paths are followed, units of the textures of a
@@ -80,10 +80,9 @@ class Drawing(NamedTuple):
 
 def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") -> Drawing:
     """Return what the client draws of a WebView: flat, steady, coloured, without perspective."""
-    from flowtex.rendering.mesh_levels import Region, join, mesh_levels_of
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
-    from flowtex.textures.tiles.pyramid import TILE_BLOCKS
+    from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS
 
     whole, settings = replace(view.data(), traces=True), view.scene.settings
     header, pyramid = whole.header(settings), whole.pyramid
@@ -98,31 +97,42 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     look |= {"u_lit": header["lighting"], "u_ground": ground}
     look |= {"u_mapped": True, "u_matrix": matrix.T.ravel().tolist()}
     look["u_toEye"] = (geometry.frame @ -camera.axes[2]).tolist()
-    drawn, regions = [], []
+    across, upward = (2 * half / size[1] * axis for axis in camera.axes[:2])
+    corner = focus - geometry.center - across * size[0] / 2 - upward * size[1] / 2
+    rays = {"u_rayCorner": corner, "u_rayX": across, "u_rayY": upward}
+    look |= {name: (geometry.frame @ way).tolist() for name, way in rays.items()}
+    rows, columns = pyramid.shape(0) if pyramid else geometry.shape
+    look |= {"u_lastNode": (columns - 1, rows - 1, 0), "u_closed": geometry.periodic[::-1]}
+    look |= {"u_blockCells": BLOCK_CELLS}
+    finest = (
+        pyramid.blocks if pyramid else tuple(-(-(n - 1) // BLOCK_CELLS) for n in geometry.shape)
+    )
+    strides, drawn = np.zeros(finest, np.uint8), []
     for key, data, parts, finer in _shown(whole, settings, camera, size):
-        mesh = mesh_levels_of(data.textures)
-        levels = mesh.levels(None, half, size[1])
+        blocks = np.ones(parts["mesh"].shape[:2], dtype=bool)
         for child in finer:
-            levels[finer_part(pyramid, child, key)] = -1
+            blocks[finer_part(pyramid, child, key)] = False
         step, *place = key or (pyramid.depth if pyramid else 0, 0, 0)
-        regions.append(Region(step, *(TILE_BLOCKS * at << step for at in place), levels))
+        for block in np.argwhere(blocks):
+            top, left = (block + TILE_BLOCKS * np.array(place)) << step
+            strides[top : top + (1 << step), left : left + (1 << step)] = step
         above, before = data.textures.geometry.padding
         values = {**uniforms(data.textures, settings, state), **look, "u_padding": (before, above)}
-        values["header"] = data.tile_header
-        drawn.append((mesh, levels, values, _arrays(data, parts)))
-    joins = join(regions, pyramid.blocks if pyramid else levels.shape, geometry.periodic)
-    layers, arrays = [], {"cmap": whole.colours.scale.texels}
-    for (mesh, levels, values, own), borders in zip(drawn, joins, strict=True):
-        own["index"] = mesh.triangles(levels, borders).astype("u4")
-        if own["index"].size:
-            arrays |= {f"{len(layers)}/{part}": array for part, array in own.items()}
-            layers.append(values)
+        start = TILE_BLOCKS * BLOCK_CELLS * np.array(place[::-1]) << step
+        values |= {"header": data.tile_header, "u_part": (*start.tolist(), step)}
+        if blocks.any():
+            own = {**_arrays(data, parts), "blocks": BLOCK_CELLS * np.argwhere(blocks)[:, ::-1]}
+            drawn.append((values, own))
+    layers, arrays = [values for values, _ in drawn], {"cmap": whole.colours.scale.texels}
+    arrays["strides"] = strides
+    for n, (_, own) in enumerate(drawn):
+        arrays |= {f"{n}/{part}": array for part, array in own.items()}
     # Where there are tiles, hardly anything of the root is seen, and all have one variant.
-    near = any(values["near"] for _, _, values, _ in drawn[1:] or drawn)
+    near = any(values["near"] for values in layers[pyramid is not None :] or layers)
     variant = {"FLOWTEX_MOVING": layers[0]["moving"], "FLOWTEX_CELLS": near}
     defines = "".join(f"#define {define}\n" for define, is_on in variant.items() if is_on)
     shaders = {k: header["shaders"][k] for k in ("fullVertex", "trace", "layers")}
-    shaders |= {k: defines + header["shaders"][k] for k in ("vertex", "fragment")}
+    shaders |= {k: defines + header["shaders"][k] for k in ("vertex", "place", "fragment")}
     about = {"name": name, "size": size, "samples": settings.samples, "layers": layers}
     about |= {"shaders": shaders, "background": ground}
     return Drawing(about, arrays)
@@ -153,15 +163,13 @@ def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Ite
 def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:
     """Return the nodes of what the client is sent, and what slices are traced from."""
     colours, trace = data.colours, data.tile_header["slices"]["trace"]
-    coordinate, (top, left) = data.textures.geometry.coordinate, trace["drawn"]
-    rows, columns = coordinate.shape[:2]
+    (rows, columns), (top, left) = data.textures.geometry.shape, trace["drawn"]
     drawn = parts["padded"][1 + top : 1 + top + rows, 1 + left : 1 + left + columns]
     (values,) = (part for name, part in parts.items() if name.startswith("scalars/"))
     share = (values - colours.scale.low) / ((colours.scale.high - colours.scale.low) or 1.0)
     share = np.where(np.isfinite(share), share, NO_VALUE).astype(np.float32)
     return {
-        "flowtexPosition": (drawn + np.float32(trace["middle"])).reshape(-1, 3),
-        "flowtexCoordinate": coordinate.reshape(-1, 2),
+        "position": (drawn + np.float32(trace["middle"])).astype(np.float32),
         "shares": np.stack([share] * 2, axis=-1),
         "flow": parts["flow/0"],
         "unit": parts["unit"],
@@ -304,23 +312,43 @@ class Picture:
 
     def __init__(self, context: Any, drawing: Drawing) -> None:
         self._context, (self._about, self._arrays) = context, drawing
-        shaders = self._about["shaders"]
-        vertex, fragment = (PREAMBLE + shaders[kind] for kind in ("vertex", "fragment"))
-        self._program = context.program(vertex_shader=vertex, fragment_shader=fragment)
-        self._target = context.simple_framebuffer(tuple(self._about["size"]))
-        colours = self._arrays["cmap"]
-        self._cmap = context.texture((len(colours), 1), 4, colours.tobytes(), dtype="f4")
+        shaders, size = self._about["shaders"], tuple(self._about["size"])
+        self._place, self._sum = (
+            context.program(
+                vertex_shader=PREAMBLE + shaders[vertex],
+                fragment_shader=PREAMBLE + shaders[fragment],
+            )
+            for vertex, fragment in (("vertex", "place"), ("fullVertex", "fragment"))
+        )
+        self._triangles, self._screen = (
+            context.vertex_array(p, []) for p in (self._place, self._sum)
+        )
+        self._target, places = (
+            context.simple_framebuffer(size),
+            context.texture(size, 4, dtype="u4"),
+        )
+        self._places = context.framebuffer([places], context.depth_renderbuffer(size))
+        colours, strides = self._arrays["cmap"], self._arrays["strides"]
+        constant = {
+            "u_cmap": context.texture((len(colours), 1), 4, colours.tobytes(), dtype="f4"),
+            "u_places": places,
+            "u_open": context.texture((1, 1), 1, b"\1", alignment=1, dtype="u1"),
+            "u_strides": context.texture(
+                strides.shape[::-1], 1, strides.tobytes(), alignment=1, dtype="u1"
+            ),
+        }
+        for texture in constant.values():
+            texture.filter = context.NEAREST, context.NEAREST
+        self._constant = constant
         self._tracings: list[Tracing] = []
         self._layers = [self._layer(n, own) for n, own in enumerate(self._about["layers"])]
-        self._written: dict[str, bytes] = {}
+        self._written: dict[tuple[int, str], bytes] = {}
 
     def _layer(self, n: int, uniforms: dict[str, Any]) -> tuple[Any, ...]:
-        """Return the triangles, the slices, the shares and the uniforms of a layer."""
-        context, program = self._context, self._program
-        names = (*ATTRIBUTES, "index", "flow", "unit", "padded", "shares")
+        """Return the blocks, the textures and the uniforms of a layer."""
+        context = self._context
+        names = ("position", "blocks", "flow", "unit", "padded", "shares")
         own = {k: self._arrays[f"{n}/{k}"] for k in names}
-        nodes = [(context.buffer(own[k].tobytes()), f"{m}f4", k) for k, m in ATTRIBUTES.items()]
-        triangles = context.vertex_array(program, nodes, context.buffer(own["index"].tobytes()))
         tracing = Tracing(context, self._about["shaders"], uniforms["header"], own)
         self._tracings.append(tracing)
         slices = context.texture_array((*tracing.size, tracing.count), 4, dtype="f2")
@@ -330,28 +358,53 @@ class Picture:
         slices.build_mipmaps(0, int(uniforms["u_deepest"]))
         rows, columns, _ = own["shares"].shape
         shares = context.texture((columns, rows), 2, own["shares"].tobytes(), dtype="f4")
+        nodes = context.texture_array((columns, rows, 1), 3, own["position"].tobytes(), dtype="f4")
+        shares.filter = nodes.filter = context.NEAREST, context.NEAREST
+        for name, texture in self._constant.items():
+            texture.use(UNITS[name])
+        given = uniforms | UNITS | {"u_layer": n + 1}
+        values = [self._values(program, given) for program in (self._place, self._sum)]
+        return own["blocks"], {"u_slices": slices, "u_shares": shares, "u_nodes": nodes}, values
+
+    @staticmethod
+    def _values(program: Any, given: dict[str, Any]) -> list[tuple[Any, bytes]]:
         values = []
-        for name in {*uniforms, *UNITS} & set(program):
-            uniform, given = program[name], np.ravel((uniforms | UNITS)[name])
+        for name in given.keys() & set(program):
+            uniform, number = program[name], np.ravel(given[name])
             # An array may have more places than are used.
             numbers = np.zeros(uniform.array_length * uniform.dimension, "if"["f" in uniform.fmt])
-            numbers[: len(given)] = given
+            numbers[: len(number)] = number
             values.append((uniform, numbers.tobytes()))
-        return triangles, slices, shares, values
+        return values
+
+    def _set(self, program: int, values: list[tuple[Any, bytes]]) -> None:
+        for uniform, data in values:
+            if self._written.get((program, uniform.name)) != data:  # of the layer before
+                uniform.write(data)
+                self._written[program, uniform.name] = data
 
     def draw(self) -> None:
-        """Draw a frame."""
+        """Draw a frame: the places of all layers, and then their colours."""
+        self._context.enable(self._context.DEPTH_TEST)
+        self._places.use()
+        self._places.clear()
+        for blocks, textures, values in self._layers:
+            textures["u_nodes"].use(UNITS["u_nodes"])
+            self._set(0, values[0])
+            rows, columns = textures["u_shares"].size[::-1]
+            cells = int(self._about["layers"][0]["u_blockCells"])
+            for x, y in blocks:
+                across, upward = min(cells, columns - 1 - x), min(cells, rows - 1 - y)
+                self._place["u_block"].value = float(x), float(y), 0.0, float(across)
+                self._triangles.render(vertices=6 * int(across) * int(upward))
+        self._context.disable(self._context.DEPTH_TEST)
         self._target.use()
-        self._context.clear(*self._about["background"], 1.0)
-        self._cmap.use(UNITS["u_cmap"])
-        for triangles, slices, shares, values in self._layers:
-            slices.use(UNITS["u_slices"])
-            shares.use(UNITS["u_shares"])
-            for uniform, data in values:
-                if self._written.get(uniform.name) != data:  # of the layer before
-                    uniform.write(data)
-                    self._written[uniform.name] = data
-            triangles.render()
+        self._target.clear(*self._about["background"], 1.0)
+        for _, textures, values in self._layers:
+            for name, texture in textures.items():
+                texture.use(UNITS[name])
+            self._set(1, values[1])
+            self._screen.render(vertices=3)
 
     def pixels(self) -> NDArray[Any]:
         """Draw a frame and return it, (H, W, 3)."""
@@ -375,13 +428,15 @@ class Picture:
             self._context.finish()
             return np.subtract((time.perf_counter(), time.process_time()), start)
 
+        about = self._about
         count, spent = 1, np.minimum(series(1), series(1))  # the first is slow by itself
         while spent[0] < SERIES_S:
             count *= min(max(math.ceil(1.2 * SERIES_S / spent[0]), 2), 10)
             spent = series(count)
         seconds, work = np.min([spent, series(count), series(count)], axis=0) / count
-        triangles = sum(len(a) for n, a in self._arrays.items() if n.endswith("/index"))
-        about, rate = self._about, 1 / seconds
+        blocks = (len(a) for n, a in self._arrays.items() if n.endswith("/blocks"))
+        triangles = 2 * about["layers"][0]["u_blockCells"] ** 2 * sum(blocks)
+        rate = 1 / seconds
         each = 1e9 * seconds / (math.prod(about["size"]) * about["samples"])
         times = f"{1e3 * seconds:.2f}", f"{1e3 * work:.2f}", f"{rate:.3g}", f"{rate / GOAL:.2g}"
         whole = about["name"], about["samples"], len(about["layers"]), triangles
