@@ -384,19 +384,18 @@ export class FormulaSource {
     ];
   }
 
-  /** What triangles are chosen by: in the plane there are no errors. */
+  /** The places of blocks, by which triangles are chosen. */
   private blocks(key: TileKey, shape: [number, number]) {
     const { mesh, pyramid } = this.header;
     const [rows, columns] = shape.map((n) => Math.ceil((n - 1) / mesh.tileCells));
-    const size = Math.log2(mesh.tileCells) + 1 + PLACE;
-    const data = new Float32Array(rows * columns * size);
+    const data = new Float32Array(rows * columns * PLACE);
     const place = placesOf(this.header);
     const tileBlocks = pyramid?.tileBlocks ?? 1;
     for (let block = 0; block < rows * columns; block += 1) {
       const [row, column] = [Math.floor(block / columns), block % columns];
       const where = place?.(key[0], key[1] * tileBlocks + row, key[2] * tileBlocks + column) ?? [];
-      data.set(where, (block + 1) * size - PLACE);
+      data.set(where, block * PLACE);
     }
-    return { data, shape: [rows, columns, size] };
+    return { data, shape: [rows, columns, PLACE] };
   }
 }

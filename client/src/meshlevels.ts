@@ -46,13 +46,13 @@ export function seenBlocks(
   covered: readonly Covered[],
   most: Int8Array,
 ): Seen {
-  const [rows, columns, size] = shape;
+  const [rows, columns] = shape;
   const sight = { ...camera.sight(pixels), planes: camera.planes };
   const levels = new Int8Array(rows * columns).fill(-1);
   const box = [1, 1, -1, -1];
   for (let block = 0; block < levels.length; block += 1) {
     const [row, column] = [Math.floor(block / columns), block % columns];
-    const place = data.subarray(size * (block + 1) - PLACE, size * (block + 1));
+    const place = data.subarray(PLACE * block, PLACE * (block + 1));
     const isCovered = covered.some(([j, i, n]) => row >= j && row < j + n && column >= i && column < i + n);
     if (isCovered || !isSeen(sight, place)) continue;
     const level = Math.floor(Math.log2(MOST_SIDE_PX / cellSize(sight, place)));

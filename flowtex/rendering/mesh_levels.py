@@ -26,11 +26,10 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05
-#: Weight of an error of the outline, a quarter of a pixel across it; and of one along the
-#: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
-#: place that is off by this error. Where fragments correct their place it may be four pixels along
-#: the surface and half of one across it, which the outline of a curved one is off by at most.
-OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.1, 0.0125, 0.1
+#: Weight of an error of the outline, a quarter of a pixel across it. Pixels are placed between all
+#: nodes, so it may be four pixels along the surface, and half of one across it, which the outline
+#: of a curved one is off by at most.
+OUTLINE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.0125, 0.1
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
 #: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.
@@ -63,7 +62,7 @@ class MeshLevels:
         points: Floats,
         cells: Bools,
         periodic: tuple[bool, bool] = (False, False),
-        slide: float = SLIDE_SHARE,
+        slide: float = 0.1,
         height: float = 1.0,
     ) -> None:
         rows, columns = points.shape[:2]
@@ -78,11 +77,6 @@ class MeshLevels:
         self.error[self._mixed_levels()] = np.inf
         #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
-
-    @property
-    def records(self) -> Floats:
-        """Errors and places of blocks, by which a client chooses levels."""
-        return np.concatenate([np.moveaxis(self.error, 0, -1), self.blocks], axis=-1)
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0 has every node.
@@ -231,16 +225,6 @@ class MeshLevels:
         return mixed
 
 
-def mesh_limits() -> dict[str, float]:
-    """Return the numbers by which a client chooses the levels itself, for JSON."""
-    return {
-        "tileCells": BLOCK_CELLS,
-        "maxErrorPixels": MAX_ERROR_PIXELS,
-        "maxSideHeights": MAX_SIDE_HEIGHTS,
-        "leastDistance": LEAST_DISTANCE,
-    }
-
-
 def _directions(points: Floats) -> Floats:
     """Return normals and directions of lines at nodes, (3, J, I, 3), zero where missing."""
     if min(points.shape[:2]) < 2:
@@ -380,11 +364,6 @@ class TriangleBlocks:
         #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).
         self.blocks, self._masks = geometry.block_places, geometry.blocks
 
-    @property
-    def records(self) -> Floats:
-        """The places of blocks, by which a client chooses, (rows, columns, 5)."""
-        return self.blocks
-
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0, which has every node."""
         del eye, half_height, pixels
@@ -398,16 +377,11 @@ class TriangleBlocks:
         return 3 * drawn[:, None] + np.arange(3)
 
 
-def mesh_levels_of(textures: TextureSet, *, placed: bool = True) -> MeshLevels | TriangleBlocks:
-    """Return the triangles of a texture set's surface, by level and block.
-
-    ``placed`` says that fragments correct their place between the nodes.
-    """
+def mesh_levels_of(textures: TextureSet) -> MeshLevels | TriangleBlocks:
+    """Return the triangles of a texture set's surface, by level and block."""
     geometry = textures.geometry
     if isinstance(geometry, TriangleGeometry):
         return TriangleBlocks(geometry)
-    # A noise that lies on the nodes moves with them.
-    shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
-    if placed and textures.paper is None:
-        shares = (PLACED_SHARE, HEIGHT_SHARE)
+    # A noise that lies on the nodes moves with them; any other is looked up between them.
+    shares = (PLACED_SHARE, HEIGHT_SHARE) if textures.paper is None else (1.0, 1.0)
     return MeshLevels(geometry.points, geometry.cells, geometry.periodic, *shares)

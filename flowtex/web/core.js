@@ -1565,10 +1565,9 @@ e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this
 return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
 unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
 ...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
-tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
-columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+data=new Float32Array(rows*columns*PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<
+rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+
+row2,key[2]*tileBlocks+column)??[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1608,12 +1607,12 @@ shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(le
 isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
 Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
 columns&&(most[row2*columns+column]=0)}return most}function seenBlocks({shape:shape2,data},camera,pixels,covered,most){let[
-rows,columns,size]=shape2,sight={...camera.sight(pixels),planes:camera.planes},levels=new Int8Array(rows*columns).fill(-1),
-box=[1,1,-1,-1];for(let block=0;block<levels.length;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],
-place=data.subarray(size*(block+1)-PLACE3,size*(block+1));if(covered.some(([j,i,n])=>row2>=j&&row2<j+n&&column>=i&&column<
-i+n)||!isSeen(sight,place))continue;let level=Math.floor(Math.log2(MOST_SIDE_PX/cellSize(sight,place)));levels[block]=Math.
-min(Math.max(level,0),most[block]),boundsOf(camera,place).forEach((side,n)=>box[n]=n<2?Math.min(box[n],side):Math.max(box[n],
-side))}return{levels,box}}function boundsOf(camera,[x,y,z,radius]){let[right,up,ahead]=camera.axes,{parallel,position,focal_point:focus}=camera.
+rows,columns]=shape2,sight={...camera.sight(pixels),planes:camera.planes},levels=new Int8Array(rows*columns).fill(-1),box=[
+1,1,-1,-1];for(let block=0;block<levels.length;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],place=data.
+subarray(PLACE3*block,PLACE3*(block+1));if(covered.some(([j,i,n])=>row2>=j&&row2<j+n&&column>=i&&column<i+n)||!isSeen(sight,
+place))continue;let level=Math.floor(Math.log2(MOST_SIDE_PX/cellSize(sight,place)));levels[block]=Math.min(Math.max(level,
+0),most[block]),boundsOf(camera,place).forEach((side,n)=>box[n]=n<2?Math.min(box[n],side):Math.max(box[n],side))}return{
+levels,box}}function boundsOf(camera,[x,y,z,radius]){let[right,up,ahead]=camera.axes,{parallel,position,focal_point:focus}=camera.
 state,way=subtract2([x,y,z],parallel?focus:position),ends2=[-radius,radius].map(by=>camera.at(add([x,y,z],ahead,by)).height);
 if(!(ends2[0]>0))return[-1,-1,1,1];let[low,high]=[-radius,radius].map(by=>[dot2(way,right)/camera.aspect,dot2(way,up)].map(
 (at,axis)=>ends2.map(height=>(at+by/(axis?1:camera.aspect))/height)));return[...low.map(each=>Math.min(...each)),...high.

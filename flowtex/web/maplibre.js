@@ -60,26 +60,26 @@ if(!o)throw new Error(`a part has the type "${n}"; expected ${Object.keys(Wr).jo
 data:new o(t.slice().buffer)}}function Xr(a){let[e,t]=hr(new Uint8Array(a)),r=t;return e.map(n=>{let s=new Uint8Array(a,
 r,n.bytes);return r+=n.bytes,n.differences===void 0?Yr(n,s):qr(n,s)})}function hr(a){let e=4+new DataView(a.buffer,a.byteOffset).
 getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(a.subarray(4,e))),e]}async function Kr(a,e){return qr(a,new Uint8Array(
-await Oa(e).arrayBuffer()))}function Oa(a){let e=atob(a),t=new Uint8Array(e.length);for(let r=0;r<t.length;r+=1)t[r]=e.charCodeAt(
+await Fa(e).arrayBuffer()))}function Fa(a){let e=atob(a),t=new Uint8Array(e.length);for(let r=0;r<t.length;r+=1)t[r]=e.charCodeAt(
 r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStream("gzip")))}var $r={1:Uint8Array,2:Uint16Array,
 4:Uint32Array};function qr(a,e){let{shape:t,differences:r=[0,0],scale:n=null}=a,s=t.reduce((m,u)=>m*u,1),i=s?e.length/s:
 1;if(!(i in $r))throw new Error(`the packing of the part "${a.name}" is invalid`);let[o,c]=t.length>2?t.slice(-2):[...t,
 1].slice(-2),l=new $r[i](s);for(let m=0,u=0;m<c;m+=1)for(let p=m;p<s;p+=c,u+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+u]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let m=0;m<r[0];m+=1)for(let u=h;u<s;u+=1)l[u]+=l[u-h];for(let m=0;m<r[1];m+=1)for(let u=0;u<
-s;u+=h)for(let p=u+c;p<u+h;p+=1)l[p]+=l[p-c];return Yr(a,n?Fa(l,n.map(m=>2**m)):l)}function Fa(a,e){let t=e.length;return a instanceof
+s;u+=h)for(let p=u+c;p<u+h;p+=1)l[p]+=l[p-c];return Yr(a,n?Na(l,n.map(m=>2**m)):l)}function Na(a,e){let t=e.length;return a instanceof
 Uint16Array?a.map((r,n)=>cr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var mr=1e-6,et=typeof Float32Array<"u"?Float32Array:Array;var Tc=Math.PI/180,_c=180/Math.PI;function Zr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function Qr(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<mr?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
-a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Ca(){var a=new et(3);return et!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function en(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function tn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function rn(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function nn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
+a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Ua(){var a=new et(3);return et!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function en(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function tn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function rn(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function nn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
 r,a[2]=e[2]+t[2]*r,a}function sn(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;return s>0&&(s=1/Math.sqrt(s)),a[0]=e[0]*s,a[1]=e[1]*s,a[2]=e[2]*
 s,a}function an(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function on(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[0],o=t[1],c=t[2];
 return a[0]=n*c-s*o,a[1]=s*i-r*c,a[2]=r*o-n*i,a}function cn(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[3]*r+t[7]*n+t[11]*s+t[15];return i=i||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 i,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/i,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/i,a}function ur(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Lc=(function(){var a=Ca();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Lc=(function(){var a=Ua();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var G=a=>a,te=()=>[0,0,0],ln=a=>new Array(a).fill(0),L=(a,e)=>an(G(a),G(e)),F=a=>en(G(a)),E=(a,e)=>tn(te(),G(a),G(e)),k=(a,e)=>rn(
 te(),G(a),e),I=(a,e)=>on(te(),G(a),G(e)),U=a=>sn(te(),G(a)),T=(a,e,t=1)=>nn(te(),G(a),G(e),t);function tt(a,e,t){let r=Qr(
 ln(16),t*Math.PI/180,G(e));return r===null?te():cn(te(),G(a),r)}function O(a,e){let t=Zr(ln(9),a);return ur(te(),G(e),t)}
-function Z(a,e){return ur(te(),G(e),a)}function S(a,e,t){return Math.min(Math.max(a,e),t)}var Va="own cmap";var hn=256;function Da({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
+function Z(a,e){return ur(te(),G(e),a)}function S(a,e,t){return Math.min(Math.max(a,e),t)}var Da="own cmap";var hn=256;function Ba({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
 length/4-1||1;return o.map((l,h)=>{let[m,u]=[h>>2,h&3],p=Math.round((s?c-m:m)/c*(hn-1));return u===3?l:e[3*(i.indexOf(t)*
 hn+p)+u]})}function mn(a,{beyond:e}){let t=a.length/4,r=a instanceof Float32Array;return Float32Array.from({length:a.length+
 12},(n,s)=>{let[i,o]=[s>>2,s&3],c=a[4*S(i-1,0,t-1)+o];return o===3?r?i?c:1:0:(i>t?e[i-t]:i?null:e[0])?.[o]??c/255})}function un(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:y})=>y===e.scalars);
@@ -90,8 +90,8 @@ includes(r.cmap),M=Math.max(-y,b);[r.low,r.high]=w?[-M,M]:[y,b]}let{coastlines:s
 graticule}=e,o=a.earth&&{...a.earth,coastlines:s,graticule:i},{opacity:c=a.opacity}=e,l={scalars:r,earth:o,opacity:c},[h,
 m]=[t.get("maps"),t.get("cmap")?.data],u=m instanceof Float32Array,p=u&&(e.clim!==void 0||e.scalars!==void 0);if(!h||!(e.
 cmap||p))return{colours:l,part:null};p&&Object.assign(r,{ticks:[],beyond:[null,null,r.beyond[2]]});let f=u&&!p,d=e.cmap?
-Da(a,h.data,e.cmap,f?m:void 0):Uint8Array.from(m??[]),g=[Va,e.cmap,f].join();return{colours:l,part:{name:"cmap",data:d,shape:[
-d.length/4,4],digest:g}}}var pr=[0,0,1],pn=Math.sin(89*Math.PI/180),Ba=.2,pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
+Ba(a,h.data,e.cmap,f?m:void 0):Uint8Array.from(m??[]),g=[Da,e.cmap,f].join();return{colours:l,part:{name:"cmap",data:d,shape:[
+d.length/4,4],digest:g}}}var pr=[0,0,1],pn=Math.sin(89*Math.PI/180),Ha=.2,pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
 this.state=fr(e),this.start=fr(e),this.limits=t,this.flat=r,this.globe=s,this.aspect=n,this.homeHeight=this.height,this.
 nearest=this.distance/t.closest}get height(){let{parallel:e,parallel_scale:t,view_angle:r}=this.state;return e?t:this.distance*
 pe(r)}get distance(){return F(E(this.state.focal_point,this.state.position))}get zoom(){return this.homeHeight/this.height}get axes(){
@@ -107,7 +107,7 @@ this.shift(T(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.
 r.up),i=E(r.position,r.focal_point);i=tt(i,s,-n.turn*e*Math.min(this.aspect,n.widest_turn));let o=U(I(s,i));i=tt(i,o,n.turn*
 t),r.position=T(r.focal_point,i),r.up=U(I(i,o))}roam(e,t){let{state:r,limits:n,globe:s}=this,i=F(r.position),o=Math.max(
 i-s,0)*pe(r.view_angle),c=r.parallel?r.parallel_scale:o,l=Math.min(c/s*180/Math.PI,n.turn),h=Math.hypot(r.position[0],r.
-position[1])/i,m=Math.min(l*this.aspect/Math.max(h,Ba),n.turn);this.turn(pr,-m*e);let[u]=this.axes,p=Math.abs(r.position[2])/
+position[1])/i,m=Math.min(l*this.aspect/Math.max(h,Ha),n.turn);this.turn(pr,-m*e);let[u]=this.axes,p=Math.abs(r.position[2])/
 i,f=fr(r);this.turn(u,l*t),Math.abs(r.position[2])/i>Math.max(pn,p)&&(this.state=f);let[,,g]=this.axes,y=T(pr,g,-L(pr,g));
 F(y)>1-pn&&(this.state.up=U(y))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=tt(r[n],e,t)}zoomBy(e,t=0,r=0){
 if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=S(e,n/
@@ -124,25 +124,25 @@ view_angle);if([c.map(A=>A/g/n),l.map(A=>A/g)].forEach((A,P)=>{for(let R=0;R<3;R
 for(let A=0;A<3;A+=1)d[4*A+2]=h[A]/f;return d[14]=-L(h,p)/f,d[15]=1,d}let b=m(r.position),v=L(E(p,b),h),x=Math.max(v+f,.001*
 f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),_=-2*x*w/(x-w);for(let A=0;A<3;A+=1)d[4*A+2]=h[A]*M,d[4*A+3]=h[A];return d[15]=-L(
 h,b),d[14]=d[15]*M+_,d}function fn({center:a,frame:e},t,r,n,s){let[i,o]=t.axes,{height:c,state:l,aspect:h}=t,[m,u]=[k(i,
-2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,gn=9,Ha=.2,za=1.4,dn=55,Ga=125,Wa=.5,$a=4,bn=4e-5,yn=2e-6;function vn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
+2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,gn=9,za=.2,Ga=1.4,dn=55,Wa=125,$a=.5,ja=4,bn=4e-5,yn=2e-6;function vn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+ae)<=s)return{scale:1,samples:r};let i=Math.min(gn,r),o=Math.sqrt(s/(i+ae)/t);return o<1?{scale:Math.max(
-o,Ha),samples:i}:{scale:1,samples:S(Math.floor(s/t-ae),i,r)}}function xn(a,e,t,r,n){if(!n)return dn;let s=Math.min(gn,r),
-i=e+a*t*Wa**2*(s+ae);return S(i,dn,Ga)}function wn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),$a)}function Mn(a){
+o,za),samples:i}:{scale:1,samples:S(Math.floor(s/t-ae),i,r)}}function xn(a,e,t,r,n){if(!n)return dn;let s=Math.min(gn,r),
+i=e+a*t*$a**2*(s+ae);return S(i,dn,Wa)}function wn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),ja)}function Mn(a){
 return(2*a+ae)/(a+ae)}function En(a,e,t,r,n){let s=Math.max(e,.05)/(t*(r+ae)*n);return a+(s-a)*(s>a?.7:.3)}function An(a,e,t){
 let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:S(
-c,.1,Math.max(za,n))}}var ja=`#version 300 es
+c,.1,Math.max(Ga,n))}}var Ya=`#version 300 es
 precision highp float;
 precision highp int;
-`,Ya=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],de=["u_sli\
+`,Xa=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],de=["u_sli\
 ces","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places",
 "u_depths","u_colours","u_strides"],Ae=class{graphics;entries=new Map;parallel=null;constructor(e){this.graphics=e}findFeatures(){
 this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){this.entries.clear()}dispose(){for(let e of this.
 entries.values()){for(let t of e.shaders)this.graphics.free("Shader",t);this.graphics.free("Program",e.program)}this.clear()}get(e,t,...r){
 let n=[e,t,...r].join("\0"),s=this.entries.get(n);return s||this.entries.set(n,s=this.build(e,t,r)),!s.ready&&!s.error&&
 this.finish(s),s}build(e,t,r){let{graphics:n}=this,s=n.context,i=n.counted(s.createProgram()),o=[s.VERTEX_SHADER,s.FRAGMENT_SHADER],
-c=ja+r.map(m=>`#define ${m}
+c=Ya+r.map(m=>`#define ${m}
 `).join(""),l=[e,t].map((m,u)=>{let p=n.counted(s.createShader(o[u]));return s.shaderSource(p,m.startsWith("#version")?m:
-c+m),s.compileShader(p),s.attachShader(i,p),p});return Ya.forEach((m,u)=>s.bindAttribLocation(i,u,m)),s.linkProgram(i),{
+c+m),s.compileShader(p),s.attachShader(i,p),p});return Xa.forEach((m,u)=>s.bindAttribLocation(i,u,m)),s.linkProgram(i),{
 program:i,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:bn}}}finish(e){let t=this.graphics.context,{program:r}=e,
 n=this.parallel?.COMPLETION_STATUS_KHR;if(n&&!t.getProgramParameter(r,n))return;if(!t.getProgramParameter(r,t.LINK_STATUS)){
 if(t.isContextLost())return;let o=[...e.shaders.map(c=>t.getShaderInfoLog(c)),t.getProgramInfoLog(r)].filter(Boolean).join(
@@ -153,7 +153,7 @@ o.name);!o||!c||e.uniforms.set(o.name.replace(/\[0\]$/,""),{location:c,type:o.ty
 let c=e.uniforms.get(i);c&&c.type!==t.FLOAT_VEC2&&t.uniform1i(c.location,o)}),e.ready=!0}use(e,t){let r=this.graphics.context;
 r.useProgram(e.program);for(let[n,s]of Object.entries(t)){let i=e.uniforms.get(n);if(!i)continue;let{location:o,type:c}=i,
 l=typeof s=="object"?s:[Number(s)];c===r.FLOAT?r.uniform1fv(o,l):c===r.FLOAT_VEC2?r.uniform2fv(o,l):c===r.FLOAT_VEC3?r.uniform3fv(
-o,l):c===r.FLOAT_VEC4?r.uniform4fv(o,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(o,!1,l):r.uniform1i(o,l[0])}}};var Xa=4,Ka=45,qa=[4,68],Ja=Symbol.for("flowtex.gl/3"),dr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+o,l):c===r.FLOAT_VEC4?r.uniform4fv(o,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(o,!1,l):r.uniform1i(o,l[0])}}};var Ka=4,qa=45,Ja=[4,68],Za=Symbol.for("flowtex.gl/3"),dr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Ae(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",e=>{e.
 preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),this.picker=
@@ -163,7 +163,7 @@ _buffer_float","EXT_color_buffer_half_float"];this.floats=t.some(r=>e.getExtensi
 if(!this.gl)throw new Error("WebGL2 is not available");return this.gl}leave(e){if(this.users.delete(e),this.waiting.delete(
 e),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=0,this.programs.dispose();for(let t of[this.picker,
 this.smooth])t&&this.freeTarget(t);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(e){this.
-waiting.add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+Ka;
+waiting.add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+qa;
 for(let r of[...this.waiting])if(this.waiting.delete(r),r.frame(e,t),performance.now()>t)break;this.waiting.size&&(this.
 scheduled||=requestAnimationFrame(r=>this.run(r)))}counted(e){if(e===null)throw new Error("the graphics card has no memo\
 ry left, or the context is lost");return this.objects+=1,e}free(e,t){if(t===null||this.isLost||!this.gl)return;this.objects-=
@@ -174,14 +174,14 @@ i);let c=[[e,s.COLOR_ATTACHMENT0],[s.DEPTH_COMPONENT24,s.DEPTH_ATTACHMENT]].map(
 return s.bindRenderbuffer(s.RENDERBUFFER,m),s.renderbufferStorageMultisample(s.RENDERBUFFER,n,l,t,r),s.framebufferRenderbuffer(
 s.FRAMEBUFFER,h,s.RENDERBUFFER,m),m});return{frame:i,buffers:c}}freeTarget(e){this.free("Framebuffer",e.frame);for(let t of e.
 buffers)this.free("Renderbuffer",t)}bindSmooth(e,t){let r=this.context,n=this.smooth;if(!n||n.width<e||n.height<t){let[s,
-i]=[Math.max(e,n?.width??0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,Xa);this.smooth=
+i]=[Math.max(e,n?.width??0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,Ka);this.smooth=
 {...o,width:s,height:i}}r.bindFramebuffer(r.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(e,t){let r=this.context;r.bindFramebuffer(
 r.READ_FRAMEBUFFER,this.smooth?.frame??null),r.bindFramebuffer(r.DRAW_FRAMEBUFFER,null),r.disable(r.SCISSOR_TEST),r.blitFramebuffer(
 0,0,e,t,0,0,e,t,r.COLOR_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,null)}numbers(e,t=1,r=1){let n=this.context;
-this.picker??=this.target(n.RGBA32UI,...qa,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
+this.picker??=this.target(n.RGBA32UI,...Ja,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
 n.SCISSOR_TEST),n.enable(n.DEPTH_TEST),n.clearBufferuiv(n.COLOR,0,[0,0,0,0]),n.clear(n.DEPTH_BUFFER_BIT),e();let s=new Uint32Array(
 4*t*r);return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function Sn(){
-let a=globalThis;return a[Ja]??=new dr}function gr(a,e,t,r=1){let n=a.getParameter(a.MAX_TEXTURE_SIZE),s=a.getParameter(a.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(
+let a=globalThis;return a[Za]??=new dr}function gr(a,e,t,r=1){let n=a.getParameter(a.MAX_TEXTURE_SIZE),s=a.getParameter(a.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(
 e,t)>n||r>s)throw new Error(`a texture of ${e} x ${t} texels in ${r} layers is needed, but this graphics card supports a\
 t most ${n} x ${n} in ${s}; show fewer nodes`)}function rt(a,e,t){let{width:r,height:n,layers:s,channels:i,levels:o}=t;gr(
 a,r,n,s);let c=a.TEXTURE_2D_ARRAY;a.bindTexture(c,e),a.texStorage3D(c,o+1,i===1?a.R16F:a.RGBA16F,r,n,s),a.texParameteri(
@@ -207,7 +207,7 @@ this.poles.length,1)]}get angles(){let{cells:e}=this,[t,r]=this.raysSize,n=new F
 (s,i)=>{let o=[];for(let c=0;c<=e;c+=1){let[l,h]=this.ray(i,c),m=Math.atan2(h,l);for(;m<o[c-1];)m+=2*Math.PI;o.push(m)}o.
 forEach((c,l)=>{let h=o[0]+2*Math.PI*l/e+1e-6,m=o.findLastIndex(u=>u<=h);n.set([c,Math.hypot(...this.ray(i,l)),m],4*(i*t+
 l))})}),n}get uniforms(){let e=this.poles.flatMap(({line:r,inward:n,near:s},i)=>[r,n,s,this.shift(i)]),t=this.poles.flatMap(
-({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var Tn=32767,[Za,Qa,ei,ti]=[0,1,2,3],ri=2,ni=8,si=4,ai=4,ii=64,oi=64,ci=2e4,li=1e30,_n=1e-5;function Pn(a,e,t){let[r,n]=t,
+({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var Tn=32767,[Qa,ei,ti,ri]=[0,1,2,3],ni=2,si=8,ai=4,ii=4,oi=64,ci=64,li=2e4,hi=1e30,_n=1e-5;function Pn(a,e,t){let[r,n]=t,
 s=a.shape[1],[i,o]=e.drawn,c=new Float64Array(r*n*3);for(let l=0,h=0;l<r;l+=1){let m=3*((l+i+1)*s+o+1);for(let u=0;u<3*n;u+=
 1)c[h++]=a.data[m+u]+e.middle[u%3]}return{data:c,shape:[r,n,3]}}function Rn(a,e,t){let[r,n]=t,s=3*a.shape[1],[i,o]=e.drawn,
 c=new Int16Array(r*n*3);for(let l=0,h=0;l<r;l+=1)for(let m=0;m<n;m+=1,h+=3){let u=s*(l+i+1)+3*(m+o+1),p=g=>[0,1,2].map(y=>a.
@@ -216,7 +216,7 @@ line:h,inward:m}of e.poles??[]){let[u,p]=l?[h-i,n]:[h-o,r];if(u<0||u>=(l?r:n))co
 0,0,0];for(let b=0;b<p;b+=1)for(let v=0;v<3;v+=1)d[v]+=c[f(u+m,b)+v];let g=F(d)||1,y=d.map(b=>Math.round(b/g*Tn));for(let b=0;b<
 p;b+=1)c.set(y,f(u,b))}return{data:c,shape:[r,n,3]}}function ie({slices:a},e){let{trace:t,times:r,lags:n}=a;if(!t?.pathlines||
 !t.timed)return[e];let s=n[n.length-1]*t.timed.unit,i=r.map(c=>Math.abs(c-r[e])<s),o=c=>i[c]||i[c-1]||i[c+1];return[...r.
-keys()].filter(o)}function hi({slices:a},e,t,r,n){let{trace:s,times:i}=a;if(!s?.pathlines||!s.timed)return[{from:r,to:n,
+keys()].filter(o)}function mi({slices:a},e,t,r,n){let{trace:s,times:i}=a;if(!s?.pathlines||!s.timed)return[{from:r,to:n,
 steps:[e,e],between:[0,1]}];let o=[],{unit:c}=s.timed,l=h=>t*(i[h]-i[e])/c;for(let h=e;r<n;h+=t){let m=!(h+t in i),u=m?n:
 l(h+t);if(u<=r+_n*n)continue;let p=m?[0,1]:[l(h),u],f=u>=n-_n*n;o.push({from:r,to:f?n:u,steps:[h,m?h:h+t],between:p}),r=
 f?n:u}return o}function at({programs:a,floats:e},t,r){let{fullVertex:n,trace:s="",layers:i=""}=t.shaders,o=(h,...m)=>{let u=m.
@@ -236,7 +236,7 @@ TEXTURE_2D,1,r,e,t),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST)
 s.NEAREST),n&&s.texSubImage2D(s.TEXTURE_2D,0,0,0,e,t,s.RGBA,s.FLOAT,n),i}frame(){let e=this.graphics.context,t=this.graphics.
 counted(e.createFramebuffer());return this.frames.push(t),e.bindFramebuffer(e.FRAMEBUFFER,t),t}target(e,t){let r=this.graphics.
 context,n=this.texture(e,t,r.RGBA32UI,null),s=this.frame();return r.framebufferTexture2D(r.FRAMEBUFFER,r.COLOR_ATTACHMENT0,
-r.TEXTURE_2D,n,0),[n,s]}unbind(){let e=this.graphics.context;for(let t=0;t<ni;t+=1)e.activeTexture(e.TEXTURE0+t),e.bindTexture(
+r.TEXTURE_2D,n,0),[n,s]}unbind(){let e=this.graphics.context;for(let t=0;t<si;t+=1)e.activeTexture(e.TEXTURE0+t),e.bindTexture(
 e.TEXTURE_2D,null),e.bindTexture(e.TEXTURE_2D_ARRAY,null);e.bindFramebuffer(e.FRAMEBUFFER,null)}flow(e){let{trace:t}=this,
 r=this.numbers(`flow/${e}`),n=this.data("unit"),s=r.length/n.length,i=new Float32Array(4*n.length);for(let c=0,l=0;c<n.length;c+=
 1,l+=s){let h=r[l+2],m=Re[n[c]]*t.unit;i[4*c]=r[l]*h/m,i[4*c+1]=r[l+1]*h/m,i[4*c+2]=h,i[4*c+3]=t.timed?t.timed.unit:m}let o=this.
@@ -247,8 +247,8 @@ trace.nodes,[r,n]=["open","nearest"].map(i=>this.find(i)?.data),s=new Float32Arr
 r?r[i]:1;for(let o of[0,1])s[4*i+1+o]=n?n[2*i+o]:0}return s}padded(){let e=this.data("padded"),t=new Float32Array(e.length/
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,i=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
-flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=ai)break;this.flows.delete(o),this.textures.delete(c),this.
-graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=S(Math.ceil((t-e)*this.fastest/ii),1,oi),n=s=>s===r?t:e+
+flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=ii)break;this.flows.delete(o),this.textures.delete(c),this.
+graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=S(Math.ceil((t-e)*this.fastest/oi),1,ci),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,i)=>[n(i),n(i+1)])}layerTarget(e,t){let r=this.graphics.context,{width:n,height:s}=t;
 if(this.graphics.floats){let m=this.frame();return{begin:u=>(r.bindFramebuffer(r.FRAMEBUFFER,m),r.framebufferTextureLayer(
 r.FRAMEBUFFER,r.COLOR_ATTACHMENT0,e,0,u),[n,s]),end:()=>{},finish:()=>{r.activeTexture(r.TEXTURE0),r.bindTexture(r.TEXTURE_2D_ARRAY,
@@ -261,7 +261,7 @@ layers:o.count,channels:4,levels:i.levels},p=s.createTexture();this.result=p,s.a
 d=this.texture(f.size.width,f.size.height,s.RGBA32F,this.flow(e)),g=this.texture(...f.raysSize,s.RGBA32F,f.angles),y=[this.
 texture(l,c,s.RGBA32F,this.cells()),this.texture(l+2,c+2,s.RGBA32F,this.padded()),this.texture(l,c,s.RGBA32F,this.wholeSpeed(
 e))],b=[0,1,2,3,4].map(()=>this.target(l,c)),{lags:v,sides:x,count:w}=o,M={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,
-u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...f.uniforms,u_longest:r.longest??li,u_nodes:[l,c],u_closed:[Number(r.closed[1]),
+u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...f.uniforms,u_longest:r.longest??hi,u_nodes:[l,c],u_closed:[Number(r.closed[1]),
 Number(r.closed[0])],u_first:[r.first[1],r.first[0]],u_texels:[m,h],u_offsetJ:r.offset.slice(0,3),u_offsetI:r.offset.slice(
 3,6),u_timed:r.timed?.speed??0,u_rest:r.rest,u_pace:r.pace,u_unit:o.unit,u_cell:o.cell/o.unit,u_planar:Number(i.planar),
 u_mostReach:2*v[v.length-1]},_=([C,J],we,he,Pe)=>{s.viewport(0,0,C,J);for(let j of[s.SCISSOR_TEST,s.DEPTH_TEST,s.BLEND,s.
@@ -269,18 +269,18 @@ CULL_FACE])s.disable(j);we.forEach((j,ee)=>{s.activeTexture(s.TEXTURE0+ee),s.bin
 null),t.programs.use(he,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},A=this.layerTarget(p,u),P=(C,J,we,he)=>{_(A.begin(C),
 [d,...y,...we],J,he),A.end(C)},{follow:R,compose:N,slopes:B,tangents:q}=at(t,n,r);P(0,q,[],{u_inCells:0}),w>1+x*v.length&&
 P(w-1,q,[],{u_inCells:1});let se=0;for(let C=0;C<x;C+=1){let J=C?1:-1,we=1+C*v.length,[he,Pe,j]=[b[0],b[0],b[0]];for(let[
-ee,Je]of v.entries()){let[Cr,Ur]=[v[ee-1]??0,v[ee-2]??0],Vr=Je>si&&Ur>0?N:null,Ze=j;for(let ir of hi(n,e,J,Cr,Je)){let[_a,
-Pa]=ir.steps.map(or=>this.flowTexture(or)),Ra=Vr?[[Cr,Je]]:this.partsOf(ir);for(let[or,La]of Ra){let Dr=b.find(ka=>![he,
-Pe,j,Ze].includes(ka))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Dr[1]),_([l,c],[_a,...y,Ze[0],Pe[0],Pa,g],Vr??R,{u_lagEarlier:Ur,
-u_from:or,u_to:La,u_side:J,u_between:ir.between}),Ze=Dr,!((se+=c*l)<ci)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,s.UNSIGNED_INT,
-new Uint32Array(4)),se=0,yield)}}[Pe,j]=[j,Ze],ee||(he=j);let Sa=r.uncertain&&ee===ri,Ta=ee===1&&!C?Qa:Sa?ti:Za;ee&&P(we+
-ee,B,[j[0],j[0]],{u_fourth:Ta,u_lag:J*Je})}P(we,B,[he[0],j[0]],{u_fourth:ei,u_lag:J*v[0]})}return A.finish(),p}};var mi={slices:[12,4],flow:[100,24]},ui=24,ot=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
+ee,Je]of v.entries()){let[Cr,Ur]=[v[ee-1]??0,v[ee-2]??0],Vr=Je>ai&&Ur>0?N:null,Ze=j;for(let ir of mi(n,e,J,Cr,Je)){let[Pa,
+Ra]=ir.steps.map(or=>this.flowTexture(or)),La=Vr?[[Cr,Je]]:this.partsOf(ir);for(let[or,ka]of La){let Dr=b.find(Oa=>![he,
+Pe,j,Ze].includes(Oa))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Dr[1]),_([l,c],[Pa,...y,Ze[0],Pe[0],Ra,g],Vr??R,{u_lagEarlier:Ur,
+u_from:or,u_to:ka,u_side:J,u_between:ir.between}),Ze=Dr,!((se+=c*l)<li)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,s.UNSIGNED_INT,
+new Uint32Array(4)),se=0,yield)}}[Pe,j]=[j,Ze],ee||(he=j);let Ta=r.uncertain&&ee===ni,_a=ee===1&&!C?ei:Ta?ri:Qa;ee&&P(we+
+ee,B,[j[0],j[0]],{u_fourth:_a,u_lag:J*Je})}P(we,B,[he[0],j[0]],{u_fourth:ti,u_lag:J*v[0]})}return A.finish(),p}};var ui={slices:[12,4],flow:[100,24]},pi=24,ot=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
 digest:r}=e;if(r&&this.all.get(t)?.digest===r)return!1;let n=this.graphics.hold(e);return this.remove(t),this.all.set(t,
 n),!0}remove(e){this.graphics.release(this.all.get(e)),this.all.delete(e)}clear(e=()=>!0){for(let t of[...this.all.keys()])
 e(t)&&this.remove(t)}trim(e,t,r){let{hasSteps:n=!1,hasMarks:s=!1,memory:i=0}=t??{};if(!e||!n)return;for(let h of s?Object.
-keys(Me):[]){let m=[...this.all.keys()].filter(u=>u.startsWith(`${h}/`));for(let u of m.slice(0,-ui))r.includes(Y(u))||this.
+keys(Me):[]){let m=[...this.all.keys()].filter(u=>u.startsWith(`${h}/`));for(let u of m.slice(0,-pi))r.includes(Y(u))||this.
 remove(u)}let o=e.slices.trace?"flow":"slices",c=h=>[...this.all.keys()].filter(m=>m.startsWith(h)),l=r.flatMap(h=>ie(e,
-h));for(let h of c(`${o}/`).slice(0,-mi[o][+(i>0)])){let m=Y(h);if(l.includes(m))continue;for(let p of[o,"extra"])this.remove(
+h));for(let h of c(`${o}/`).slice(0,-ui[o][+(i>0)])){let m=Y(h);if(l.includes(m))continue;for(let p of[o,"extra"])this.remove(
 `${p}/${m}`);let u=i?c("scalars/"):[];for(let p of u)Ee(p,m,e)&&this.remove(p)}}};var ct=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(e,t,r,n={}){(e===document||e===window)&&(this.globalListeners+=1);let{signal:s}=this.controller;
 e.addEventListener(t,r,{...n,signal:s})}later(e,t){let r=setTimeout(()=>{this.timers.delete(r),e()},t);return this.timers.
@@ -292,33 +292,33 @@ h=t.eye[3],m=O(n.frame,E(t.eye,k(n.center,h))),u=kn(a,e),p=u?"ramp":o.kernel,f=c
 m,k(t.anchor,h)),h],u_between:t.between,u_slicesSize:[n.columns.size,n.rows.size],u_deepest:n.levels,u_lags:s.lags,u_lagCount:s.
 lags.length,u_sides:o.two_sided||c||u?s.sides:1,u_unit:s.unit,u_rateLayer:s.count-1,u_cell:s.cell,u_samples:lt(a,e,t.still)?
 2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
-contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...pi(a,o,
-t),...fi(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:br(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
-d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?di(a.paper,o,r,t.density):{}}}function lt(a,e,t=!1){let r=e.
+contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...fi(a,o,
+t),...di(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:br(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
+d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?gi(a.paper,o,r,t.density):{}}}function lt(a,e,t=!1){let r=e.
 motion!=="off"&&!me(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function kn(a,e){return!a.paper&&e.texture==="streaklet\
 s"}function Le(a,e){return Number(e.arrows)>0&&!me(a)&&!a.paper}function br({constants:a},{arrows:e}){return a.arrows.least*
 Math.max(Number(e),a.arrows.mostDense)}function ht(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...E(t.
 eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...E(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:
 r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function On(a,e,t,r){let n={FLOWTEX_CELLS:t,
-FLOWTEX_MOVING:lt(a,e,r),FLOWTEX_SPARSE:kn(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}function pi(a,e,t){
+FLOWTEX_MOVING:lt(a,e,r),FLOWTEX_SPARSE:kn(a,e)};return Object.entries(n).flatMap(([s,i])=>i?[s]:[])}function fi(a,e,t){
 let{geometry:r,constants:n}=a,{times:s,pace:i}=a.slices,o=s.length>1,c=!o&&e.speed_in==="pixels",l=s[s.length-1]-s[0],h=l*
 i/r.extent,m=o?l/(Math.round(h)||h):e.period,u=(o?t.time-s[0]:t.clock)/m%n.mostTurns,p=m*(o?i:e.speed),f=u%n.clockStep;return{
 u_clock:[u-f,f],u_travel:p*(c?t.density:1),u_travelInPixels:c,u_travelBySpeed:o||e.motion==="speed",u_wave:n.wavePixels*
-t.density}}function fi(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=O(s,E(e.
+t.density}}function di(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=O(s,E(e.
 focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>S(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*
 l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:u,u_noiseRestOdd:m.map((p,f)=>p-
-u[f])}}function di(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),u_noiseGrain:a.
+u[f])}}function gi(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),u_noiseGrain:a.
 grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[Number(a.repeat[1]),
 Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function yr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.
-length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,S(r,0,1)]}var gi=.5,bi=6,yi=60,vi=.5,mt=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,S(r,0,1)]}var bi=.5,yi=6,vi=60,xi=.5,mt=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return yr(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
 times[t]-this.times[e])}seek(e){this.time=S(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
 r:o>=r),s=t.length,i=n<0?s:n;return t[(e>0?i:i-1+s)%s]}start(){this.playing=!0,this.lastFrame=0}range(e){if(this.varies)
 return{first:this.span[0],last:this.span[1],now:this.time};let t=Number(e.period);return{first:0,last:t,now:this.clock%t}}advance(e,t){
-let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,vi)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
-r,!0;let[n,s]=this.span,i=S(gi*(this.times.length-1),bi,yi),o=this.time+r*(s-n)/i,[c,l]=yr(this.times,Math.min(o,s));return t(
+let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,xi)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
+r,!0;let[n,s]=this.span,i=S(bi*(this.times.length-1),yi,vi),o=this.time+r*(s-n)/i,[c,l]=yr(this.times,Math.min(o,s));return t(
 [c,l])?(this.time=o>s?n:o,!0):!1}};var Fn=()=>null,ut=class{};var V="",Nn=5,z=a=>a.join("/"),oe=a=>a.split("/").map(Number);function In(a,e){let[t,r,n]=["samples","spacing","grain"].
 map(i=>Number(e[i])),s=.5*t*r*n;return a.cellPixels*Math.max(1,2*s/(a.cellPixels*a.pathCells))}var pt=class{header;place;constructor(e,t){
 this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Nn*(n[s]+i*
@@ -338,112 +338,112 @@ Math.max(F(E([r,n,s],a))-i,o):1;return o*.5*t/(e*c)}function Cn(a){return[...a].
 n=s=>{let{needed:i=!1,finer:o=[]}=a.get(s)??{},c=o.filter(n);return s!==V&&!i&&c.length===o.length?!0:s!==V&&!e(s)?(c.forEach(
 r),!1):(t.set(s,c),!0)};return n(V),t}function ft(a,e,t){let r=s=>Math.min(s*2**e,t-1),n=Math.floor(a);return r(n)+(a-n)*
 (r(n+1)-r(n))}function Un(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/
-(Math.min((n+1)*r,t-1)-n*r)}var Vn=1e4,xi=20,wi=4,Mi=4,Ei="The surface is shown coarse",Ai="A part of the surface is shown coarse",Si="A time step c\
+(Math.min((n+1)*r,t-1)-n*r)}var Vn=1e4,wi=20,Mi=4,Ei=4,Ai="The surface is shown coarse",Si="A part of the surface is shown coarse",Ti="A time step c\
 annot be shown",Se=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
 now())}has(e){return this.now()-(this.times.get(e)??-1/0)<Vn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Se;constructor(e,t){
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
 running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Se}next(){for(let e of this.jobs){if(this.
-running.size>=(this.source()?.atOnce??wi))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
+running.size>=(this.source()?.atOnce??Mi))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
 let{taker:t}=this,r=this.source();if(!r)return;let[n,s,i]=e,o=new AbortController,{signal:c}=o,l=h=>n?t.tiles?.has(z(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),o);try{let h=await r.load(n,s,c,l,i);if(!c.aborted)for(let m of h)t.setPart(
 m)}catch(h){c.aborted||this.fail(e,h)}c.aborted||(this.running.delete(String(e)),this.failed.has(String(e))||(this.jobs=
 this.jobs.filter(h=>String(h)!==String(e))),this.next())}fail(e,t){let[r,n]=e;this.failed.add(String(e)),setTimeout(()=>this.
-next(),Vn+xi);let s=t.fault==="unreachable",i=r&&!s?z(r):void 0;this.taker.lack(Dn(r?Ai:Si,t),i,n)}};function Dn(a,e){let{
+next(),Vn+wi);let s=t.fault==="unreachable",i=r&&!s?z(r):void 0;this.taker.lack(Dn(r?Si:Ti,t),i,n)}};function Dn(a,e){let{
 fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?r:`${a}: ${r}`}var dt=class{tiles;wholes;marks;given;formula=null;constructor(e,t){
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
 source?.hasMarks??!1}setHeader(e){this.stop(),this.formula=e.formula?new ut(e,e.formula):null}follow(e){return this.formula?.
 follow(e)??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.tiles;this.source?.open?.().
-catch(t=>e.lack(Dn(Ei,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
-,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+Mi);this.wholes.want(r.map(
+catch(t=>e.lack(Dn(Ai,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
+,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+Ei);this.wholes.want(r.map(
 n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){
 this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Bn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
 frame,E(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(E(h,t))?u(h)?h:[0,
-0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var Ti=-1e9,Hn=500;function gt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);
-for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function _i(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
+0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var _i=-1e9,Hn=500;function gt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);
+for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function Pi(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
 for(let s of a)t[r++]=s,t[r++]=n;return t}function zn({shape:a,rows:e,columns:t}){let r=(n,{before:s,size:i})=>Array.from(
-{length:n},(o,c)=>(c+s+.5)/i);return _i(r(a[1],t),r(a[0],e))}function Gn(a,e){let t=Math.max(a.length,e.length);return Float32Array.
+{length:n},(o,c)=>(c+s+.5)/i);return Pi(r(a[1],t),r(a[0],e))}function Gn(a,e){let t=Math.max(a.length,e.length);return Float32Array.
 from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Wn(a){let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.
 hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=r}return e}function bt(a,e){let t=a[0]?.length??0,r=new Float32Array(
-2*t),n=lr(e);return a.forEach((s,i)=>{for(let o=0;o<t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?S(c,-Hn,Hn):Ti}}),
+2*t),n=lr(e);return a.forEach((s,i)=>{for(let o=0;o<t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?S(c,-Hn,Hn):_i}}),
 r}function $n([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],c=s*e+n,[l,
 h]=[Math.min(i,o),Math.max(i,o)],m=c+(i>=o?1:e);return[[c,1-h],[m,h-l],[c+e+1,l]]}function yt(a,e){return a.reduce((t,[r,
-n])=>t+n*e(r),0)}var jn=180/Math.PI;var Pi=1e-4;function Ri(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=S(
-Math.floor(t)-1,0,e-4);return[r,Ri(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Yn((i[0]-a)/(t-a),c),
+n])=>t+n*e(r),0)}var jn=180/Math.PI;var Ri=1e-4;function Li(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=S(
+Math.floor(t)-1,0,e-4);return[r,Li(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Yn((i[0]-a)/(t-a),c),
 [m,u]=Yn((i[1]-e)/(r-e),o),p=[0,0,0];return u.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((m+d)*
 c+l+y)+b]})}),p}function vt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?Mr(a.map,t,e):e,i=[Math.atan2(n,r),Math.
 atan2(s,Math.hypot(r,n))];return i.every(Number.isFinite)?[i[0]*jn,i[1]*jn]:null}function Xn(a,e,t,r){let[n,s]=[e,t];if(a.
-map&&r){let{map:p,radius:f}=a,d=Pi*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
+map&&r){let{map:p,radius:f}=a,d=Ri*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
 n=Mr(p,r,e),s=y.map((b,v)=>f*(b-g[v])/(2*d))}let[i,o,c]=n,[l,h]=[Math.hypot(i,o)||1,Math.hypot(i,o,c)||1],m=(i*s[1]-o*s[0])/
-l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var Li=.9999999;function Kn(a,e){return Uint32Array.from({length:4*e.length},(t,r)=>r%4<3?a[3*(r>>2)+r%4]:e[r>>2])}function Oe(a,e,t){
-return[t,a+Math.min(Math.max(e,0),Li)]}function qn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[
-a[3*r+c],o])}var Jn=8,ki=4,Oi=10,Fi=.05,Ni=.25,es=1e-6,Ii=.001;function Ci({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
+l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var ki=.9999999;function Kn(a,e){return Uint32Array.from({length:4*e.length},(t,r)=>r%4<3?a[3*(r>>2)+r%4]:e[r>>2])}function Oe(a,e,t){
+return[t,a+Math.min(Math.max(e,0),ki)]}function qn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[
+a[3*r+c],o])}var Jn=8,Oi=4,Fi=10,Ni=.05,Ii=.25,es=1e-6,Ci=.001;function Ui({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
 header.geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[o,c]=[e[0]+t+s.before,e[1]+r+
 n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=S(
 l+(f&1),0,s.size-1);return[S(h+(f>>1),0,n.size-1)*s.size+d,p]})}function ts(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
-header,s=Ci(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
-Ui(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
+header,s=Ui(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
+Vi(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
 -1:1)*n.lags.length,b=u[g]<0&&p>0?y:p;h.forEach((v,x)=>{m[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*m[x]*w*(M<3?u[g]:1)})})}),f}}
-function Ui(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Vi(a,e,t,r,n){
+function Vi(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Di(a,e,t,r,n){
 let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let m=a(t+h+
 1).slice(0,3);for(let u=1;u<=Jn;u+=1){let p=u/Jn,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(m[b]-y));
 if(l.push(k(g,r*f*n)),f===c)break}[s,i]=[m,e[h]]}return l}function rs({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.
 header;if(!r)return l=>T(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Zn(s,e[0]),Zn(i,e[1])],c=Fe(a,e);return([l,h])=>{let m=[
 Qn(s,o[0]+l),Qn(i,o[1]+h)];return m.some(Number.isNaN)?null:T(t,E(Fe(a,m),c))}}function Ne(a,e){return T(Fe(a,e),a.header.
 geometry.center)}function Fe(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>yt(r,i=>t[3*i+s]));return Z(
-a.header.geometry.frame,n)}function Di(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
+a.header.geometry.frame,n)}function Bi(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
 e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>S(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
 return[E(i(.5,0),i(-.5,0)),E(i(0,.5),i(0,-.5))]}function Zn(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Qn(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Bi({scene:a,place:e,position:t},r,n,s){let{
-geometry:i,paper:o}=a.header,c=I(...Di(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Fi),u=2*l/s;if(o){let[
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Hi({scene:a,place:e,position:t},r,n,s){let{
+geometry:i,paper:o}=a.header,c=I(...Bi(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Ni),u=2*l/s;if(o){let[
 y,b]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.size[w]}),v=Math.
 sqrt(F(c)/(y*b));return o.grain*(r.lod?Math.max(u/Math.sqrt(m),v):v)}let p=i.extent/Number(r.resolution),f=L(h,n.at(n.state.
-focal_point).ray),g=u*Math.sqrt(Math.max(f,Ni/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Hi(a,e,t){
+focal_point).ray),g=u*Math.sqrt(Math.max(f,Ii/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function zi(a,e,t){
 let r=[],[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(T(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}
 return r}function Er(a){let{scene:e,position:t}=a,{slices:r,paper:n,speed:s}=e.header,i=ts(a),[o,c,l]=i(0),h=[o,c,l],m=k(
-h,Ii*(n?1/n.size[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){
+h,Ci*(n?1/n.size[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){
 let{scene:n,position:s}=a,{slices:i,paper:o}=n.header,c=ts(a),l=!me(n.header),h=c(0),m=[h[0],h[1],h[2]],u=rs(a),p=[],f=e.
-two_sided||!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,A=Vi(c,i.lags,w*i.lags.length,w?1:-1,M).map(
+two_sided||!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,A=Di(c,i.lags,w*i.lags.length,w?1:-1,M).map(
 u),P=A.findIndex(R=>R===null);p.push(A.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=lt(n.header,e,!0)?2*d-1:d,y=f===
-2?Math.floor(g/2):g-1,b=Number(e.spacing)*Bi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(A=>Hi(s,A,w));return[...M.reverse(),s,..._]};
-return{path:v(ki*Math.max(y,Oi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var zi=8,Gi=1e-6,Wi=.001,$i=89.99,ji=a=>a-360*Math.round(a/360);function Ar([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+2?Math.floor(g/2):g-1,b=Number(e.spacing)*Hi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(A=>zi(s,A,w));return[...M.reverse(),s,..._]};
+return{path:v(Oi*Math.max(y,Fi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var Gi=8,Wi=1e-6,$i=.001,ji=89.99,Yi=a=>a-360*Math.round(a/360);function Ar([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function xt({header:a},e){return e.map((t,r)=>S(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ss=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function as(a,e,[t,r],n){let{earth:s}=a.header,i=Ar(e).map(d=>s&&vt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
-abs(d[1])>$i))return null;let[o,c,l,h]=i.map(d=>[ji(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
-...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Wi*p)?null:[(o[1]*
+abs(d[1])>ji))return null;let[o,c,l,h]=i.map(d=>[Yi(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
+...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>$i*p)?null:[(o[1]*
 u[0]-o[0]*u[1])/f,(o[0]*m[1]-o[1]*m[0])/f]}function is(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&vt(n,
-t,r);if(!i)return e;let o=xt(a,e);for(let c=0;c<zi;c+=1){let l=as(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
-.5+Gi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+S(l[p],0,1));o=m}return e}function os(a,e){
+t,r);if(!i)return e;let o=xt(a,e);for(let c=0;c<Gi;c+=1){let l=as(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
+.5+Wi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+S(l[p],0,1));o=m}return e}function os(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=xt(a,e),s=ss(e.map((i,o)=>i-n[o]));return Ar(
 n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function cs(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
 o=s&&vt(s,n,e);if(!o)return null;let c=u=>Xn(s,u.position,Er(u),e),l=xt(t,r);if(i.triangles||!as(t,l,o,e))return c(a);let h=ss(
 r.map((u,p)=>u-l[p])),m=Ar(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[0,1].map(u=>m.reduce((p,f,d)=>p+h[d]*f[u],
-0))}var Yi=16;function hs(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
-c,...o):Xi(l,...o),m=t.ray(n,s),u=ls(i.scene,h,m)[1],[p,f]=ls(i.scene,u,m),d=is(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
-d:Ki(e.header,i,d);return{point:{position:p,index:g,values:qi(i.scene,r,d)},layer:i,place:d}}function Xi({rows:a,columns:e,
-shape:t},r,n){let s=(i,{size:o,before:c},l)=>S(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function Ki(a,{key:e},[t,
+0))}var Xi=16;function hs(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
+c,...o):Ki(l,...o),m=t.ray(n,s),u=ls(i.scene,h,m)[1],[p,f]=ls(i.scene,u,m),d=is(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
+d:qi(e.header,i,d);return{point:{position:p,index:g,values:Ji(i.scene,r,d)},layer:i,place:d}}function Ki({rows:a,columns:e,
+shape:t},r,n){let s=(i,{size:o,before:c},l)=>S(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function qi(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,m]=n?.shapes[0]??s.shape,u=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>ft(
 f+d*u,o,g);return[p(t,l,m),p(r,c,h)]}function ls(a,e,[t,r]){let{geometry:n}=a.header,{data:s}=a.part("position"),i=a.cornersAt(
 e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(
-t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Yi)){
+t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Xi)){
 let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(e[1]),d,Math.max(g,0))];let[y,b]=n.
-shape,v=(x,w)=>{let[M,_,A]=i.map(x);return S(M+d*(_-M)+g*(A-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function qi(a,e,t){
+shape,v=(x,w)=>{let[M,_,A]=i.map(x);return S(M+d*(_-M)+g*(A-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function Ji(a,e,t){
 let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=os(a,t),c=i.triangles?Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.
 map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===
-null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):yt(o,b)}return u}var Ji=3,Zi=5;function ms({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
+null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):yt(o,b)}return u}var Zi=3,ms=5;function us({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let m of[Math.floor((l-1)/
-n),Math.floor(l/n)])for(let u of[Math.floor((h-1)/n),Math.floor(h/n)])m>=0&&m<s&&u>=0&&u<i&&(o[m*i+u]=0)}return o}function us({
-shape:a,data:e},t,r,n,s){let[i,o,c]=a,l={...t.sight(r),planes:t.planes},h=new Int8Array(i*o).fill(-1),m=[1,1,-1,-1];for(let u=0;u<
-h.length;u+=1){let[p,f]=[Math.floor(u/o),u%o],d=e.subarray(c*(u+1)-Zi,c*(u+1));if(n.some(([b,v,x])=>p>=b&&p<b+x&&f>=v&&f<
-v+x)||!vr(l,d))continue;let y=Math.floor(Math.log2(Ji/xr(l,d)));h[u]=Math.min(Math.max(y,0),s[u]),Qi(t,d).forEach((b,v)=>m[v]=
-v<2?Math.min(m[v],b):Math.max(m[v],b))}return{levels:h,box:m}}function Qi(a,[e,t,r,n]){let[s,i,o]=a.axes,{parallel:c,position:l,
+n),Math.floor(l/n)])for(let u of[Math.floor((h-1)/n),Math.floor(h/n)])m>=0&&m<s&&u>=0&&u<i&&(o[m*i+u]=0)}return o}function ps({
+shape:a,data:e},t,r,n,s){let[i,o]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(i*o).fill(-1),h=[1,1,-1,-1];for(let m=0;m<
+l.length;m+=1){let[u,p]=[Math.floor(m/o),m%o],f=e.subarray(ms*m,ms*(m+1));if(n.some(([y,b,v])=>u>=y&&u<y+v&&p>=b&&p<b+v)||
+!vr(c,f))continue;let g=Math.floor(Math.log2(Zi/xr(c,f)));l[m]=Math.min(Math.max(g,0),s[m]),Qi(t,f).forEach((y,b)=>h[b]=
+b<2?Math.min(h[b],y):Math.max(h[b],y))}return{levels:l,box:h}}function Qi(a,[e,t,r,n]){let[s,i,o]=a.axes,{parallel:c,position:l,
 focal_point:h}=a.state,m=E([e,t,r],c?h:l),u=[-n,n].map(d=>a.at(T([e,t,r],o,d)).height);if(!(u[0]>0))return[-1,-1,1,1];let[
 p,f]=[-n,n].map(d=>[L(m,s)/a.aspect,L(m,i)].map((g,y)=>u.map(b=>(g+d/(y?1:a.aspect))/b)));return[...p.map(d=>Math.min(...d)),
-...f.map(d=>Math.max(...d))]}var eo=1024,ps=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
+...f.map(d=>Math.max(...d))]}var eo=1024,fs=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let i=e.map(({scene:p,covered:f})=>[p.number,p.version,
 f]),o=JSON.stringify([i,t.state,t.aspect,r,n,s]);if(o===this.key)return;Object.assign(this,{key:o,layers:e,width:n,height:s});
 let c=this.graphics.context,{frames:l}=this.make(n,s),[{scene:h}]=e,m=Math.min(...e.map(({key:[p]})=>p))+Math.log2(h.header.
-mesh.tileCells);this.seen=e.map(({scene:p,covered:f,key:[d]})=>{let g=p.doublings.map(y=>Math.max(Math.min(y,m-d),0));return us(
+mesh.tileCells);this.seen=e.map(({scene:p,covered:f,key:[d]})=>{let g=p.doublings.map(y=>Math.max(Math.min(y,m-d),0));return ps(
 p.blocks,t,s,f,g)}),this.sendStrides(),c.bindFramebuffer(c.FRAMEBUFFER,l[0]),c.viewport(0,0,n,s),c.disable(c.SCISSOR_TEST),
 c.enable(c.DEPTH_TEST),c.depthFunc(c.LESS),c.disable(c.BLEND),c.clearBufferuiv(c.COLOR,0,[0,0,0,0]),c.clear(c.DEPTH_BUFFER_BIT);
 let u=H(h.header.geometry,t,r);h.bodies.hide(u,r),h.bodies.seeThrough(()=>this.triangles(h.programs("place"),u,r),!1)}triangles(e,t,r,n={}){
@@ -471,7 +471,7 @@ uffer",r);this.target=null,this.key=""}sendStrides(){let{layers:e,seen:t,target:
 Math.max(...c)/eo)),0);let l=2**-this.squares,[h,m]=c.map(p=>Math.ceil(p*l)),u=new Uint8Array(h*m);e.forEach(({scene:p,key:[
 f,...d]},g)=>{let y=p.blocks.shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,A]]=[
 Math.floor(x/y),x%y].map((P,R)=>{let N=(P+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});
-for(let P=w;P<M;P+=1)for(let R=_+P*m;R<A+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+ps[3]),n.bindTexture(
+for(let P=w;P<M;P+=1)for(let R=_+P*m;R<A+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+fs[3]),n.bindTexture(
 n.TEXTURE_2D,r?.textures[3]??null),n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,m,h,0,n.RED_INTEGER,
 n.UNSIGNED_BYTE,u)}make(e,t){let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:i}=this,
 o={width:Math.max(e,r?.width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.
@@ -479,16 +479,16 @@ RGBA8,0].map(h=>{let m=n.counted(s.createTexture());return s.bindTexture(s.TEXTU
 1,h,o.width,o.height),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MAG_FILTER,
 s.NEAREST),m}),l=[[c[0],c[1]],[c[2]]].map(h=>{let m=n.counted(s.createFramebuffer());return s.bindFramebuffer(s.FRAMEBUFFER,
 m),h.forEach((u,p)=>{let f=p?s.DEPTH_ATTACHMENT:s.COLOR_ATTACHMENT0;s.framebufferTexture2D(s.FRAMEBUFFER,f,s.TEXTURE_2D,
-u,0)}),m});return this.key=i,this.target={frames:l,textures:c,...o}}bind(){let e=this.graphics.context;ps.forEach((t,r)=>{
+u,0)}),m});return this.key=i,this.target={frames:l,textures:c,...o}}bind(){let e=this.graphics.context;fs.forEach((t,r)=>{
 e.activeTexture(e.TEXTURE0+t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+de.
-length)}};function fs(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
-t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function ds(a){return a[0]*a[3]-a[1]*a[2]}function gs(a,e,t){var r=e[0],n=e[1],
+length)}};function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
+t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function gs(a){return a[0]*a[3]-a[1]*a[2]}function bs(a,e,t){var r=e[0],n=e[1],
 s=e[2],i=e[3],o=e[4],c=e[5],l=t[0],h=t[1],m=t[2],u=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+i*h,a[2]=r*m+s*u,a[3]=
-n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var ro=4,no=.3,Sr=1e-6,bs=(a,e)=>gs([0,0,0,0,0,0],a,e),ys=a=>fs([0,0,0,0,0,0],a);function vs(a,e,t,r){let[n,s]=[t/2,r/2],
-i=M=>bs([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=bs(i(e),ys(i(a))),c=Math.abs(ds(o));if(!(c>no**2&&c<ro**2))return null;
-let[l,h,m,u,p,f]=ys(o),d=([M,_])=>Math.abs((l*M+m*_+p)/n-1)<1+Sr&&Math.abs((h*M+u*_+f)/s-1)<1+Sr,g=[[0,0],[t,0],[0,r],[t,
+n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var ro=4,no=.3,Sr=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
+i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(gs(o));if(!(c>no**2&&c<ro**2))return null;
+let[l,h,m,u,p,f]=vs(o),d=([M,_])=>Math.abs((l*M+m*_+p)/n-1)<1+Sr&&Math.abs((h*M+u*_+f)/s-1)<1+Sr,g=[[0,0],[t,0],[0,r],[t,
 r]].every(d),[y,b,v,x]=o,w=Math.abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Sr;if(w)for(let M of[4,5])o[M]=Math.round(
-o[M]);return{matrix:o,covers:g,shifts:w}}var so=14,ao=40,io=256;function xs(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var oo=(a,e)=>a.getContext(
+o[M]);return{matrix:o,covers:g,shifts:w}}var so=14,ao=40,io=256;function ws(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var oo=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
 this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=e.canvas;let{canvas:r,last:n,coarse:s}=this,i=[r,n,s].
@@ -504,7 +504,7 @@ o=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(i),
 isHeld,h=xn(c,this.fixed,n*s,i,l),m=Math.max(h/o,so),u=vn(c,this.fixed,n*s,i,m),p=Math.max(Math.round(n*u.scale),1),f=Math.
 max(Math.round(s*u.scale),1);this.draftVersion=this.version;let d=u.scale<1?this.reuse():null;if(!d?.covers){let y=performance.
 now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(S(performance.now()-y-b,.5,500)-
-this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),xs(this.pen,this.last),
+this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),ws(this.pen,this.last),
 this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=u.scale<1||u.samples<i;let g=!this.isCoarse&&!this.content.smooth;return g&&
 this.complete(),this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(this.viewer.settings.
 samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))return!1;this.place(
@@ -516,10 +516,10 @@ stringify([u,p,c,l,h.lines,h.version]);if(f!==this.frontLook){let{anchor:d}=this
 (g.width=c),g.height<l&&(g.height=l),t.width=c,t.height=l,h.drawLines({camera:s,anchor:d,width:c,height:l,ratio:i},()=>{
 let y=g.height-l;r.drawImage(g,0,y,c,l,0,0,c,l)}),m.drawLabels(r,{camera:s,anchor:d,width:c,height:l,ratio:i}),this.frontLook=
 f}this.pen?.drawImage(t,0,0)}complete(){let{camera:e,player:t}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=
-!1,this.draftVersion=this.version,xs(this.lastPen,this.canvas),e&&!t.playing&&(this.lastCamera=new fe(e.state,e.limits,e.
+!1,this.draftVersion=this.version,ws(this.lastPen,this.canvas),e&&!t.playing&&(this.lastCamera=new fe(e.state,e.limits,e.
 flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.content;if(!r?.header.geometry.planar||
 !t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,s=E(t.state.focal_point,n.center),i=O(
-n.frame,s),[o,c]=[e,t].map(l=>H(n,l,i));return vs(o,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
+n.frame,s),[o,c]=[e,t].map(l=>H(n,l,i));return xs(o,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
 viewer;return t.motion!=="off"||r.varies&&r.playing?Mn(e):1}placeAt(e,t,r){let{places:n}=this.content;return this.place(
 e,n?.width||this.canvas.width,n?.height||this.canvas.height),n?.at(t,r)??null}place(e,t,r){let{viewer:n,layers:s,content:i}=this,
 {camera:o}=n;if(!o||!s.length)return;let{anchor:c}=n.view(e,this.density(r));i.places?.draw({layers:s,camera:o,anchor:c,
@@ -568,26 +568,26 @@ let n=r/this.limits.octave,s=new Pt(n);for(let l of e)s.add(l.position);for(let 
 filter(({radius:l})=>l>=r).sort((l,h)=>h.radius-l.radius),o=new Pt(n),c=i.filter(l=>(l.radius=Math.min(l.radius,o.distance(
 l.position)),l.radius<r?!1:(o.add(l.position),!0)));return[...e,...c]}isNeeded(e,[t,r],n){let{octave:s,closer:i,aroundRadii:o}=this.
 limits,{cell:c,low:l,size:h}=e,m=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[u,p]=this.sides(e),f=.5*(F(u)+
-F(p)),d=Math.max(Es(t,m)-f,0);return!(n<s*i*r*_r(t,d))&&this.sees(t,m,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
+F(p)),d=Math.max(As(t,m)-f,0);return!(n<s*i*r*_r(t,d))&&this.sees(t,m,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
 t);if(!r.length)return e;let n=r.map(i=>{let[o,c]=this.sides(i),l=F(c)>F(o)?1:0,h=[...i.size];h[l]*=.5;let m=[...i.low];
 return m[l]+=h[l],[{...i,size:h,key:ce(i.key+Et)},{...i,size:h,low:m,key:ce(i.key+co)}]}),s=e.filter(i=>this.area(i)<=t);
 return this.divided([...s,...n.map(([i])=>i),...n.map(([,i])=>i)],t)}sides({cell:e,low:t,size:r}){let n=(s,i)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*i]);return[E(n(1,.5),n(0,.5)),E(n(.5,1),n(.5,0))]}area(e){return F(I(...this.sides(e)))}};function Ie(a,e,[
 t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],i=new Array(n).fill(0);for(let o=0;o<Tt;o+=1)for(let c=0;c<n;c+=1)i[c]+=
 s[o]*a[n*e[o]+c];return i}var Pt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
-t/this.most))}add(e){let t=Ms(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
-n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Ms(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
-cubes.get(o)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,co=2246822507,lo=[739982445,695872825],ws=15;function Ms(a,e,t){
+t/this.most))}add(e){let t=Es(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
+n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Es(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
+cubes.get(o)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,co=2246822507,lo=[739982445,695872825],Ms=15;function Es(a,e,t){
 return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of lo)
-e=Math.imul(e^e>>>ws,t)>>>0;return(e^e>>>ws)>>>0}var At=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var Es=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,St=(a,e)=>_r(a,Es(a,e));var Ts=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],As=4,ho=Ts.reduce((a,[,e])=>a+e,0),mo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
-e[r]),Ss=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
+e=Math.imul(e^e>>>Ms,t)>>>0;return(e^e>>>Ms)>>>0}var At=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
+a)}}var As=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,St=(a,e)=>_r(a,As(a,e));var _s=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Ss=4,ho=_s.reduce((a,[,e])=>a+e,0),mo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+e[r]),Ts=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new _t(this.surface,n.constants.arrows);let i=this.seeds.seen(e,br(n,t));if(s?.seeds===
 i&&mo(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:m,place:u,radius:p})=>{let f=o.subarray(4*m,
-4*m+4);return{corners:f,place:u,radius:p,cell:n.geometry.triangles?m:f[0]}}),l=new Map(r.map(m=>[m,[]])),h=[...r].sort((m,u)=>Ss(
-m)-Ss(u));for(let m of c)for(let u of h){let p=u.tile?this.inTile(m,u,u.tile):m;if(p){l.get(u)?.push(p);break}}return this.
+4*m+4);return{corners:f,place:u,radius:p,cell:n.geometry.triangles?m:f[0]}}),l=new Map(r.map(m=>[m,[]])),h=[...r].sort((m,u)=>Ts(
+m)-Ts(u));for(let m of c)for(let u of h){let p=u.tile?this.inTile(m,u,u.tile):m;if(p){l.get(u)?.push(p);break}}return this.
 last={seeds:i,layers:r,shared:l},l}draw(e,t,r,n,s){let{graphics:i}=this,o=i.context;this.array??=this.make(),o.bindVertexArray(
 this.array);let{name:c,low:l,high:h,log:m}=this.header.scalars,u=r.map(f=>this.parts.get(f)?.digest),p=JSON.stringify([n,
 r,u,c,l,h,m]);(this.drawn?.placed!==t||this.drawn.key!==p)&&(o.bindBuffer(o.ARRAY_BUFFER,this.buffer),o.bufferData(o.ARRAY_BUFFER,
@@ -601,8 +601,8 @@ d=(v,x,w,M)=>{let _=l.shapes[0][x],A=Un(ft(v,l.depth,_),s,_)-w*m,P=Math.min(Math
 M?null:[P,A-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*
 (p-1)+g[0]]===0)return null;let b=y[0]*p+g[0];return{corners:[b,b+1,b+p,b+p+1],place:[g[1],y[1]],radius:r,cell:b}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
-e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of Ts)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,ho*As,r),e.vertexAttribDivisor(n,1),r+=s*As;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of _s)e.enableVertexAttribArray(n),e.vertexAttribPointer(
+n,s,e.FLOAT,!1,ho*Ss,r),e.vertexAttribDivisor(n,1),r+=s*Ss;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=bt(i,s),c=this.nodes,l=n.triangles?null:zn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:m,radius:u,cell:p})=>{let[f,d]=m,[g,y,b,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
@@ -610,10 +610,10 @@ x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let i=this.parts.get("triangles")?.data??[];for(let o=0;o<i.length;o+=3)n.push(
 i[o],i[o+1],i[o+2],i[o+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let i=0;i<(t-1)*(r-1);i+=1){
-if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],_s=8,[uo,po]=[24,8],Te=[1,2],fo=.2;function Ue(a,e,t){
+if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Ps=8,[uo,po]=[24,8],Te=[1,2],fo=.2;function Ue(a,e,t){
 let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function go({
-geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,_s),o=i.map(({way:l,turns:h})=>{let m=T(T(k(r,l[0]),
-n,l[1]),s,-l[2]);return O(a.frame,h?m:l)}),c=l=>Float32Array.from({length:3*_s},(h,m)=>l.flat()[m]??0);return{u_lightWays:c(
+geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Ps),o=i.map(({way:l,turns:h})=>{let m=T(T(k(r,l[0]),
+n,l[1]),s,-l[2]);return O(a.frame,h?m:l)}),c=l=>Float32Array.from({length:3*Ps},(h,m)=>l.flat()[m]??0);return{u_lightWays:c(
 o),u_lightColours:c(i.map(({color:l})=>l))}}var Lt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
 e,this.header=t,this.parts=r}get labels(){return this.header.bodies?.labels??[]}get runs(){let{bodies:e}=this.header;return e&&
 Ce.every(t=>this.parts.has(t))?e.runs:[]}get areBehind(){return this.runs.length>0&&this.header.opacity<1}get programs(){
@@ -640,23 +640,23 @@ s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,w
 header,c=H(o,t,r);for(let{text:l,position:h,size:m,color:u,plate:p}of this.labels){let f=E(O(o.frame,E(h,o.center)),r),[
 d,g,,y]=[0,1,2,3].map(A=>c[A]*f[0]+c[4+A]*f[1]+c[8+A]*f[2]+c[12+A]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
 s],x=m*i,w=fo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,_]=[e.measureText(l).width+2*w,x+
-2*w];e.fillStyle=Ps(p),e.beginPath(),e.roundRect(b,v-_,M,_,w),e.fill(),e.fillStyle=Ps(u),e.fillText(l,b+w,v-.5*_)}}make(){
+2*w];e.fillStyle=Rs(p),e.beginPath(),e.roundRect(b,v-_,M,_,w),e.fill(),e.fillStyle=Rs(u),e.fillText(l,b+w,v-.5*_)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,i,o,c]=Ce.map(y=>t.get(y)?.data??[]),l=()=>{let y=e.counted(r.createVertexArray());
 return r.bindVertexArray(y),y},h=(y,b=r.ARRAY_BUFFER)=>{let v=e.counted(r.createBuffer());return r.bindBuffer(b,v),r.bufferData(
 b,y,r.STATIC_DRAW),v},m=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[i,4,r.UNSIGNED_BYTE]].map(([y,b,v],x)=>{let w=h(y);return r.enableVertexAttribArray(
 x),r.vertexAttribPointer(x,b,v,v!==r.FLOAT,0,0),w});p.push(h(o,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ue(n,c,3)),g=h(Ue(
 i,c,4));for(let y=0;y<4;y+=1)r.enableVertexAttribArray(y),r.vertexAttribDivisor(y,1);return r.bindVertexArray(null),{faces:m,
-pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Ps([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}function Rs(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push([]);let i=n.map((o,c)=>(n[c]=
-n[c]+a[s+c]&65535,e[c]+n[c]/65535*t[c]));r[r.length-1].push(i)}return r}function Ls(a,e){return e?a.flatMap(t=>{let r=0,
+pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Rs([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
+join(" ")} / ${r})`}function Ls(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push([]);let i=n.map((o,c)=>(n[c]=
+n[c]+a[s+c]&65535,e[c]+n[c]/65535*t[c]));r[r.length-1].push(i)}return r}function ks(a,e){return e?a.flatMap(t=>{let r=0,
 n=t.filter((s,i)=>{let o=r;return i&&(r+=Math.hypot(...s.map((l,h)=>l-t[i-1][h]))),Math.floor(r/e)>Math.floor(o/e)||i===
-0||i===t.length-1});return r<e?[]:[n]}):a}function ks(a,e){let t=a.reduce((s,i)=>s+i.length+1,0),r=new Float32Array(3*t).
-fill(1e30),n=0;for(let s of a){n+=3;for(let i of s)for(let o=0;o<3;o+=1)r[n++]=i[o]-e[o]}return r}function Os(a){let e=[],
+0||i===t.length-1});return r<e?[]:[n]}):a}function Os(a,e){let t=a.reduce((s,i)=>s+i.length+1,0),r=new Float32Array(3*t).
+fill(1e30),n=0;for(let s of a){n+=3;for(let i of s)for(let o=0;o<3;o+=1)r[n++]=i[o]-e[o]}return r}function Fs(a){let e=[],
 t=a.length/3-1;for(let r=0;r<t;r+=256){let n=Math.min(256,t-r),[s,i]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let l=3*r;l<3*
 (r+n+1);l+=1)a[l]!==Math.fround(1e30)&&(s[l%3]=Math.min(s[l%3],a[l]),i[l%3]=Math.max(i[l%3],a[l]));let o=s.map((l,h)=>(l+
-i[h])/2),c=Math.hypot(...s.map((l,h)=>(i[h]-l)/2));e.push({first:r,count:n,middle:o,radius:c})}return e}function Fs(a,e){
+i[h])/2),c=Math.hypot(...s.map((l,h)=>(i[h]-l)/2));e.push({first:r,count:n,middle:o,radius:c})}return e}function Ns(a,e){
 let t=[];for(let{first:r,count:n,middle:[s,i,o],radius:c}of a){let l=([m,u,p,f])=>m*s+u*i+p*o+f<-c*Math.hypot(m,u,p);if(e.
-some(l))continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var Ns=12,Is=2;var kt=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
+some(l))continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var Is=12,Cs=2;var kt=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
 this.version+=1,this.drop(e==="position"?"land":e)}dispose(){for(let e of[...this.drawn.keys()])this.drop(e)}drop(e){let t=this.
 drawn.get(e);if(t){for(let r of t.buffers)this.graphics.free("Buffer",r);this.graphics.free("VertexArray",t.array),this.
 drawn.delete(e)}}get lines(){let{earth:e}=this.header;return e?jr.filter(t=>e[t]&&this.parts.has(t)):[]}drawLines(e,t){let{
@@ -667,8 +667,8 @@ let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y
 ...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:_,width:A}of s.strokes){
 if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let P=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
 use(o,{u_matrix:H(r.geometry,l,h),u_picture:[m,u],u_width:A*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
-c.bindVertexArray(P.array),c.bindBuffer(c.ARRAY_BUFFER,P.buffers[0]);for(let[R,N]of Fs(P.groups,g)){for(let B=0;B<Is;B+=
-1)c.vertexAttribPointer(B,3,c.FLOAT,!1,Ns,(R+B)*Ns);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,N)}t()}c.bindVertexArray(
+c.bindVertexArray(P.array),c.bindBuffer(c.ARRAY_BUFFER,P.buffers[0]);for(let[R,N]of Ns(P.groups,g)){for(let B=0;B<Cs;B+=
+1)c.vertexAttribPointer(B,3,c.FLOAT,!1,Is,(R+B)*Is);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,N)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders;
 return!this.lines.length||this.graphics.programs.get(e,t).ready}drawGround({camera:e,anchor:t}){let{header:r,graphics:n}=this,
 {earth:s,shaders:i,geometry:o}=r;if(!s?.land)return;let c=s.map===null;if(!(c?s.below:this.parts.has("land")))return;let l=n.
@@ -685,14 +685,14 @@ parallel?0:F(e.state.position)/t}}take(e,t,r,n=0){let s=this.drawn.get(e);if(s&&
 n]))return s;this.drop(e);let i={...r(),anchor:t,spacing:n};return this.drawn.set(e,i),i}emptyArray(){let{graphics:e}=this;
 return{array:e.counted(e.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(e,t){
 let{graphics:r}=this,n=r.context,s=r.counted(n.createBuffer());return n.bindBuffer(e,s),n.bufferData(e,t,n.STATIC_DRAW),
-s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.get(e)?.data??[],o=s?Rs(i,s):[],c=ks(Ls(
-o,r),t),l={...this.emptyArray(),groups:Os(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
-Is;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
+s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.get(e)?.data??[],o=s?Ls(i,s):[],c=Os(ks(
+o,r),t),l={...this.emptyArray(),groups:Fs(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
+Cs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
 get("land"),n=this.parts.get("position"),s=this.emptyArray();if(!r||!n)return s;let i=this.header.geometry.triangles?r.data:
 bo(r);t.bindVertexArray(s.array);let o=gt(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
 i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function bo({data:a,shape:[
 e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.floor(n/t),i=s+t+1;r.push(s,s+1,i+1,s,i+1,i)}return Uint32Array.
-from(r)}var[yo,vo]=[.01,.2],[re,Cs]=[4,24],Us=9;function Vs(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+from(r)}var[yo,vo]=[.01,.2],[re,Us]=[4,24],Vs=9;function Ds(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/re,t.points);s+=1){let i=a[re*s+3];(r.points[i]??=[]).push(
 ...[0,1,2].map(o=>a[re*s+o]))}let n=NaN;for(let s=0;s<e.length/re;s+=1){let i=e[re*s+3];if(i>=Qe.saddle*t.saddles)continue;
 let o=i&Qe.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[o[i&Qe.leaving?0:1]];i!==n&&c.push(
@@ -706,7 +706,7 @@ r=>t.includes(r)&&Number(e[Me[r]])>0)}lacking(e,t){let r=Pr(t);return this.kinds
 OWTEX_BODY","FLOWTEX_MARK")}isReady(e){return!this.kinds(e).length||this.program.ready}shown(e,t,r){let s=this.kinds(e).
 includes(r)?this.parts.get(`${r}/${Pr(t)}`):void 0;return[s?Number(e[Me[r]]):0,s]}legend(e,t){let[r,n]=this.shown(e,t,"c\
 ritical"),s=new Set;for(let u=0;u<Math.min(r,n?.shape[0]??0);u+=1)s.add(Number(n?.data[re*u+3]));let{kinds:i=[],lines:o={},
-nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),m=Object.entries(Vs([],h?.data??[],{points:0,
+nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),m=Object.entries(Ds([],h?.data??[],{points:0,
 saddles:l}).lines).filter(([,u])=>u.length).map(([u])=>({name:u,color:o[u]}));return this.shown(e,t,"nullclines")[0]&&m.
 push(...c),[...i.filter((u,p)=>s.has(p)),...m.map(u=>({...u,isLine:!0}))]}draw({camera:e,anchor:t,width:r,height:n,ratio:s},i,o){
 let{header:c,graphics:l}=this,{structure:h,geometry:m}=c,u=h&&this.layers(h,i,o);if(!h||!u?.length)return;let p=l.context,
@@ -715,10 +715,10 @@ Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSepa
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:H(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
 y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:A,width:P,
 above:R}of u){let[N,B,q,se=1]=A;l.programs.use(w,{u_width:P*v,u_nearer:yo*x*(1+vo*R)});for(let C of[0,1])p.vertexAttribPointer(
-C,3,p.FLOAT,!1,Cs,Cs*(M+C/2)),p.vertexAttrib4f(2+C,N,B,q,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
+C,3,p.FLOAT,!1,Us,Us*(M+C/2)),p.vertexAttrib4f(2+C,N,B,q,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Pr(r)]);if(this.drawn?.key===l)return this.
-drawn.layers;let h=Vs(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,A)=>{
+drawn.layers;let h=Ds(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,A)=>{
 let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:A}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>xo(c?.data??
 [],M));v.forEach(w=>b(w,p,m[0],0)),v.forEach((w,M)=>b(w,e.nullclines[M].color,m[1],1)),b(Ve(Object.values(h.lines).flat()),
 p,m[0],1.5),Object.entries(h.lines).forEach(([w,M],_)=>b(Ve(M),e.lines[w],m[1],2+_));let x=e.kinds.map((w,M)=>h.points[M]??
@@ -727,12 +727,12 @@ turns),!0),f,u[2],8),this.send(g),this.drawn={key:l,layers:d},d}send(e){let{grap
 counted(r.createVertexArray()),this.buffer??=t.counted(r.createBuffer()),r.bindVertexArray(this.array),r.bindBuffer(r.ARRAY_BUFFER,
 this.buffer),r.bufferData(r.ARRAY_BUFFER,Float32Array.from(e.flatMap(n=>[...n])),r.STATIC_DRAW);for(let n of[0,1])r.enableVertexAttribArray(
 n),r.vertexAttribDivisor(n,1);r.bindVertexArray(null)}at({place:e,position:t,height:r},n,s,i){let{geometry:o,structure:c}=this.
-header,[l,h]=this.shown(s,i,"critical"),m=2*n.height/Math.max(r,1),[u,p]=["",Us];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
+header,[l,h]=this.shown(s,i,"critical"),m=2*n.height/Math.max(r,1),[u,p]=["",Vs];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
 1){let[d,g,y,b]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),v=T(Z(o.frame,[d,g,y]),o.center),x=n.project(v);if(!x||Math.hypot(
-...E(v,t))>4*Us*m)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([u,p]=[c?.kinds[b]?.name??"",w])}
+...E(v,t))>4*Vs*m)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([u,p]=[c?.kinds[b]?.name??"",w])}
 return u}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
 buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var wo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},Ds=["padded","unit","open","nearest","rays"],Mo=8*(4/3),Eo=2048,
+"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},Bs=["padded","unit","open","nearest","rays"],Mo=8*(4/3),Eo=2048,
 Ao=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],So=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
 0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=So+=1;constructor(e,t,r,n=null){this.tile=
 n,this.graphics=e,this.header=t,this.parts=r,this.earth=new kt(e,t,r),this.bodies=new Lt(e,t,r),this.arrows=new Rt(e,t,r),
@@ -753,7 +753,7 @@ return!0;let i=this.part("padded"),o=c=>this.key(["padded"],c,s);return this.put
 !n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Rn(i,s,n.shape)),e.every(c=>this.trace(c,t))}prepare(){
 let{trace:e}=this.header.slices;e&&at(this.graphics,this.header,e)}trace(e,t){let{graphics:r,header:n}=this,{trace:s,lags:i,
 sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(n,e).map(u=>`flow/${u}`),h=this.key([...l,
-...Ds],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){let{tracings:u}=r,p=h||`${this.number} ${e}`;
+...Bs],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){let{tracings:u}=r,p=h||`${this.number} ${e}`;
 this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=u.get(p)??new it(r,n,s,f,e);if(u.set(this.tracing=p,d),
 m=d.advance(t),!m)return!1;this.stopTracing()}return this.take(c,"Texture",h,()=>m,()=>{}),!0}put(e,t,r){let{graphics:n,
 parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),digest:t};n.release(s.get(e)),s.set(e,n.
@@ -762,14 +762,14 @@ e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graph
 ""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of the scene is missing`);return t}forget(e){let[
 t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].includes(
 t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?
-[`slices/${r}`]:wo[t]??[])this.drop(s);Ds.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.get(e);this.
+[`slices/${r}`]:wo[t]??[])this.drop(s);Bs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.get(e);this.
 resources.delete(e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){
 for(let e of[...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.
 dispose(),this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Boolean)?
 JSON.stringify([r,t]):""}take(e,t,r,n,s){let i=this.resources.get(e);if(i)return i.object;let{graphics:o}=this,c=r&&`${e.
 split("/")[0]} ${r}`,l=c?o.common.get(c):void 0,h=l?.object??o.counted(n()),m=l??{kind:t,object:h,count:0,key:c,users:0};
 return m.users+=1,this.resources.set(e,m),l||(m.count=s(h)||0),c&&o.common.set(c,m),h}get blocks(){return this.part("mes\
-h")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=ms(e,this.blocks,this.part("position").data,t.
+h")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=us(e,this.blocks,this.part("position").data,t.
 tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?qn(this.part("triangles").data,e):$n(r,e)}isLoaded(e){
 return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?
 [...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*Mo*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)
@@ -777,7 +777,7 @@ this.slices(t)}bindNodes(e){let t=this.graphics.context,{shape:r,triangles:n,pla
 this.anchor[u])&&this.drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture("nodes",this.key(["position","n\
 ormal"],o,e),m=>{gr(t,o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?3:6)*o*i);u.set(gt(this.part("p\
 osition").data,e)),s||u.set(Wn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,
-...p,0,t.RGB,t.FLOAT,u),Bs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table(
+...p,0,t.RGB,t.FLOAT,u),Hs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table(
 "cells",this.key(["triangles","blocks"]),t.RGBA32UI,Eo,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.
 table("cells",this.key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_cor\
 ners":"u_open",h)}get nodesSize(){let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:
@@ -785,7 +785,7 @@ e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)
 r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,o={[i.RGBA32UI]:[i.RGBA_INTEGER,
 i.UNSIGNED_INT,4],[i.R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},
 [c,l,h]=o[r];return this.texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(i.TEXTURE_2D,m),i.pixelStorei(
-i.UNPACK_ALIGNMENT,1);let f=To(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Bs(i,i.TEXTURE_2D)})}shares(e,t){let{
+i.UNPACK_ALIGNMENT,1);let f=To(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Hs(i,i.TEXTURE_2D)})}shares(e,t){let{
 geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["triangles",...new Set(i)],s,n.low,
 n.high,n.log),()=>bt(i.map(l=>this.part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Text\
 ure",t,()=>n.createTexture(),r)}slices(e){let{slices:t,geometry:r}=this.header,n=this.key([`slices/${e}`,`extra/${e}`],r.
@@ -810,7 +810,7 @@ ices",this.slices(e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.b
 n.picture?[!0,!0]:i)),this.bind("u_stepImage",n&&this.image("step",i));let c=mn(this.parts.get("cmap")?.data??new Uint8Array(
 4),s);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,c.length/4,()=>c));let[l,h]=this.shares(
 e,t);this.bind("u_shares",s.name===null?null:this.table("scalar",l,r.RG32F,this.nodesSize[1],h));let m=()=>Gn(n?.alongI??
-[],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),m))}};function Bs(a,e){
+[],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),m))}};function Hs(a,e){
 a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function To(a,e){if(a.
 length===e)return a;let t=new a.constructor(e);return t.set(a),t}var _o=60,Po=25,Ro=9e8,Lo=3.5,ko={slices:4,flow:24},Ft=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Se;constructor(e,t){this.host=e,
@@ -895,7 +895,7 @@ player.playing,(this.isNew||e)&&this.host.painted(e),this.isNew=!1,this.sharp||t
 header),this.sharp=!1}frame(e,t){if(!this.lifetime.isOver)try{this.painter.frame(e,t)}catch(r){this.player.playing=!1,this.
 host.failed("The flow cannot be drawn.",String(r))}}view(e,t){let{header:r,camera:n,player:s,rows:i}=this;if(!n)throw new Error(
 "no camera is set yet");let o=this.painter.scene?.anchor??[0,0,0];return Bn({header:r,camera:n,anchor:o,player:s,rows:i},
-e,t)}get rows(){return this.canvas.height/this.ratio}find(e,t){return this.painter.canPick?this.painter.find(e,t):null}};var Hs=`// A picture of the flow on a web map; nothing beside it.
+e,t)}get rows(){return this.canvas.height/this.ratio}find(e,t){return this.painter.canPick?this.painter.find(e,t):null}};var zs=`// A picture of the flow on a web map; nothing beside it.
 
 in vec3 flowtexPlaceOut;
 
@@ -911,7 +911,7 @@ void main()
     discard;
   flowtexOut = u_opacity * texture(u_flowPicture, place);
 }
-`;var zs=`// A piece of a web map, in the cells of a grid over a box of a tile, and where it lies in a picture of the flow\
+`;var Gs=`// A piece of a web map, in the cells of a grid over a box of a tile, and where it lies in a picture of the flow\
 .
 // \`projectTile\` is the map's.
 
@@ -928,26 +928,26 @@ void main()
   flowtexPlaceOut = (u_flowMatrix * vec4(place, 0.0, 1.0)).xyw;
   gl_Position = projectTile(place);
 }
-`;var Gs=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,No=88*X,Ws='export it with projection="mercator"';
+`;var Ws=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,No=88*X,$s='export it with projection="mercator"';
 function ge({lng:a,lat:e}){let t=Math.sin(S(e,-Ct,Ct)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
-let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${Ws}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
+let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${$s}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/X,lat:Math.asin(v/Math.hypot(y,b,v))/X}),w=[r[0]+(r[2]-r[0])*g/(s-
 1),r[1]+(r[3]-r[1])*d/(n-1)];return{place:x,position:w}},[o,c,l]=[i(1,1),i(n>>1,s>>1),i(n-2,s-2)],h=d=>d+Math.ceil(o.place[0]-
 d),m=[h(l.place[0])-o.place[0],l.place[1]-o.place[1]];this.slope=[0,1].map(d=>m[d]/(l.position[d]-o.position[d])),this.origin=
-[0,1].map(d=>o.place[d]-this.slope[d]*o.position[d]);let[u,p]=this.placeOf(c.position);if(!(Math.abs(u-h(c.place[0]))<Gs&&
-Math.abs(p-c.place[1])<Gs))throw new Error(`the flow is on another map; ${Ws}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
+[0,1].map(d=>o.place[d]-this.slope[d]*o.position[d]);let[u,p]=this.placeOf(c.position);if(!(Math.abs(u-h(c.place[0]))<Ws&&
+Math.abs(p-c.place[1])<Ws))throw new Error(`the flow is on another map; ${$s}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
 this.slope[t]*e[t])}lngLatOf(e){let[t,r]=this.placeOf(e);return[360*(t-.5),Math.atan(Math.sinh(2*Math.PI*(.5-r)))/X]}positionOf(e){
 let[t,r]=e.map((s,i)=>(s-this.origin[i])/this.slope[i]),n=1/this.slope[0];return[t+n*Math.round((.5*(this.box[0]+this.box[2])-
 t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,s]=this.positionOf(ge(e.center)),i=f=>e.globe?this.globeLook(
 e,r,[f,s,t]):this.flatLook(e,r,[f,s,t]),o=[i(n)],[c,l]=e.globe?[.5*r*o[0].width,.5*r*o[0].width]:[.5*r*Math.min(e.width,
-e.height),r*$s(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-S(u,h,m))<l&&
+e.height),r*js(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-S(u,h,m))<l&&
 o.push(i(u)),o}flatLook({width:e,height:t,bearing:r,pitch:n,fov:s},i,[o,c,l]){let[h,m]=[r*X,n*X],u=.5*t*i,p=u/Math.tan(.5*
 s*X);return{state:{position:[o-p*Math.sin(m)*Math.sin(h),c-p*Math.sin(m)*Math.cos(h),l+p*Math.cos(m)],focal_point:[o,c,l],
 up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:u,view_angle:s},width:e,height:t}}globeLook(e,t,[r,,n]){let s=1/
-(t*this.slope[0]),i=S(e.center.lat,-Ct,Ct)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min($s(e)/o,1)),[l,h]=[i-c,i+c].
+(t*this.slope[0]),i=S(e.center.lat,-Ct,Ct)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(js(e)/o,1)),[l,h]=[i-c,i+c].
 map(g=>ge({lng:0,lat:g/X})[1]),m=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,u=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[m/Math.PI,l-h];return{state:{position:[r,u,n+1/this.slope[0]],focal_point:[r,u,n],up:[0,1,0],parallel:!0,
-parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function $s({width:a,height:e,pitch:t,fov:r}){
+parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function js({width:a,height:e,pitch:t,fov:r}){
 let[n,s]=[t*X,.5*r*X],i=n+s;if(i>No)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
 hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Rr=8192,Io=22,Co=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
@@ -960,7 +960,7 @@ e.TEXTURE_2D,e.TEXTURE_MIN_FILTER,t?e.LINEAR_MIPMAP_LINEAR:e.LINEAR),e.texParame
 LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercator:n,globe:s}=e,{vertexShaderPrelude:i,define:o}=e.
 shaderData,c=r.get(`${o}
 ${i}
-${zs}`,Hs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
+${Gs}`,zs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
 t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(S(e.zoom,0,Io)),m=n.placeOf(l.state.focal_point),u=2**h,
 p=[Math.floor(m[0]*u),S(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=P=>P.map((R,N)=>(R*u-
 p[N])*Rr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Co:1,A=s?0:Math.
@@ -983,8 +983,8 @@ UnknownCodecError";name="UnknownCodecError";codec;constructor(e){super(`Unknown 
 CodecPipelineError";name="CodecPipelineError";direction;codec;chunkPath;constructor(e){let t=[`Failed to ${e.direction} \
 chunk`,e.codec&&`via codec "${e.codec}"`,e.chunkPath&&`at ${e.chunkPath}`].filter(Boolean);super(t.join(" "),{cause:e.cause}),
 this.direction=e.direction,this.codec=e.codec,this.chunkPath=e.chunkPath}};var ye=class extends be{_tag="UnsupportedError";name="UnsupportedError";feature;constructor(e){super(`Unsupported: ${e}`),
-this.feature=e}};var ze=class{},Ge=class{},We=class{};function Ys(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
-uires Cross-Origin-Opener-Policy and Cross-Origin-Embedder-Policy headers to be set.")}function Xs(a,e){return e?new SharedArrayBuffer(
+this.feature=e}};var ze=class{},Ge=class{},We=class{};function Xs(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
+uires Cross-Origin-Opener-Policy and Cross-Origin-Embedder-Policy headers to be set.")}function Ks(a,e){return e?new SharedArrayBuffer(
 a):new ArrayBuffer(a)}function $e(a){let e=new TextDecoder().decode(a);try{return JSON.parse(e)}catch(t){throw new D("Fa\
 iled to decode JSON",{cause:t})}}function Lr(a,e){let t=e/2,r=e-1,n=0;for(let s=0;s<a.length;s+=e)for(let i=0;i<t;i+=1)n=
 a[s+i],a[s+i]=a[s+r-i],a[s+r-i]=n}function Ht(a){if(a==="v2:object")return globalThis.Array;let e=a.match(/v2:([US])(\d+)/);
@@ -992,43 +992,43 @@ if(e){let[,r,n]=e;return(r==="U"?We:Ge).bind(null,Number(n))}if(a==="string")ret
 int16:Int16Array,int32:Int32Array,int64:globalThis.BigInt64Array,uint8:Uint8Array,uint16:Uint16Array,uint32:Uint32Array,
 uint64:globalThis.BigUint64Array,float16:globalThis.Float16Array,float32:Float32Array,float64:Float64Array,bool:ze}[a];if(!t)
 throw new D(`Unknown or unsupported dataType: ${a}`);return t}function zt(a,e){let t=a.length;typeof e=="string"&&(e=e===
-"C"?Array.from({length:t},(s,i)=>i):Array.from({length:t},(s,i)=>t-1-i)),Qs(t===e.length,"Order length must match the nu\
-mber of dimensions.");let r=1,n=new Array(t);for(let s=e.length-1;s>=0;s--)n[e[s]]=r,r*=a[e[s]];return n}function Ks({name:a,
+"C"?Array.from({length:t},(s,i)=>i):Array.from({length:t},(s,i)=>t-1-i)),ea(t===e.length,"Order length must match the nu\
+mber of dimensions.");let r=1,n=new Array(t);for(let s=e.length-1;s>=0;s--)n[e[s]]=r,r*=a[e[s]];return n}function qs({name:a,
 configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r].join(t)}if(a==="v2"){let t=e?.separator??
-".";return r=>r.join(t)||"0"}throw new D(`Unknown chunk key encoding: ${a}`)}function js(a){if(a==="|O")return{dataType:"\
+".";return r=>r.join(t)||"0"}throw new D(`Unknown chunk key encoding: ${a}`)}function Ys(a){if(a==="|O")return{dataType:"\
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new D(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new D(`Unsupported or unknown dtype: ${a}`);return t===
 "|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Vo(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
-ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function qs(a,e={}){let t=[],r=js(a.dtype);a.order==="F"&&t.push({name:"\
+ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function Js(a,e={}){let t=[],r=Ys(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
 scaleoffset"){if(!Vo(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
-configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=js(c).dataType;
+configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Ys(c).dataType;
 if(!Bt(l,"number")&&!Bt(l,"bigint"))throw new D(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:i,...o}=s;t.
 push({name:`numcodecs.${i}`,configuration:o})}if("endian"in r&&r.endian==="big"&&t.push({name:"bytes",configuration:{endian:"\
 big"}}),a.compressor){let{id:s,...i}=a.compressor;t.push({name:`numcodecs.${s}`,configuration:i})}let n;return globalThis.
 Array.isArray(e._ARRAY_DIMENSIONS)&&(n=e._ARRAY_DIMENSIONS),{zarr_format:3,node_type:"array",shape:a.shape,data_type:r.dataType,
 chunk_grid:{name:"regular",configuration:{chunk_shape:a.chunks}},chunk_key_encoding:{name:"v2",configuration:{separator:a.
-dimension_separator??"."}},codecs:t,fill_value:a.fill_value,dimension_names:n,attributes:e}}function Js(a,e={}){return{zarr_format:3,
+dimension_separator??"."}},codecs:t,fill_value:a.fill_value,dimension_names:n,attributes:e}}function Zs(a,e={}){return{zarr_format:3,
 node_type:"group",attributes:e}}function Bt(a,e){if(e!=="number"&&e!=="bigint"&&e!=="boolean"&&e!=="object"&&e!=="string")
 return a===e;let t=a==="bool";if(e==="boolean")return t;let r=a.startsWith("v2:U")||a.startsWith("v2:S")||a==="string";if(e===
 "string")return r;let n=a==="int64"||a==="uint64";if(e==="bigint")return n;let s=a==="v2:object";return e==="object"?s:!r&&
-!n&&!t&&!s}function Zs(a){return a?.name==="sharding_indexed"}function Gt(a){if((a.data_type==="uint64"||a.data_type==="\
+!n&&!t&&!s}function Qs(a){return a?.name==="sharding_indexed"}function Gt(a){if((a.data_type==="uint64"||a.data_type==="\
 int64")&&a.fill_value!=null)return BigInt(a.fill_value);let e=a.data_type==="float16"||a.data_type==="float32"||a.data_type===
 "float64";if(typeof a.fill_value=="string"&&e){let t={NaN:NaN,Infinity:1/0,"-Infinity":-1/0};if(a.fill_value in t)return t[a.
-fill_value]}return a.fill_value}function kr(a,...e){if(!e.some(t=>a instanceof t))throw a}function Qs(a,e=""){if(!a)throw new Error(e)}async function ea(a,{
+fill_value]}return a.fill_value}function kr(a,...e){if(!e.some(t=>a instanceof t))throw a}function ea(a,e=""){if(!a)throw new Error(e)}async function ta(a,{
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
-a.byteLength);r=new Response(n.slice().buffer)}Qs(r.body,"Response does not contain body.");try{return await new Response(
+a.byteLength);r=new Response(n.slice().buffer)}ea(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var ta=Do();function Do(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
-18}function ra(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var je=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
+ed to decode ${e}`)}}var ra=Do();function Do(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+18}function na(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var je=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=Ht(t.dataType),this.#s=t.shape,this.#e=zt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
-return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ta&&this.#n==="big"&&(t=t.slice(),Lr(t,ra(this.#t))),
-t}computeEncodedSize(e){return e}decode(e){return ta&&this.#n==="big"&&(e=e.slice(),Lr(e,ra(this.#t))),e.byteOffset%this.#r!==
+return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ra&&this.#n==="big"&&(t=t.slice(),Lr(t,na(this.#t))),
+t}computeEncodedSize(e){return e}decode(e){return ra&&this.#n==="big"&&(e=e.slice(),Lr(e,na(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Wt=class{};function $t(a){return()=>{throw new ye(`${a} encode`)}}var jt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=$t("crc32c");decode(e){return new Uint8Array(
-e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Yt=class{};var Xt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=$t("gzip");async decode(e){let t=await ea(
+e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Yt=class{};var Xt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=$t("gzip");async decode(e){let t=await ta(
 e,{format:"gzip"});return new Uint8Array(t)}};var Ye=class{};var Kt=class{};var qt=class{};var Jt=class{};var Xe=class{};var Zt=class{};function Bo(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Xt,n=()=>Zt;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Jt).set("bytes",()=>je).set("crc32c",()=>jt).set("vlen-utf8",()=>Xe).set("json2",()=>Ye).set("bit\
@@ -1041,78 +1041,78 @@ codec:s,cause:o})}}return{async encode(n){let s=await t();for(let{name:o,codec:c
 bytesToBytes)i=await r("encode",o,()=>c.encode(i));return i},async decode(n){let s=await t();for(let o=s.bytesToBytes.length-
 1;o>=0;o--){let{name:c,codec:l}=s.bytesToBytes[o];n=await r("decode",c,()=>l.decode(n))}let i=await r("decode",s.arrayToBytes.
 name,()=>s.arrayToBytes.codec.decode(n));for(let o=s.arrayToArray.length-1;o>=0;o--){let{name:c,codec:l}=s.arrayToArray[o];
-i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=na(s.arrayToBytes.name,s.arrayToBytes.
-codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=na(o,c,i);return i}}}function na(a,e,t){if(!e.computeEncodedSize)throw new D(
+i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=sa(s.arrayToBytes.name,s.arrayToBytes.
+codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=sa(o,c,i);return i}}}function sa(a,e,t){if(!e.computeEncodedSize)throw new D(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
 ine`);return e.computeEncodedSize(t)}async function Ho(a){let e=a.codecs.map(async i=>{let o=await Ke.get(i.name)?.();if(!o)
 throw new Be(i.name);return{Codec:o,meta:i}}),t=[],r,n=[],s={...a};for await(let{Codec:i,meta:o}of e){let c=i.fromConfig(
 o.configuration,s);switch(c.kind){case"array_to_array":t.push({name:o.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
 s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!zo(s))throw new D(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:je.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function zo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var sa=18446744073709551615n;function aa(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function zo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var aa=18446744073709551615n;function ia(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),i=qe({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),o=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let m=l.map((x,w)=>Math.floor(x/s[w])),
 u=a.resolve(t(m)).path;u in c||(c[u]=(async()=>{let x=await i.computeEncodedSize(o),w=await n(u,{suffixLength:x},h);return w?
 await i.decode(w):null})().catch(x=>{throw delete c[u],x}));let p=await c[u];if(p===null)return;let{data:f,shape:d,stride:g}=p,
-y=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*g[M],0),b=f[y],v=f[y+1];if(!(b===sa&&v===sa))return n(u,{offset:Number(b),length:Number(
+y=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*g[M],0),b=f[y],v=f[y+1];if(!(b===aa&&v===aa))return n(u,{offset:Number(b),length:Number(
 v)},h)}}var ne=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function er(a){return new ne(
 a??new Map)}var ve=class extends ne{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function ia(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Go(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function oa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Go(
-a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function Wo(a,e){let{configuration:t}=e.codecs.find(Zs)??{},r={encodeChunkKey:Ks(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
-fillValue:e.fill_value};if(t){let s=ia(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:qe({dataType:e.
-data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:oa(s),getChunkBytes:aa(a,e.chunk_grid.
-configuration.chunk_shape,r.encodeChunkKey,t)}}let n=ia(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
+function oa(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Go(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function ca(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Go(
+a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function Wo(a,e){let{configuration:t}=e.codecs.find(Qs)??{},r={encodeChunkKey:qs(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
+fillValue:e.fill_value};if(t){let s=oa(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:qe({dataType:e.
+data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:ca(s),getChunkBytes:ia(a,e.chunk_grid.
+configuration.chunk_shape,r.encodeChunkKey,t)}}let n=oa(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:qe({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
-getStrides:oa(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var le=class extends ne{kind="\
+getStrides:ca(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var le=class extends ne{kind="\
 array";#e;[Qt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Gt(r)},this[Qt]=Wo(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[Qt].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
-Ys();let n=this[Qt],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
+Xs();let n=this[Qt],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
- non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=Xs(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
+ non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=Ks(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
 o=new n.TypedArray(i);return o.fill(n.fillValue),{data:o,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Bt(this.dtype,e)}};function ca(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function la(a,...e){return ca(a,e)}async function ua(a){let e=a.store.arrayExtensions;return e?.length?await la(a,...e):a}var tr=$o();function $o(){let a=new WeakMap;
+codec.decode(s)}is(e){return Bt(this.dtype,e)}};function la(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function ha(a,...e){return la(a,e)}async function pa(a){let e=a.store.arrayExtensions;return e?.length?await ha(a,...e):a}var tr=$o();function $o(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
 return r.v3>r.v2?"v3":"v2"}}}async function jo(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
 $e(t):{}}async function Yo(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await jo(t,r)),
-r?.throwIfAborted(),e.kind==="array"?ha(t,n,r):e.kind==="group"?ma(t,n,r):ha(t,n,r).catch(s=>(kr(s,K,D),ma(t,n,r)))}async function ha(a,e,t){
+r?.throwIfAborted(),e.kind==="array"?ma(t,n,r):e.kind==="group"?ua(t,n,r):ma(t,n,r).catch(s=>(kr(s,K,D),ua(t,n,r)))}async function ma(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new K("v2 array",{path:r});return tr.increment(
-a.store,"v2"),ua(new le(a.store,a.path,qs($e(n),e)))}async function ma(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
-store.get(r,{signal:t});if(!n)throw new K("v2 group",{path:r});return tr.increment(a.store,"v2"),new ve(a.store,a.path,Js(
+a.store,"v2"),pa(new le(a.store,a.path,Js($e(n),e)))}async function ua(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
+store.get(r,{signal:t});if(!n)throw new K("v2 group",{path:r});return tr.increment(a.store,"v2"),new ve(a.store,a.path,Zs(
 $e(n),e))}async function Xo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new K(
-"v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=Gt(s)),s.node_type==="array"?ua(new le(
+"v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=Gt(s)),s.node_type==="array"?pa(new le(
 t,a.path,s)):new ve(t,a.path,s)}async function Ko(a,e={}){let t="store"in a?a:new ne(a),r=await Xo(t,e.signal);if(tr.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof le||e.kind==="group"&&r instanceof ve)return r;let n=r instanceof
 le?"array":"group";throw new K(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function Q(a,e={}){let t="store"in a?
 a.store:a,r=tr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(i=>(kr(i,K,D),s(a,e)))}Q.v2=Yo;
-Q.v3=Ko;var pa=[300,1e3,3e3],fa=2e4,Jo=[401,403,404,410],ga=200,Zo=429,Qo=500,ec=2197175160,Or=4,tc=8,rc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
+Q.v3=Ko;var fa=[300,1e3,3e3],da=2e4,Jo=[401,403,404,410],ba=200,Zo=429,Qo=500,ec=2197175160,Or=4,tc=8,rc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
 super(t),this.fault=e,this.detail=r}},nc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
 8*(e+1);s+=1)n=n>>>1^(n&1?ec:0);return n}));function sc(a){let[e,t,r,n]=nc,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
 s;o+=4)i^=a[o]|a[o+1]<<8|a[o+2]<<16|a[o+3]<<24,i=n[i&255]^r[i>>>8&255]^t[i>>>16&255]^e[i>>>24];for(let o=s;o<a.length;o+=
-1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function ba(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
+1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function ya(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
 read()??{};if(i||!o)break;t.push(o),r+=o.length,e(r)}}catch(i){throw n?.cancel().catch(()=>{}),i}let s=new Uint8Array(r);
 return t.reduce((i,o)=>(s.set(o,i),i+o.length),0),s}var Fr=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Or;if(t<0)throw new Error("the checksum is missing");
 let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Or).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==sc(i))throw new Error(
 "checksum mismatch");return i}computeEncodedSize(e){return e+Or}},Nr=class a{kind="bytes_to_bytes";most;constructor(e){this.
 most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,tc),rc))}encode(){throw new Error("nothi\
-ng is written")}async decode(e){let t=new Blob([e]).stream();return ba(t.pipeThrough(new DecompressionStream("gzip")),r=>{
+ng is written")}async decode(e){let t=new Blob([e]).stream();return ya(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};Ke.set("gzip",()=>Promise.resolve(
 Nr));Ke.set("crc32c",()=>Promise.resolve(Fr));function ac(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
 reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function ic(a,e){
-let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,fa);try{e.throwIfAborted();
-let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await ba(s===ga?i:null,()=>{clearTimeout(n),n=setTimeout(r,fa)});
-return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function da(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await ic(a,e);if(n===ga)return s;if(Jo.includes(n))return;if(r=`the server answer\
-s ${n}`,n<Qo&&n!==Zo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===pa.length)throw new W(
-"unreachable",r);await ac(pa[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,da);try{e.throwIfAborted();
+let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await ya(s===ba?i:null,()=>{clearTimeout(n),n=setTimeout(r,da)});
+return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function ga(a,e){for(let t=0;;t+=1){
+let r="no server answers";try{let[n,s]=await ic(a,e);if(n===ba)return s;if(Jo.includes(n))return;if(r=`the server answer\
+s ${n}`,n<Qo&&n!==Zo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===fa.length)throw new W(
+"unreachable",r);await ac(fa[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
-s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await da(this.url+e,t);if(!r)
-throw new W("missing",`${e} is missing`);return r}description(e){let t=this.described.get(e);if(t)return t;let r=da(this.
-url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>this.described.delete(e)),r}};function ya(a){
+s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await ga(this.url+e,t);if(!r)
+throw new W("missing",`${e} is missing`);return r}description(e){let t=this.described.get(e);if(t)return t;let r=ga(this.
+url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>this.described.delete(e)),r}};function va(a){
 if(a instanceof W)return a;let e=a instanceof K&&!a.found?"missing":"broken";return new W(e,a instanceof Error?a.message:
 String(a))}var nr=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new rr(
 this.url,this.described);return(await Q.v3(er(e),{kind:"group"})).attrs}async array(e){let t=new rr(this.url,this.described),
@@ -1130,22 +1130,22 @@ r.frame,9)&&xe(n.count,oc)&&[2,4].includes(n.channels)&&$(n.lags)&&xe(n.lags.len
 n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&$([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>hc.includes(
 h))&&$(c.nodes,2)&&c.nodes.every((h,m)=>xe(h,sr)&&c.drawn[m]+s[m]<=h)&&pc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
 0)&&$(c.closed.map(Number),2)&&$([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&fc(c)&&(!c.timed||$([c.timed.unit,c.
-timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function xa({geometry:a,slices:e}){let{
+timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function wa({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:i,extra:o}=e,c=(p,...f)=>[...p,...f].reduce((d,g)=>d*g,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],m={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
 [c(t)]]};if(n){m.unit=[Uint16Array,[c(h)]],m.padded=[Float32Array,[c(h.map(f=>f+2),3)]],m.open=[Uint8Array,[c(h)]],m.nearest=
 [Int16Array,[c(h,2)]];let p=n.poles??[];m.rays=[Float32Array,[c(p.slice(0,1).map(f=>h[f.component]),2,p.length)]],m.flow=
 [Uint16Array,n.uncertain?[c(h,5)]:[c(h,3),c(h,4)]]}else m.position=[Float32Array,[c(t,3)]],m.slices=[Uint16Array,[c(l,s,
 i)]],m.extra=[Uint16Array,[c(l,o.length)]];let u=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:m,
-needed:u}}function Ir(a,e,t){let{sizes:r}=xa(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
+needed:u}}function Ir(a,e,t){let{sizes:r}=wa(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
 let c=r[s.split("/")[0]];if(!(c?i instanceof c[0]&&c[1].includes(i.length):s==="mesh"&&i instanceof Float32Array&&o.length===
 3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function gc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[i,{drawn:o,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let m=(Math.floor(h/s)+o[0])*c[1]+h%s+o[1];l[h]=r*Re[Number(a.data[i*(m+1)-1-Number(t.
-trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function va(a){let e=ya(a);return e.
+trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function xa(a){let e=va(a);return e.
 fault==="other"||e.detail!==e.message?e:new W(e.fault,mc[e.fault],e.message)}var ar=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
-r.url,t),this.store=new nr(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=va(e);throw t.fault===
+r.url,t),this.store=new nr(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=xa(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
 file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(uc.every(n=>t?.[n]===
@@ -1157,7 +1157,7 @@ values()],p=async()=>{let{header:d,parts:g}=await h;if(e&&this.headers.set(i,d),
 [this.values(s,d,t,n,o,m),...u]);if(Ir(b.flat(),d,this.header.mesh.tileCells),!b.every(v=>v.length))throw new Error(`til\
 e ${i} has no flow`);return[...g,...b.flat(),...y]},[f]=await Promise.all([p(),...u]);return e?f.map(d=>({...d,name:`til\
 e/${i}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEventListener("abort",()=>r.abort(),{once:!0});
-try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),va(n)}finally{r.abort()}}async file(e,t,r,n){
+try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),xa(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),i=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},o=await i(0),[c,l]=hr(o),h=c.reduce((f,{bytes:d})=>f+d,l);if(!xe(
 h,lc))throw new Error(`a file of ${s.path} has a wrong size`);let m=new Uint8Array(Math.ceil(h/o.length)*o.length);m.set(
@@ -1165,7 +1165,7 @@ o);for(let f=1;f*o.length<h;f+=1)m.set(await i(f),f*o.length);let u=new Map;for(
 ["",f.name];if(d&&d!==z(t))throw new Error(`in place of tile ${z(t)} is ${d}`);u.set(g,{...f,name:g})}if(new TextDecoder().
 decode(u.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} belongs to another flow`);return u.delete(
 "of"),u}async surface(e,t){let r=await this.file("surface",e,[e[1],e[2]],t),n=this.tileHeader(r.get("header"));if(r.delete(
-"header"),n){let o=xa(n).needed.filter(c=>!r.has(c));if(o.length)throw new Error(`a tile has no ${o.join(", ")}`);Ir([...r.
+"header"),n){let o=wa(n).needed.filter(c=>!r.has(c));if(o.length)throw new Error(`a tile has no ${o.join(", ")}`);Ir([...r.
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),i={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${z(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:i,pace:o}=this.header.
@@ -1177,7 +1177,7 @@ rs/${d}`),p=c===null?[]:u.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.v
 let g=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...gc(x,
 t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await this.file("values",e,[y,e[1],e[2],h],s)).get(
 `scalars/${y}/${h}`);if(!v)throw new Error(`tile ${z(e)} has no values of step ${y}`);return{...v,name:d}}));Ir(f,t,this.
-header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var bc=4096,yc=4,wa=32,vc=.25,xc=1e4,Ma=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var bc=4096,yc=4,Ma=32,vc=.25,xc=1e4,Ea=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Ae(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
@@ -1199,7 +1199,7 @@ shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(
 playing=!1),this.change()}set(e){Object.assign(this.own,e),Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){
 Object.assign(this.colours,e);for(let{view:t}of this.pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)
 e.change()}async pointAt(e){let{mercator:t,header:r}=this.scene??{};if(!t||!r)return null;let n=[...t.positionOf(ge(e)),
-r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Aa(()=>s.every(({painter:c})=>c.canPick&&
+r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Sa(()=>s.every(({painter:c})=>c.canPick&&
 c.shown));let i=s.map(c=>this.pointIn(c,n)).find(Boolean)??null;if(i&&!r.pyramid)return i;this.asked=this.asked.then(()=>this.
 pointClose(n)).catch(()=>null);let o=await this.asked;return o&&{...o,path:i?.path??o.path}}pointIn(e,t){let{camera:r,parts:n,
 settings:s}=e,{mercator:i}=this.scene??{},o=r?.project(t)??[2,2],c=Math.max(...o.map(Math.abs))>1?null:e.find(o[0],o[1]),
@@ -1208,20 +1208,20 @@ l=e.painter.shown;if(!i||!r||!c||!l)return null;let h=c.point.position,m={scene:
 map(d=>i.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:i}=t.mercator,{pyramid:o,geometry:c}=t.
 header,l=vc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,m,u]=e,p={up:[0,1,0],view_angle:30,position:[h,m,u+l],focal_point:e,
-parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,wa,wa,1),await Aa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
+parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Ma,Ma,1),await Sa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
 projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],m=this.pictures.filter(({isUsed:d})=>d),{
 shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:u,getProjectionData:p,zoom:l,center:h,globe:c,
 opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.mercator,isRepeated:m.length===1});typeof g=="string"&&g?this.failed(
 "The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,
-ratio:o,text:c}=Ea(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
+ratio:o,text:c}=Aa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
 [0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(yc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],
 Math.min(o,o*p,bc/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
-scene||!t.every(r=>r.isComplete)?!1:this.look===Ea(e,this.globe).text}};function Ea(a,e){let{clientWidth:t,clientHeight:r}=a.
+scene||!t.every(r=>r.isComplete)?!1:this.look===Aa(e,this.globe).text}};function Aa(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
-fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Aa(a){
+fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Sa(a){
 let e=performance.now()+xc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function wc(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
 json()}function Mc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
-graticule:!1}}}}export{Ma as FlowtexLayer};
+graticule:!1}}}}export{Ea as FlowtexLayer};

@@ -24,7 +24,6 @@ from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
-from flowtex.rendering.mesh_levels import mesh_levels_of, mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.uniforms import client_constants, variants
@@ -44,7 +43,13 @@ from flowtex.rendering.webgl.velocity import (
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import (
+    BLOCK_CELLS,
+    PATH_CELLS,
+    Pyramid,
+    TileKey,
+    block_places,
+)
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client, pairs of a vertex and a fragment shader, and those of one that traces.
@@ -228,7 +233,7 @@ class ClientData:
             "opacity": float(colours.opacity),
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
-            "mesh": mesh_limits(),
+            "mesh": {"tileCells": BLOCK_CELLS},
             "earth": self._earth(),
             "bodies": None if self.bodies is None else self.bodies.header(),
             "structure": None if self.marks is None else self.marks.header(),
@@ -374,8 +379,11 @@ class ClientData:
 
     @cached_property
     def _mesh(self) -> Floats32:
-        """Records by which the client chooses triangles."""
-        return mesh_levels_of(self.textures, placed=False).records.astype("<f4")
+        """Places of blocks, by which the client chooses triangles."""
+        geometry = self.textures.geometry
+        if isinstance(geometry, TriangleGeometry):
+            return np.asarray(geometry.block_places, dtype="<f4")
+        return np.asarray(block_places(np.nan_to_num(geometry.points)), dtype="<f4")
 
     def _geometry(self) -> Header:
         geometry = self.textures.geometry
