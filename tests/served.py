@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -125,13 +126,17 @@ class Link:
 
     async def call(self, method: str, *args: Any, kind: str = "rpc") -> Any:
         """Call a method of the server and return what it answers."""
+        name = f"{kind}:c:{self._count + 1}"
+        self._answers[name] = asyncio.get_running_loop().create_future()
+        await self._send(method, args, kind)
+        return await asyncio.wait_for(self._answers[name], PATIENCE_S)
+
+    async def _send(self, method: str, args: Any, kind: str = "rpc") -> None:
         self._count += 1
         name = f"{kind}:c:{self._count}"
-        self._answers[name] = asyncio.get_running_loop().create_future()
         message = {"wslink": "1.0", "id": name, "method": method, "args": args, "kwargs": {}}
         for chunk in generate_chunks(msgpack.packb(message), CHUNK):
             await self.socket.send_bytes(chunk)
-        return await asyncio.wait_for(self._answers[name], PATIENCE_S)
 
     def key(self, name: str) -> str:
         """Name in the state of one of the application's own."""
@@ -162,7 +167,14 @@ class Link:
             whole = pieces.process_chunk(message.data)
             if whole is not None:
                 self._take(whole)
+                await self._acknowledge(whole)
                 self._news.set()
+
+    async def _acknowledge(self, message: dict[str, Any]) -> None:
+        if "trame.rca.topic.stream" in message["id"] and not self.socket.closed:
+            frame = message["result"]
+            shown = {"number": frame["meta"]["number"], "seconds": time.perf_counter()}
+            await self._send("trame.rca.event", [frame["name"], "link", shown])
 
     def _take(self, message: dict[str, Any]) -> None:
         name = message["id"]

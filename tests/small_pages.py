@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,20 +11,25 @@ import pytest
 from camera_moves import pan
 
 from flowtex import FlowField
+from flowtex.rendering.camera import Camera
 
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
+    from flowtex.app.streaming.stream import FrameStream
 
 
 class Streamer:
-    """Stands for trame-rca's, and counts what is sent."""
+    """Stands for trame-rca's and a page: counts the pictures, and acknowledges each at once."""
 
-    def __init__(self) -> None:
+    def __init__(self, stream: FrameStream) -> None:
         self.sent = 0
-        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+        self.stream = stream
+        stream.set_streamer(self)
 
-    def push_content(self, *_: Any) -> None:
+    def push_content(self, name: str, meta: dict[str, Any], content: bytes) -> None:
+        del name, content
         self.sent += 1
+        self.stream.on_interaction("page", {"number": meta["number"], "seconds": 0.0})
 
 
 def small(*, curved: bool = False, steps: int = 1) -> FlowField:
@@ -82,6 +86,13 @@ def picture(app: Any) -> Any:
 def panned(viewport: Any, x: float, y: float) -> None:
     """Move what is seen by a part of the view."""
     viewport.camera = pan(viewport.camera, x, y, viewport.aspect)
+
+
+def zoom_of(app: FlowApp) -> float:
+    """Return the zoom of a page; 1 shows the whole surface."""
+    viewport = app.viewport
+    whole = Camera.fit(viewport.scene.whole.surface, viewport.aspect)
+    return whole.height / viewport.camera.height
 
 
 def difference(one: Any, other: Any) -> float:

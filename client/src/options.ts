@@ -32,8 +32,8 @@ export interface Reading {
   samples?: PathSample[];
   /** Whether the path is that of one view alone, whose flow is another one. */
   alone?: boolean;
-  /** Words and numbers about the samples. */
-  words?: [string, string][];
+  /** Labels of what is known about the samples, the values, and their units. */
+  words?: [label: string, value: string | number | null, unit: string][];
 }
 
 /** Reads a point: at a place of the view from -1 to 1, or one that was found. */

@@ -228,7 +228,9 @@ export class PointCard {
       lines.set(named.label, withUnit(numberText(value), named.unit));
     }
     if (point.mark) lines.set("critical point", point.mark);
-    for (const [word, text] of words) lines.set(word, text);
+    for (const [word, value, itsUnit] of words) {
+      lines.set(word, typeof value === "string" ? value : withUnit(numberText(value ?? NaN), itsUnit));
+    }
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );

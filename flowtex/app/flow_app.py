@@ -196,7 +196,7 @@ class Viewpoint(Controller):
         if name_among(name, VIEWS):
             toward, up = VIEWS[name]
             self.viewport.home(toward=toward, up=up)
-            self.area.moved()
+            self.area.changed()
 
     def describe(self) -> State:
         """Return the camera, and the time where it makes a difference."""

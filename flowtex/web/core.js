@@ -901,17 +901,17 @@ numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size
 lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll("|",""),withUnit(text,unit3))}lines.set(
 label,withUnit(numberText(size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.
 scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
-point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(
-...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.
-explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
-placeOf2=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
-let lines2=[[]];for(let place of points.map(placeOf2))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf2(drawn.point),{samples}=drawn,most=Math.max(
-...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(position);return place?
-[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
-sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
-let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,
-`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+point.mark&&lines.set("critical point",point.mark);for(let[word,value,itsUnit]of words)lines.set(word,typeof value=="str\
+ing"?value:withUnit(numberText(value??NaN),itsUnit));this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom(
+"dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
+{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf2=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf2))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf2(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.createElementNS(
+SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);

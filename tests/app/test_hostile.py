@@ -169,11 +169,11 @@ async def test_a_picture_that_fails_is_not_the_last_one(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.ERROR)
-    app, streamer = page(field()), Streamer()
+    app = page(field())
     quick = app.stream.painter.quick
 
     async with playing(app):
-        app.stream.set_streamer(streamer)
+        streamer = Streamer(app.stream)
         monkeypatch.setattr(app.stream.painter, "quick", raising(RuntimeError("no context")))
         task = asyncio.create_task(app.stream.run())
         app.stream.changed()
@@ -480,9 +480,7 @@ def test_a_flow_may_come_between_any_two_tiles() -> None:
     flows = [field(curved=True), field(steps=2), field()]
     for number, flow in enumerate(flows * 2):
         composer = app.stream.painter
-        composer.forget()
-        composer.quick()
-        tiles = composer.full()
+        tiles = composer.full(composer.quick())
         next(tiles)
         app.show(flow)
         app.area.compare({"lod": False} if number % 2 else None)
@@ -551,10 +549,10 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
     assert 0.5 < seen() <= 1.0
     app.viewport.camera = pan(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
     app.area.reset_camera()
-    assert 0.5 < seen() <= 1.0 and app.viewport.zoom == pytest.approx(1)
+    assert 0.5 < seen() <= 1.0
     for view in app.controllers.viewpoint.views:
         app.controllers.viewpoint.look_from(view)
-        assert 0.3 < seen() <= 1.0 and app.viewport.zoom == pytest.approx(1)
+        assert 0.3 < seen() <= 1.0
     app.close()
 
 

@@ -53,7 +53,7 @@ interface Beginning extends Present {
 
 interface Frame {
   name: string;
-  meta: { w: number; h: number; type: string; sharp: boolean };
+  meta: { w: number; h: number; type: string; sharp: boolean; number: number };
   content: Blob | Uint8Array<ArrayBuffer>;
 }
 
@@ -215,11 +215,14 @@ class TrameView {
         // Of a scene that is not shown any more there is nothing to be had.
         if (this.scenes === scenes) viewer.panel.fail("The flow could not be loaded.", String(error));
       }
+      // The server sends its full picture again, if that came before the change.
+      if (this.painter === "server" && viewer.sharp) this.size = "";
       viewer.change();
     };
     const filled = view.viewers.map(fill);
     this.resize();
     await Promise.all(filled);
+    this.resize();
   }
 
   private load(n: number) {
@@ -251,6 +254,9 @@ class TrameView {
     if (name !== this.area || this.painter !== "server") return;
     const number = (this.came += 1);
     const picture = await createImageBitmap(new Blob([content], { type: meta.type }));
+    // The server waits for this before it sends further ones.
+    const seconds = performance.now() / 1000;
+    void session().call("trame.rca.event", [name, this.name, { number: meta.number, seconds }]);
     if (number < this.shown || this.painter !== "server") return;
     this.shown = number;
     const { view } = this;

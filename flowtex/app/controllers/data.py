@@ -211,7 +211,7 @@ class Data(Controller):
             if not keep:
                 zoom, focus = self.library.look(flow.name)
                 self.viewport.home(zoom=zoom, focus=focus)
-                self.area.moved()
+                self.area.changed()
         except BaseException:
             self._current, self._goal = before
             raise

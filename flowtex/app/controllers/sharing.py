@@ -17,7 +17,6 @@ import logging
 import shutil
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -32,8 +31,8 @@ from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
 from flowtex.app.server.page import number
-from flowtex.app.streaming.stream import LINE_GREY, TILE_PX
-from flowtex.app.streaming.viewport import GAP_PX, Viewport
+from flowtex.app.streaming.stream import LINE_GREY
+from flowtex.app.streaming.viewport import GAP_PX, TILE_PX, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.encoders import (
@@ -46,7 +45,6 @@ from flowtex.plotting.offscreen.encoders import (
 from flowtex.plotting.offscreen.movie import frame_times
 from flowtex.scene.annotations import Layout, annotate
 from flowtex.settings import Settings, named_values
-from flowtex.textures.images import averaged
 
 T = TypeVar("T")
 
@@ -245,7 +243,7 @@ class TiledPicture:
     ) -> None:
         self.size, self._viewport, self._supersampling = size, viewport, supersampling
         self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
-        viewport.window.longest_side = TILE_PX
+        viewport.longest_side = TILE_PX
         for pane in viewport.panes:
             pane.density = density * supersampling
         self._rows = slice(0, size[1])  # those with a flow
@@ -261,23 +259,10 @@ class TiledPicture:
         self.canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
         rows = self.canvas[self._rows]
         rows[:] = LINE_GREY
-        panes, times = self._viewport.panes, self._supersampling
-        wide = (width - (len(panes) - 1) * self._gap) // len(panes)
-        if wide < 1:
+        if width < len(self._viewport.panes) + self._gap:
             raise ExportError(f"the size is {width} x {height}; expected a pixel for each view")
-        done, side = 0, TILE_PX // times
-        for n, pane in enumerate(panes):
-            first = n * (wide + self._gap)
-            pane_width = wide if n < len(panes) - 1 else width - first
-            self._viewport.window.size = pane_width * times, height * times
-            for top, left in product(range(0, height, side), range(0, pane_width, side)):
-                across, down = min(side, pane_width - left), min(side, height - top)
-                part = (times * left, times * top, times * across, times * down)
-                pixels = self._viewport.draw(part[2], part[3], part, pane=pane)
-                place = slice(top, top + down), slice(first + left, first + left + across)
-                rows[place] = averaged(pixels, times)
-                done += across * down
-                yield done / (width * height)
+        times = self._supersampling
+        yield from self._viewport.draw_tiles(rows, self._gap, side=TILE_PX // times, times=times)
 
     def annotate(self, picture: Bytes) -> list[Layout]:
         """Write legend, scale bar, time and name on each view of a picture, in place."""

@@ -155,10 +155,7 @@ class FlowArea(AppearanceAttributes):
         changes
             Settings, and ``scalars``, ``time`` and ``field`` of the second pane, where they differ.
         """
-        at_home = self.viewport.at_home
         self.viewport.compare(changes)
-        if at_home:  # a pane is half as wide as the whole view
-            self.viewport.refit()
         self.changed()
 
     def look(self, camera: object) -> None:
@@ -169,17 +166,12 @@ class FlowArea(AppearanceAttributes):
     def reset_camera(self) -> None:
         """Show the whole surface again."""
         self.viewport.home()
-        self.moved()
+        self.changed()
 
     def changed(self) -> None:
         """Draw after a change, and notify the page."""
         self.element.follow()
         self.stream.changed()
-
-    def moved(self) -> None:
-        """Draw after the camera has moved, and notify the page."""
-        self.element.follow()
-        self.stream.moved()
 
     def close(self) -> None:
         """End the tasks and free the graphics memory."""

@@ -75,10 +75,13 @@ class HandedScene:
     def __init__(self, routes: Routes) -> None:
         self._routes = routes
         self._source: TileSource | None = None
-        self._generation, self._stem, self._address = 0, "", ""
+        self._generation, self._stem = 0, ""
 
-    def update(self, pane: FlowHandle, background: object) -> None:
-        """Replace the scene by that of a pane, or by the same in other colours."""
+    def update(self, pane: FlowHandle, background: object, **values: object) -> Header:
+        """Replace the scene by that of a pane, or by the same in other colours.
+
+        Return the header, with further values of the pane, and the address of the parts.
+        """
         data = WebView(pane.scene, background=background).data()
         colours = replace(data.colours, bar=True)  # VTK draws none into its pictures
         source = self._source
@@ -90,16 +93,10 @@ class HandedScene:
             source = self._source = TileSource(data.recoloured(colours))
         self._routes.withdraw(self._stem)
         self._stem = f"parts-{next(_numbers)}"
-        self._address = self._routes.give_each(self._stem, lambda name: self._give(source, name))
-
-    def message(self, pane: FlowHandle, **values: object) -> Header:
-        """Return the header, with further values of the pane, and the address of the parts."""
-        header: Header = {}
-        if self._source is not None:
-            header = self._source.scene.header(pane.settings, time=pane.time, clock=pane.clock)
+        header = source.scene.header(pane.settings, time=pane.time, clock=pane.clock)
         return {
             "header": {**header, "generation": self._generation, **values},
-            "parts": self._address,
+            "parts": self._routes.give_each(self._stem, lambda name: self._give(source, name)),
         }
 
     def _give(self, source: TileSource, name: str) -> Give:
@@ -182,7 +179,7 @@ class Element:
         self.painter = painter if name_among(painter, PAINTERS) else PAINTERS[0]
         self._stream.paused, self._stream.fits = self.painter == "browser", False
         self.painter_changed.emit()
-        self._stream.changed()
+        self._stream.reset()
         self._sent = self._present()
         area = self._stream.area_name
         return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._sent}
@@ -252,13 +249,12 @@ class Element:
         settings = {name: value for name, value in changes.items() if name in TABLE}
         result = []
         for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
-            scene.update(pane, viewport.background)
             values = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
             if n:
                 values |= {"own": settings, "timeShift": viewport.time_shift}
             if n < len(self.names):
                 values["name"] = self.names[n]
-            result.append(scene.message(pane, **values))
+            result.append(scene.update(pane, viewport.background, **values))
         self._shown = self._appearances()
         return result
 
@@ -289,7 +285,7 @@ class Element:
             with self._changed_by(page):
                 viewport.camera = camera
                 self.follow()
-            self._stream.moved()
+            self._stream.changed()
         return near
 
     def take_time(self, time: object, page: object = "") -> None:
@@ -401,7 +397,7 @@ class Player:
                 if pane.settings.motion == "off":
                     pane.settings.motion = "speed"
         self.playing_changed.emit()
-        self._stream.moved()
+        self._stream.changed()
 
     @property
     def time(self) -> float:

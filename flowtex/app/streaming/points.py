@@ -22,32 +22,12 @@ from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import SPEED
 from flowtex.scene.probe import PointValues, Probe, locate, probe, values_at
 
-#: Digits of a number.
-DIGITS = 4
 #: Length of the displayed path over that of the part with samples.
 PATH_LENGTH = 4.0
 #: Least number of samples on a side that determines this length, so that the path is visible.
 FEWEST_SAMPLES = 10
-#: Units longer than this are left out.
-UNIT_LENGTH = 12
 #: Distance from a critical point, in pixels, that counts as on it.
 MARK_REACH_PX = 9
-
-
-def number_text(x: float, digits: int = DIGITS) -> str:
-    """Write a number in a few digits, as the browser's client writes it."""
-    if not np.isfinite(x):
-        return "–"
-    x += 0.0  # zero has no sign
-    if x != 0 and not 1e-3 <= abs(x) < 1e5:
-        mantissa, exponent = f"{x:.2e}".split("e")
-        return f"{mantissa}e{int(exponent)}"
-    return np.format_float_positional(float(f"{x:.{digits}g}"), trim="-")
-
-
-def with_unit(x: float, unit: str) -> str:
-    """Write a number with its unit, where that is short enough."""
-    return number_text(x) + (f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else "")
 
 
 class PointReader:
@@ -204,11 +184,10 @@ def _in_surface(found: Probe, field: FlowField) -> Floats:
     return velocity
 
 
-def words_of(found: Probe) -> list[tuple[str, str]]:
-    """Return labels and values that describe the samples."""
+def words_of(found: Probe) -> list[tuple[str, str | float | None, str]]:
+    """Return labels, values and units that describe the samples; a value may be unknown."""
     length = found.field_values.length_unit
     unit = length if found.parameter == "arclength" else found.field_values.time_unit
-    pixels = f"{number_text(found.grain / found.pixel, 3)} pixels"
     count, reasons = len(found.lags), []
     if found.asked > found.setting + 1:
         reasons.append(f"{found.setting} are set; motion doubles them")
@@ -217,15 +196,16 @@ def words_of(found: Probe) -> list[tuple[str, str]]:
     if count < found.asked:
         reasons.append("the path ends")
     samples = f"{count} of {found.asked}" if count < found.asked else f"{count}"
-    lines = [
-        ("samples", f"{samples}: {'; '.join(reasons)}" if reasons else samples),
-        ("level of detail", f"{found.level:.2f}"),
-        ("grain", f"{with_unit(found.grain, length)}, {pixels}"),
-        ("step", with_unit(found.step, unit)),
-        ("behind", with_unit(max(0.0, float(found.lags[0])), unit)),
-        ("ahead", with_unit(max(0.0, -float(found.lags[-1])), unit)),
+    lines: list[tuple[str, str | float | None, str]] = [
+        ("samples", f"{samples}: {'; '.join(reasons)}" if reasons else samples, ""),
+        ("level of detail", found.level, ""),
+        ("grain", found.grain, length),
+        ("grain on the screen", found.grain / found.pixel, "pixels"),
+        ("step", found.step if np.isfinite(found.step) else None, unit),
+        ("behind", max(0.0, float(found.lags[0])), unit),
+        ("ahead", max(0.0, -float(found.lags[-1])), unit),
     ]
-    if not isinstance(found.value, float):
-        return lines
-    mean = float(found.weights @ found.noise)
-    return [*lines, ("value", f"{mean:+.2f} × {found.gain:.2f} = {found.value:+.2f}")]
+    if isinstance(found.value, float):
+        mean = float(found.weights @ found.noise)
+        lines.append(("value", f"{mean:+.2f} × {found.gain:.2f} = {found.value:+.2f}", ""))
+    return lines

@@ -6,10 +6,12 @@ the same settings.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import partial
-from typing import Any
+from itertools import product
+from typing import Any, cast
 
 import numpy as np
 import pyvista as pv
@@ -28,12 +30,15 @@ from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene, follow
 from flowtex.settings import Settings
-from flowtex.textures.images import as_image
+from flowtex.textures.images import as_image, averaged
 
 #: Colours behind the surface, by theme.
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
+#: Side of a tile in pixels, which a processor draws in about a tenth of a second. It is even, as
+#: derivatives need 2 x 2 pixels.
+TILE_PX = 224
 Rect = tuple[int, int, int, int]
 #: Longest side of a window, in pixels.
 LONGEST_SIDE_PX = 1 << 15
@@ -41,8 +46,6 @@ LONGEST_SIDE_PX = 1 << 15
 
 class Viewport:
     """A flow texture, its camera, and pictures; options are those of ``plotter.flowtex.add``."""
-
-    whole: Camera  #: The camera that shows the whole surface, from which zoom counts.
 
     def __init__(
         self,
@@ -54,12 +57,15 @@ class Viewport:
     ) -> None:
         from flowtex.plotting.component import FlowtexComponent
 
-        self.window = OffscreenWindow(640, 400)
+        self.plotter = pv.Plotter(off_screen=True, lighting="light kit")
+        self.plotter.disable_anti_aliasing()
+        #: Pixels of the window along a side, at most: it may be smaller than a picture in tiles.
+        self.longest_side = LONGEST_SIDE_PX
         #: The colour behind the surface.
-        self.background: Any = self.window.plotter.background_color
+        self.background: Any = self.plotter.background_color
         #: Width and height of the whole view, in pixels.
-        self.size = self.window.size
-        self._component = FlowtexComponent(self.window.plotter)
+        self.size = (640, 400)
+        self._component = FlowtexComponent(self.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], None] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
@@ -68,8 +74,8 @@ class Viewport:
         #: The textures of the views side by side, one or two.
         self.panes: list[FlowHandle] = [self._pane(Scene.from_options(field, first))]
         # Only draw() renders: a texture requests a picture at each change.
-        self.window.plotter.suppress_rendering = True
-        self.resize(*self.size)
+        self.plotter.suppress_rendering = True
+        self._set_picture(*self.pane_size)
         self.home(zoom=zoom, focus=focus)
 
     @property
@@ -137,7 +143,7 @@ class Viewport:
         self._stop_following()
         for pane in self.panes:
             pane.remove(render=False)
-        self.window.plotter.close()
+        self.plotter.close()
 
     def copy(self) -> Viewport:
         """Return a viewport with its own window that shows the same."""
@@ -206,7 +212,7 @@ class Viewport:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
         colour = BACKGROUNDS.get(colour, colour) if isinstance(colour, str) else colour
         self.background = colour
-        self.window.plotter.renderer.set_background(colour)
+        self.plotter.renderer.set_background(colour)
 
     # --- time --------------------------------------------------------------------------------
 
@@ -284,44 +290,30 @@ class Viewport:
     @camera.setter
     def camera(self, camera: Camera) -> None:
         self._camera = camera
-        apply_camera(camera, self.window.plotter.camera)
+        apply_camera(camera, self.plotter.camera)
 
-    @property
-    def zoom(self) -> float:
-        """Zoom: 1 shows the whole surface."""
-        return self.whole.height / self.camera.height
+    def resize(self, width: int, height: int, *, fits: bool = True) -> None:
+        """Change the size of the whole view; the camera of :meth:`home` may fit it again."""
+        at_home, self.size = self.camera == self._home, (width, height)
+        self._set_picture(*self.pane_size)
+        if fits and at_home:
+            self.home(**self._look)
 
-    def resize(self, width: int, height: int) -> None:
-        """Change the size of the whole view."""
-        self.size = (width, height)
-        self.window.size = self.pane_size
+    def _set_picture(self, *size: int) -> None:
+        """Set the width and height of a whole picture of a pane."""
+        self._picture = size
+        self.plotter.window_size = [min(side, self.longest_side) for side in size]
 
     def home(self, **look: Any) -> None:
         """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`."""
-        surface = self.handle.scene.whole.surface
-        from_side = {name: look[name] for name in ("toward", "up") if name in look}
-        self.whole = Camera.fit(surface, self.aspect, **from_side)
-        is_near = look != from_side
-        self._home = Camera.fit(surface, self.aspect, **look) if is_near else self.whole
-        self._look, self.camera = look, self._home
-
-    def refit(self) -> None:
-        """Repeat :meth:`home` in a view of another size."""
-        self.home(**self._look)
+        self._look = look
+        self.camera = self._home = Camera.fit(self.scene.whole.surface, self.aspect, **look)
 
     @property
     def sees_all(self) -> bool:
         """Whether the camera shows the whole surface from the default direction."""
-        return (
-            self.at_home
-            and not any(self._look.get(n) for n in ("focus", "toward"))
-            and (self._look.get("zoom", 1.0) == 1.0)
-        )
-
-    @property
-    def at_home(self) -> bool:
-        """Whether the camera is that of :meth:`home`."""
-        return self.camera == self._home
+        is_near = self._look.get("focus") or self._look.get("zoom", 1.0) != 1.0
+        return self.camera == self._home and not (is_near or self._look.get("toward"))
 
     def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
         """Return the point of a pane's surface at (x, y) from -1 to 1; ``None`` beside it.
@@ -349,13 +341,59 @@ class Viewport:
     def draw(
         self, width: int, height: int, part: Rect | None = None, *, pane: FlowHandle | None = None
     ) -> Bytes:
-        """Draw a pane, by default the first; :meth:`OffscreenWindow.draw` has the parameters."""
+        """Return a picture of a pane, by default the first, (height, width, 3), row 0 at the top.
+
+        It is at most as large as a whole one, and may show a ``part`` of that: left, top, width and
+        height in pixels. It is drawn into the lower left corner of a window that keeps its size, so
+        nothing is allocated from one to the next.
+        """
         pane = pane or self.handle
         for other in self.panes:
             other.actor.SetVisibility(other is pane and other.visible)
-        whole = self.window.size[1]
-        pane.draw_for(whole if part is None else part[3], whole)
-        return self.window.draw(width, height, part)
+        (left, top, across, down), (wide, high) = part or (0, 0, *self._picture), self._picture
+        pane.draw_for(down, high)
+        camera, window = self.plotter.camera, cast("Any", self.plotter.render_window)
+        self.plotter.renderer.SetViewport(
+            0, 0, *np.divide((width, height), self.plotter.window_size)
+        )
+        self.plotter.renderer.ResetCameraClippingRange()
+        # The camera is narrowed to the part.
+        camera.SetWindowCenter((2 * left + across - wide) / across, (high - 2 * top - down) / down)
+        camera.SetParallelScale(self.camera.parallel_scale * down / high)
+        half = np.radians(self.camera.view_angle) / 2
+        camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * down / high))))
+        window.Render()
+        camera.SetWindowCenter(0, 0)
+        apply_camera(self.camera, camera)
+        values = vtkUnsignedCharArray()
+        window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
+        rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
+        return np.ascontiguousarray(rows[::-1])
+
+    def draw_tiles(
+        self, canvas: Bytes, gap: int, *, side: int = TILE_PX, times: int = 1
+    ) -> Iterator[float]:
+        """Draw all panes into a picture, side by side, and yield the share done after each tile.
+
+        The tiles of a pane come from its middle outwards. For a pixel of the picture, ``times`` are
+        drawn along each side.
+        """
+        panes, done, (height, width) = list(self.panes), 0, canvas.shape[:2]
+        wide = (width - (len(panes) - 1) * gap) // len(panes)
+        for n, pane in enumerate(panes):
+            first = n * (wide + gap)
+            view = canvas[:, first : first + wide if n < len(panes) - 1 else None]
+            across = view.shape[1]
+            self._set_picture(across * times, height * times)
+            corners = product(range(0, height, side), range(0, across, side))
+            middle = (height - side) / 2, (across - side) / 2
+            for top, left in sorted(corners, key=partial(math.dist, middle)):
+                tile = view[top : top + side, left : left + side]
+                size = times * tile.shape[1], times * tile.shape[0]
+                part = (times * left, times * top, *size)
+                tile[:] = averaged(self.draw(*size, part, pane=pane), times)
+                done += tile.shape[0] * tile.shape[1]
+                yield done / (width * height)
 
 
 _meshes: WeakCache[pv.PolyData] = WeakCache()
@@ -386,58 +424,3 @@ def _fitting(
         if not (first.appearance.log_scale or first.appearance.norm):
             raise
         return make({**changes, "log_scale": False, "norm": None, "clim": None})
-
-
-class OffscreenWindow:
-    """Draws the actors of a PyVista plotter, only on request, whole or a rectangle at a time.
-
-    Pictures are drawn into the lower left corner of a window that keeps its size, which may be
-    smaller than a picture in tiles: nothing is allocated from one to the next.
-    """
-
-    def __init__(self, width: int, height: int) -> None:
-        self._size = width, height
-        self.longest_side = LONGEST_SIDE_PX  #: Pixels of the window along a side, at most.
-        self.plotter = pv.Plotter(
-            off_screen=True, window_size=[width, height], lighting="light kit"
-        )
-        self.plotter.disable_anti_aliasing()
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of a whole picture, in pixels."""
-        return self._size
-
-    @size.setter
-    def size(self, size: tuple[int, int]) -> None:
-        self._size = size
-        self.plotter.window_size = [min(side, self.longest_side) for side in size]
-
-    def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
-        """Return a picture of what is visible, (height, width, 3), row 0 at the top.
-
-        It is at most as large as a whole one, and may show a ``part`` of that: left, top, width and
-        height in pixels.
-        """
-        camera, renderer = self.plotter.camera, self.plotter.renderer
-        window: Any = self.plotter.render_window
-        renderer.SetViewport(0, 0, *np.divide((width, height), self.plotter.window_size))
-        renderer.ResetCameraClippingRange()
-        saved = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
-        if part is not None:  # the camera is narrowed to it
-            (left, top, across, down), (whole_width, whole_height) = part, self.size
-            camera.SetWindowCenter(
-                (2 * left + across - whole_width) / across, (whole_height - 2 * top - down) / down
-            )
-            share = down / whole_height
-            camera.SetParallelScale(saved[1] * share)
-            half = np.radians(saved[2]) / 2
-            camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * share))))
-        window.Render()
-        camera.SetWindowCenter(*saved[0])
-        camera.SetParallelScale(saved[1])
-        camera.SetViewAngle(saved[2])
-        values = vtkUnsignedCharArray()
-        window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
-        rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
-        return np.ascontiguousarray(rows[::-1])

@@ -103,9 +103,15 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
     home(opened)
     opened.evaluate(
         """() => {
-          window.pictures = 0;
+          window.pictures = window.acknowledged = 0;
           const view = document.querySelector(".flowtex-views");
           const paint = view.paint.bind(view);
+          const send = WebSocket.prototype.send;
+          WebSocket.prototype.send = function (data) {
+            const text = new TextDecoder().decode(data);
+            if (text.includes("trame.rca.event")) window.acknowledged += 1;
+            return send.call(this, data);
+          };
           view.paint = (...values) => { window.pictures += 1; paint(...values); };
         }"""
     )
@@ -120,6 +126,7 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
     opened.locator("button[data-name=play]").click()
     WATCH.settled(opened, before)
     quiet = opened.evaluate("() => window.pictures")
+    assert opened.evaluate("() => window.acknowledged") == quiet
     # The server answers what it is asked after that, and sends no picture.
     opened.mouse.move(240, 220)
     opened.mouse.move(250, 215)

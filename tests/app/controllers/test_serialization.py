@@ -195,7 +195,6 @@ def test_the_python_lines_draw_the_same_picture(
     scene.compare(later if split == "Another file" else comparison(split, 0.0) or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
-    scene.refit()
     scene.clock = 0.7
     scene.set_background("light")
     state = {

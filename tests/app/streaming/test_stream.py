@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from functools import partial
-from types import SimpleNamespace
 from typing import Any, Literal
 
 import numpy as np
@@ -15,23 +14,34 @@ pytest.importorskip("trame_rca")
 
 
 from flowtex.app import FlowApp
+from flowtex.app.streaming.frame_clock import FrameClock
+from flowtex.app.streaming.stream import FrameStream
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
 
 class Streamer:
-    """Stands for trame-rca's, and keeps what is sent."""
+    """Stands for trame-rca's and a page: keeps what is sent, and acknowledges each at once."""
 
-    def __init__(self) -> None:
+    def __init__(self, stream: FrameStream) -> None:
         self.sent: list[dict[str, Any]] = []
-        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+        self.stream = stream
+        self.acknowledges = True
+        stream.clock.restart()
+        stream.set_streamer(self)
+
+    def acknowledge(self) -> None:
+        """Acknowledge all pictures."""
+        self.stream.on_interaction("page", {"number": self.sent[-1]["number"], "seconds": 0})
 
     def has(self, count: int) -> bool:
         return len(self.sent) >= count
 
     def push_content(self, name: str, meta: dict[str, Any], content: bytes) -> None:
         assert content[:2] == b"\xff\xd8"
-        self.sent.append({"name": name, **meta})
+        self.sent.append({"name": name, "bytes": len(content), **meta})
+        if self.acknowledges:
+            self.acknowledge()
 
 
 class Wake(asyncio.Event):
@@ -48,21 +58,20 @@ class Wake(asyncio.Event):
 
 
 def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
-    stream, streamer = flat.stream, Streamer()
+    stream, streamer = flat.stream, Streamer(flat.stream)
     flat.area.reset_camera()
 
     async def watch() -> None:
         stream._wake = wake = Wake()
-        stream.set_streamer(streamer)
         task = asyncio.create_task(stream.run())
         for count in (1, 2, 3):
             # Many requests at once are one picture.
-            stream.moved()
-            stream.moved()
+            stream.changed()
+            stream.changed()
             await until(partial(streamer.has, count))
         await until(lambda: any(sent["sharp"] for sent in streamer.sent))
         assert [sent["sharp"] for sent in streamer.sent].count(True) == 1
-        assert streamer.sent[-1]["quality"] > streamer.sent[0]["quality"]
+        assert streamer.sent[-1]["bytes"] > streamer.sent[0]["bytes"]
         assert (streamer.sent[-1]["w"], streamer.sent[-1]["h"]) == (240, 160)
         # At rest it waits for a request, and there is none.
         await until(lambda: wake.waiting)
@@ -90,18 +99,77 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
 def test_parts_of_a_picture_that_takes_long_are_sent_until_something_changes(
     flat: FlowApp, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stream, streamer, part = flat.stream, Streamer(), np.zeros((2, 3, 3), np.uint8)
+    stream, part = flat.stream, np.zeros((2, 3, 3), np.uint8)
+    streamer = Streamer(stream)
     monkeypatch.setattr("flowtex.app.streaming.stream.PARTIAL_INTERVAL_S", -1.0)
-    monkeypatch.setattr(stream.painter, "full", lambda: iter([part, part]))
-    stream.painter.forget()
+    monkeypatch.setattr(stream.painter, "full", lambda draft: iter([part, part]))
+    monkeypatch.setattr(stream.painter, "complete", False)
+    stream.clock.share = 1.0
 
     async def draw() -> None:
         stream._wake = asyncio.Event()
-        stream.set_streamer(streamer)
-        await stream._full()
+        await stream._full(part)
         assert [sent["sharp"] for sent in streamer.sent] == [False, False, True]
         stream._wake.set()
-        await stream._full()
+        await stream._full(part)
         assert len(streamer.sent) == 3
+        # Over a slow connection they would delay the full picture.
+        stream._wake.clear()
+        stream.clock.share = 0.9
+        await stream._full(part)
+        assert [sent["sharp"] for sent in streamer.sent[3:]] == [True]
 
     asyncio.run(draw())
+
+
+def test_pictures_that_a_new_page_missed_are_not_waited_for(flat: FlowApp) -> None:
+    stream = flat.stream
+    size = dict(zip("wh", flat.viewport.size, strict=True))
+    stream.clock.restart()
+    for _ in range(2):
+        stream.clock.sent(moving=True)
+    stream.update_size("page", size)
+    assert stream.clock.on_way == 2
+    stream.reset()
+    stream.update_size("page", size)
+    assert stream.clock.on_way == 0
+
+
+def test_no_more_than_two_pictures_are_on_their_way(
+    flat: FlowApp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stream, streamer = flat.stream, Streamer(flat.stream)
+    streamer.acknowledges = False
+    flat.area.reset_camera()
+    clock = FrameClock(now=lambda: 0.0)
+    monkeypatch.setattr(stream, "clock", clock)
+
+    async def watch() -> None:
+        stream._wake = asyncio.Event()
+        waits: list[int] = []
+        until_at_most = clock.until
+
+        async def waiting(most: int) -> None:
+            waits.append(most)
+            await until_at_most(most)
+
+        clock.until = waiting  # type: ignore[method-assign]
+        task = asyncio.create_task(stream.run())
+        for count in (1, 2, 3):
+            stream.changed()
+            await until(lambda count=count: waits.count(1) == count)
+        await until(partial(streamer.has, 2))
+        for _ in range(20):
+            await asyncio.sleep(0)
+        assert len(streamer.sent) == 2 and clock.on_way == 2
+        streamer.acknowledge()
+        await until(partial(streamer.has, 3))
+        # The full picture waits until all drafts have arrived.
+        await until(lambda: waits[-1] == 0)
+        assert len(streamer.sent) == 3 and clock.on_way == 1
+        streamer.acknowledge()
+        await until(partial(streamer.has, 4))
+        assert [sent["sharp"] for sent in streamer.sent] == [False, False, False, True]
+        task.cancel()
+
+    asyncio.run(watch())

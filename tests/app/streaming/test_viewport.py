@@ -29,7 +29,7 @@ def on_triangles() -> FlowField:
 
 def state(view: Viewport) -> tuple[Any, ...]:
     scenes = [pane.scene for pane in view.panes]
-    drawn = sorted(view.window.plotter.renderer.actors)
+    drawn = sorted(view.plotter.renderer.actors)
     return view.panes[:], scenes, dict(view.differences), view.camera, view.clock, drawn
 
 
