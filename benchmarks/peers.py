@@ -229,11 +229,11 @@ def compare(names: list[str], sizes: list[int], size: tuple[int, int], repeats: 
                 continue
             smallest = smallest or ours
             growth = math.log10(ours["nodes"] / smallest["nodes"])
-            grown = ours["frame"][0] / smallest["frame"][0]
+            grown = np.divide(ours["frame"], smallest["frame"])
             cells = [name, f"{ours['nodes']:,}", f"{ours['cells']:,}"]
             cells += [times(ours, "first"), times(lic, "first"), ratio(ours, lic, "first")]
             cells += [times(ours, "frame"), times(lic, "frame"), ratio(lic, ours, "frame")]
-            cells += [f"{grown ** (1 / growth):.2f}" if growth else ""]
+            cells += ["{:.2f} ({:.2f})".format(*grown ** (1 / growth)) if growth else ""]
             cells += [f"{ours['angle']:.1f}, {lic['angle']:.1f}"]
             line(*cells, *(f"{ours[n]:.2f}, {lic[n]:.2f}" for n in ("coherence", "sticking")))
 
