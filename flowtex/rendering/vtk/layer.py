@@ -107,6 +107,8 @@ def _unbind(texture: vtkTextureObject) -> None:
 #: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
 
+#: Variants of a shader that shows sums.
+SHOWN = {"FLOWTEX_DEFERRED", "FLOWTEX_OWN"}
 #: Shaders, and our parts of them.
 STAGES = [(s, p) for s in ("vertex", "geometry", "fragment") for p in ("dec", "impl")]
 
@@ -227,7 +229,8 @@ class FlowLayer:
 
     def _write_text(self, renderer: Any) -> None:
         self.deferred = is_deferred(self.actor, renderer, self.textures)
-        variant = self.variant
+        # An actor that shows what passes have summed has one text, however they sum.
+        variant = self.variant & SHOWN if self.deferred else self.variant
         if variant == self._variant:
             return
         self._variant = variant
