@@ -272,7 +272,6 @@ def _axes(figsize: tuple[float, float] | None, options: Mapping[str, Any]) -> Ax
 
 
 def _is_geodetic(transform: Any) -> bool:
-    """Return whether a cartopy projection describes longitudes and latitudes."""
     name = type(transform).__name__
     turned = getattr(transform, "proj4_params", {}).get("pm", 0)
     return name == "Geodetic" or (name == "PlateCarree" and not float(turned))

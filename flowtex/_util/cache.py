@@ -16,8 +16,6 @@ from flowtex._util.array_types import AnyArray
 
 
 class _Sized(Protocol):
-    """A value that knows its size in memory."""
-
     @property
     def nbytes(self) -> int: ...
 
@@ -95,11 +93,13 @@ class ByteCache(Generic[K, S]):
         with self._lock:
             return self._size()
 
-    def get(self, key: K, make: Callable[[], S]) -> S:
-        """Return the value of a key, computed once: threads that ask meanwhile wait for it."""
+    def get(
+        self, key: K, make: Callable[[], S], is_valid: Callable[[S], bool] = lambda _: True
+    ) -> S:
+        """Return the valid value of a key, computed once: threads that ask meanwhile wait."""
         with self._gates.of(key):
             value = self.peek(key)
-            if value is None:
+            if value is None or not is_valid(value):
                 value = make()
                 self.put(key, value)
             return value

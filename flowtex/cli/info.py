@@ -93,7 +93,6 @@ def _store_table(place: Path) -> Table:
 
 
 def _recognised_table(paths: list[Path]) -> Table:
-    """Describe the velocity, grid and coordinates that were recognised, with reasons."""
     from flowtex.sources.datasets.read import recognised
     from flowtex.sources.opening.dataset_files import open_datasets
     from flowtex.sources.reader_errors import errors_of_file

@@ -101,7 +101,6 @@ def serve(
 
 
 def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:
-    """Return the page, which finds the store at an address."""
     from flowtex.scene.options import Options
     from flowtex.web.export import page_text
     from flowtex.web.view import web_views

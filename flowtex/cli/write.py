@@ -201,7 +201,6 @@ def write_picture(picture: AnyArray, output: Path) -> None:
 
 
 def _print_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
-    """Print which values the colours leave out by default."""
     from flowtex.scene.options import Options
     from flowtex.scene.scene import Scene
 

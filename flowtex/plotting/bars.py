@@ -282,7 +282,6 @@ def _fit(
 
 
 def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:
-    """Return the width and height of a text in pixels."""
     box = [0, 0, 0, 0]
     vtkTextRenderer.GetInstance().GetBoundingBox(text, words, box, dpi)
     return box[1] - box[0] + 1, box[3] - box[2] + 1

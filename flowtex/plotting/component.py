@@ -19,7 +19,8 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import point_camera, read_camera
+from flowtex.plotting.vtk_camera import point_camera
+from flowtex.rendering.camera import read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.options import Appearance, FieldOptions, Options
 from flowtex.scene.scene import Scene
@@ -393,7 +394,6 @@ def _body(
 
 
 def _plain(values: Iterable[float]) -> tuple[float, ...]:
-    """Return plain Python numbers."""
     return tuple(map(float, values))
 
 

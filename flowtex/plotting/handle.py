@@ -374,7 +374,6 @@ class FlowHandle(AppearanceAttributes):
         )
 
     def _show_bar(self) -> None:
-        """Show a legend of the current colours, or none."""
         name = self.scene.scalar_name
         if name is None or not self.scene.appearance.has_bar:
             self.bar.remove()

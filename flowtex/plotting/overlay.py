@@ -21,7 +21,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.progress import pool
 from flowtex.field import FlowField
 from flowtex.field.earth import MapLines
-from flowtex.plotting.vtk_camera import read_camera
+from flowtex.rendering.camera import read_camera
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
@@ -279,7 +279,6 @@ def _line_mesh(lines: MapLines) -> pv.PolyData:
 
 
 def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
-    """Return the mesh of ``cells`` of a field's surface."""
     faces = field.surface.nodes_of(cells)
     points, numbers = np.unique(faces, return_inverse=True)
     shape: Any = numbers.reshape(faces.shape)

@@ -7,10 +7,9 @@ from typing import Any
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
 
 from flowtex.field import Surface
-from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.scene.options import ViewOptions
 
-__all__ = ["apply_camera", "point_camera", "read_camera"]
 #: A view of the whole surface.
 WHOLE = ViewOptions()
 

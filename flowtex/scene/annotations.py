@@ -375,7 +375,6 @@ def _printable(text: str) -> str:
 
 
 def _apart(plate: Plate, other: Plate, gap: int) -> bool:
-    """Return whether there is a gap between two plates."""
     (left, top, right, bottom), (to_left, above, to_right, below) = plate.box, other.box
     return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
 

@@ -251,7 +251,6 @@ class FieldOptions:
         return open_store(place, uncertainty=uncertainty, **self._of_dataset(choices))
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
-        """Return the arguments of :meth:`FlowField.from_xarray`."""
         self._refuse(choices, OF_MESHES, "meshes, but this is a dataset")
         return {**two_names(choices.pop("vectors", None)), **choices}
 

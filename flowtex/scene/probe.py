@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import brief
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
 from flowtex.field import Surface
@@ -439,35 +439,6 @@ class Recorder(Lookup):
         return np.asarray(blend(Sums(weights @ values, sums.squares, sums.neighbours)))
 
 
-class Window(Mips):
-    """A slice texture (layers, H, W, C) of which only the part around one place is filtered.
-
-    H and W are multiples of the coarsest level's block.
-    """
-
-    def __init__(self, texels: AnyArray, levels: int) -> None:
-        self._texture, self._last, self._block = texels, levels, 2**levels
-        self._window: tuple[int, ...] = ()
-
-    @property
-    def levels(self) -> int:
-        """Mip levels besides the finest."""
-        return self._last
-
-    def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:
-        """Look up texels less than a block from each other, as :meth:`Mips.at` does."""
-        size = np.array(self._texture.shape[2:0:-1])
-        # Filtering reaches one block of the coarsest level far.
-        block = np.floor(coordinate[0] * size / self._block).astype(int)
-        low = np.clip(block - 1, 0, size // self._block - 1) * self._block
-        high = np.clip(block + 2, 1, size // self._block) * self._block
-        if self._window != (*low, *high):
-            part = self._texture[:, low[1] : high[1], low[0] : high[0]]
-            super().__init__(part, levels=self._last)
-            self._window = (*low, *high)
-        return super().at((coordinate * size - low) / (high - low), level, layer)
-
-
 class LoadedTextures:
     """A texture set as the renderer reads it, for pixels that are drawn one after the other."""
 
@@ -485,9 +456,7 @@ class LoadedTextures:
         if step not in self._mips:
             while len(self._mips) > 1:
                 del self._mips[next(iter(self._mips))]
-            levels, layers = textures.geometry.levels, textures.layers(step)
-            mips = Window(layers, levels) if levels else Mips(layers, levels=0)
-            self._mips[step] = mips
+            self._mips[step] = Mips(textures.layers(step), levels=textures.geometry.levels)
         return self._mips[step]
 
 

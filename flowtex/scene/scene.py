@@ -548,7 +548,6 @@ _textures: WeakCache[TextureSet] = WeakCache()
 
 
 def _is_tiled(field: FlowField, settings: Settings) -> bool:
-    """Return whether a field is drawn in tiles if it is large."""
     return settings.noise == "procedural" and not field.sign_free
 
 

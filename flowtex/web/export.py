@@ -461,7 +461,6 @@ def first_parts(scene: ClientData, time: float | None) -> Parts:
 
 
 def _stored(view: WebView) -> StoredPyramid:
-    """Return the pyramid in a store that a view shows."""
     scene = view.scene
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":

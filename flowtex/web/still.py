@@ -126,7 +126,6 @@ def still_png(
 
 
 def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camera) -> Image.Image:
-    """Draw the flow with its arrows and marks."""
     scene = view.scene
     coarser = max(COARSER, math.ceil(math.sqrt(size[0] * size[1] / MOST_PIXELS)))
     image, picture = draw_flow(view, data, size, camera, scene.time, coarser)
@@ -311,7 +310,6 @@ def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
 
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
-    """Return the colour of the surface at each pixel, (H, W, 3)."""
     colours = scene.colours
     if colours.values is None or not len(colours.scale.table):
         return np.asarray(colours.plain)

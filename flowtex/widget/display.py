@@ -142,7 +142,6 @@ def _pictures(shown: Any) -> str:
 
 
 def _displayed_in(shown: Any) -> list[Displayed]:
-    """Return the displayed widgets in a box, or a widget itself."""
     if isinstance(shown, ipywidgets.Box):
         return [widget for child in shown.children for widget in _displayed_in(child)]
     return [shown] if isinstance(shown, Displayed) else []

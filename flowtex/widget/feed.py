@@ -217,7 +217,6 @@ class Feed:
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _refine(self) -> None:
-        """Replace a coarse scene by the whole one."""
         order = self._order
 
         def complete() -> None:
@@ -265,7 +264,6 @@ class Feed:
                 self._deliver(colours, again=False)
 
     def _first_parts(self, scene: ClientData) -> Parts:
-        """Return the parts that show the present moment of a scene."""
         parts = scene.surface()
         for step in scene.moment(self._moment()):
             parts |= scene.step(step)
@@ -297,7 +295,6 @@ class Feed:
         self._post(batch)
 
     def _post(self, parts: Sequence[tuple[Header, AnyArray]]) -> None:
-        """Send descriptions of parts with their arrays."""
         if self._closed or not parts:
             return
         infos = [info for info, _ in parts]

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from contextvars import copy_context
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 import traitlets
@@ -83,20 +83,10 @@ class SizeTrait(traitlets.TraitType[list[int], Any]):
         return [width, height]
 
 
-if TYPE_CHECKING:
+class SettingTraits(traitlets.HasTraits):
+    """One trait for each setting."""
 
-    class SettingTraits(traitlets.HasTraits):
-        """One trait for each setting."""
-else:
-    SettingTraits = type(
-        "SettingTraits",
-        (traitlets.HasTraits,),
-        {
-            "__module__": __name__,
-            "__doc__": "One trait for each setting.",
-            **{name: SettingTrait(row).tag(sync=True) for name, row in TABLE.items()},
-        },
-    )
+    locals().update({name: SettingTrait(row).tag(sync=True) for name, row in TABLE.items()})
 
 
 #: Fields of the appearance that can be chosen in the browser.
@@ -458,7 +448,6 @@ class Views:
         )
 
     def _with_own(self, number: int, header: Header) -> Header:
-        """Add the settings in which two views differ."""
         if len(self.views) == 1:
             return header
         own, settings = self.views[1].own_settings, self.views[number].scene.settings

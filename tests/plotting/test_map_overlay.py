@@ -17,8 +17,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.colours import rgb
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
-from flowtex.plotting.vtk_camera import read_camera
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, read_camera
 from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
 from flowtex.scene.options import LAND_COLOR
 

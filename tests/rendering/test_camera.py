@@ -53,7 +53,7 @@ def test_a_globe_is_seen_from_above_its_data_with_north_up() -> None:
 
 @pytest.mark.parametrize("camera", [ASIDE, STRAIGHT])
 def test_vtk_takes_and_gives_it_back(camera: Camera) -> None:
-    from flowtex.plotting.vtk_camera import read_camera
+    from flowtex.rendering.camera import read_camera
 
     assert read_camera(vtk_camera(camera)) == camera
 

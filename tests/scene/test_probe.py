@@ -17,11 +17,10 @@ from scipy import ndimage
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Appearance
-from flowtex.scene.probe import LoadedTextures, Probe, Window, locate, probe
+from flowtex.scene.probe import LoadedTextures, Probe, locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
@@ -372,16 +371,6 @@ def test_what_cannot_be_read_is_refused(
 ) -> None:
     with pytest.raises(ValueError, match=fault):
         probe(view_of(wind()), at, pixel=pixel, size=(9, 9))
-
-
-def test_a_window_filters_as_the_whole_does(rng: np.random.Generator) -> None:
-    texels = rng.standard_normal((3, 64, 96, 4)).astype(np.float32)
-    whole, window = Mips(texels, levels=4), Window(texels, 4)
-    assert window.levels == whole.levels == 4
-    for coordinate in np.concatenate([rng.uniform(-0.01, 1.01, (60, 2)), [[0, 0], [1, 1]]]):
-        level = rng.uniform(-1, 5, 1)
-        one, two = (mips.at(coordinate[None], level, layer=2) for mips in (whole, window))
-        assert two == pytest.approx(one, abs=1e-12)
 
 
 def test_from_afar_slices_are_coarse() -> None:

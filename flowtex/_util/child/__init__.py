@@ -246,7 +246,6 @@ def _ending(status: int | None) -> str:
 
 
 def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
-    """Let the fork server start a child."""
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
     with suppress(OSError):  # fewer switches between the processes, where this size is allowed
@@ -278,7 +277,6 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
 
 
 def _spawned(entry: str, memory: int, _preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
-    """Start a child from nothing."""
     process = subprocess.Popen(
         command(spawned, entry=entry, memory=memory, lasting=lasting),
         stdin=subprocess.PIPE,

@@ -246,7 +246,6 @@ class Data(Controller):
 
     @property
     def _part(self) -> Source:
-        """The source of the block that is shown."""
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:
@@ -405,7 +404,6 @@ class FileBeside(Controller):
 
     @property
     def _goal(self) -> str:
-        """Name of the requested file."""
         return "" if self._request is None else self._request.name
 
     def _chosen(self) -> str:

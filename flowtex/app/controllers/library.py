@@ -43,10 +43,6 @@ SUFFIXES = frozenset(
         *EARTH_SUFFIXES,
     ]
 )
-#: Endings that are listed although they cannot be drawn, with the reasons.
-UNSHOWN = dict.fromkeys(
-    (".pkl", ".pickle", ".joblib"), "a pickle can run any program, so it is refused"
-)
 #: Depth to which a folder is searched, and most files that are listed.
 FOLDER_DEPTH, MOST_FILES = 4, 500
 #: Files, and flows, that stay open at most, and bytes of each of the two together.
@@ -145,7 +141,6 @@ class Library:
         )
         #: The state of the files from which each field was made.
         self._identities: WeakKeyDictionary[FlowField, Identity] = WeakKeyDictionary()
-        self._opening: dict[str, threading.Lock] = {}
         self._making: dict[str, threading.Lock] = {}
         self._unshown: dict[str, str] = {}
         if self._folder is not None or any(isinstance(o, _Files) for o in openers.values()):
@@ -219,12 +214,9 @@ class Library:
             When the name is unknown, or the source cannot be read.
         """
         opener = self._opener(name)
-        with self._opening.setdefault(name, threading.Lock()):
-            source = self._sources.peek(name)
-            if source is None or not source.alive or source.identity != _identity(opener):
-                source = opener()
-                self._sources.put(name, source)
-        return source
+        return self._sources.get(
+            name, opener, lambda source: source.alive and source.identity == _identity(opener)
+        )
 
     def _opener(self, name: str) -> Opener:
         if (opener := self._openers.get(name)) is None:
@@ -356,7 +348,6 @@ class _Files:
 
     @property
     def identity(self) -> Identity:
-        """The state of the files."""
         return file_identity([self.paths[0] / "zarr.json"] if self._is_store else self.paths)
 
     @property
@@ -396,7 +387,7 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
                 files.append((path.relative_to(folder).as_posix(), path))
             elif path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
                 waiting.append((path, depth + 1))
-            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"} | set(UNSHOWN):
+            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
                 files.append((path.relative_to(folder).as_posix(), path))
     files = files[:MOST_FILES]
     members = {member for _, path in files for member in members_of(path)}
@@ -414,4 +405,4 @@ def _reason(path: Path) -> str:
     beside = path.with_suffix(".npy")
     if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
         return f"it has no vectors, and {beside.name} does not exist"
-    return UNSHOWN.get(path.suffix.lower(), "")
+    return ""

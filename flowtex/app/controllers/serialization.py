@@ -113,7 +113,6 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
 
 
 def _pairs(text: str, faults: list[str]) -> list[tuple[str, str]]:
-    """Return the names and values of a link."""
     query = re.split(r"[?#]", text)[-1]
     if len(query) > LINK_LENGTH:
         faults.append(f"the link has {len(query):,} characters; expected {LINK_LENGTH:,} at most")

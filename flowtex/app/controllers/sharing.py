@@ -15,7 +15,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, TypeVar
@@ -226,66 +226,10 @@ class ExportError(FieldError):
     """A picture or a movie cannot be made; the text gives the reason and the remedy."""
 
 
-class TiledPicture:
-    """Draws pictures of any size, a tile at a time through a window as large as a tile.
-
-    The arguments are those of a :class:`Job`.
-    """
-
-    def __init__(
-        self,
-        viewport: Viewport,
-        size: tuple[int, int],
-        density: float,
-        supersampling: int,
-        *,
-        annotations: bool = False,
-    ) -> None:
-        self.size, self._viewport, self._supersampling = size, viewport, supersampling
-        self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
-        viewport.longest_side = TILE_PX
-        for pane in viewport.panes:
-            pane.density = density * supersampling
-        self._rows = slice(0, size[1])  # those with a flow
-        if annotations:
-            layouts = self.annotate(np.zeros((size[1], size[0], 3), np.uint8))
-            above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
-            self._rows = slice(above, size[1] - below)
-
-    def draw(self) -> Iterator[float]:
-        """Draw a new picture, :attr:`canvas`, and yield the share that is drawn after each tile."""
-        width, height = self.size[0], self._rows.stop - self._rows.start
-        ground = np.rint(255 * np.array(rgb(self._viewport.background)))
-        self.canvas = np.full((*self.size[::-1], 3), ground, np.uint8)
-        rows = self.canvas[self._rows]
-        rows[:] = LINE_GREY
-        if width < len(self._viewport.panes) + self._gap:
-            raise ExportError(f"the size is {width} x {height}; expected a pixel for each view")
-        times = self._supersampling
-        yield from self._viewport.draw_tiles(rows, self._gap, side=TILE_PX // times, times=times)
-
-    def annotate(self, picture: Bytes) -> list[Layout]:
-        """Write legend, scale bar, time and name on each view of a picture, in place."""
-        viewport, count, layouts = self._viewport, len(self._viewport.panes), []
-        for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
-            scene = pane.scene
-            values = dict(scene.settings)
-            written = annotate(
-                view,
-                scene,
-                viewport.camera,
-                flow_height=self._rows.stop - self._rows.start,
-                background=viewport.background,
-                label=named_values({n: values[n] for n in viewport.differences if n in values}),
-                legend=scene.settings.noise != "image",
-            )
-            layouts.append(written)
-        return layouts
-
-
 class Job:
     """Base of exports, which draw and write while a page continues, without changing its view.
 
+    A picture of any size is drawn a tile at a time, through a window as large as a tile.
     ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
     and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
     many pixels, for high-resolution screens and print. Raises an ExportError or a MovieError for
@@ -307,7 +251,7 @@ class Job:
         self.path, self.progress, self.done = Path(path), 0.0, False
         self._viewport, self._size = viewport, size
         self._supersampling, self._density = supersampling, density
-        self._annotations = annotations
+        self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
         self.cancelled = False  #: Whether it was cancelled before it was done.
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
@@ -317,12 +261,12 @@ class Job:
 
     async def run(self) -> Path:
         """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
-        viewport = self._viewport.copy()
+        self._viewport = self._viewport.copy()
         try:
-            await self._make(viewport)
+            await self._make(self._viewport)
         finally:
             self.done = True
-            viewport.close()
+            self._viewport.close()
             self._pool.shutdown(wait=False)
         self.progress = 1.0
         return self.path
@@ -330,21 +274,55 @@ class Job:
     async def _make(self, viewport: Viewport) -> None:
         raise NotImplementedError
 
-    def _tiled(self, viewport: Viewport) -> TiledPicture:
-        options = (self._size, self._density, self._supersampling)
-        return TiledPicture(viewport, *options, annotations=self._annotations)
+    def _prepare(self) -> None:
+        """Set the window and the density of the copy, and leave room for annotations."""
+        panes, density = self._viewport.panes, self._density
+        self._gap = max(round(GAP_PX * density), 1) if len(panes) > 1 else 0
+        self._viewport.longest_side = TILE_PX
+        for pane in panes:
+            pane.density = density * self._supersampling
+        if self._annotations:
+            layouts = self._annotate(np.zeros((*self._size[::-1], 3), np.uint8))
+            above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+            self._rows = slice(above, self._size[1] - below)
 
-    async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
+    async def _draw(self, before: float, share: float) -> Bytes:
         """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
-        for drawn in tiled.draw():
+        ground = np.rint(255 * np.array(rgb(self._viewport.background)))
+        canvas = np.full((*self._size[::-1], 3), ground, np.uint8)
+        rows, panes, times = canvas[self._rows], self._viewport.panes, self._supersampling
+        rows[:] = LINE_GREY
+        if self._size[0] < len(panes) + self._gap:
+            shown = f"{self._size[0]} x {len(rows)}"
+            raise ExportError(f"the size is {shown}; expected a pixel for each view")
+        tiles = self._viewport.draw_tiles(rows, self._gap, side=TILE_PX // times, times=times)
+        for drawn in tiles:
             self.progress = before + share * drawn
             # Other tasks of the event loop have their turn.
             await asyncio.sleep(0)
             if self.cancelled:
                 raise Stopped
         if self._annotations:
-            tiled.annotate(tiled.canvas)
-        return tiled.canvas
+            self._annotate(canvas)
+        return canvas
+
+    def _annotate(self, picture: Bytes) -> list[Layout]:
+        """Write legend, scale bar, time and name on each view of a picture, in place."""
+        viewport, layouts = self._viewport, []
+        views = np.array_split(picture, len(viewport.panes), axis=1)
+        for view, pane in zip(views, viewport.panes, strict=True):
+            values = dict(pane.scene.settings)
+            written = annotate(
+                view,
+                pane.scene,
+                viewport.camera,
+                flow_height=self._rows.stop - self._rows.start,
+                background=viewport.background,
+                label=named_values({n: values[n] for n in viewport.differences if n in values}),
+                legend=values["noise"] != "image",
+            )
+            layouts.append(written)
+        return layouts
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
         """Call a function in the job's thread, where tracing can be stopped."""
@@ -361,7 +339,8 @@ class PictureJob(Job):
 
     async def _make(self, viewport: Viewport) -> None:
         await self._in_thread(viewport.trace)
-        picture = await self._draw(self._tiled(viewport), 0.0, 0.9)
+        self._prepare()
+        picture = await self._draw(0.0, 0.9)
         await self._in_thread(self._write, picture)
 
     def _write(self, picture: Bytes) -> None:
@@ -415,7 +394,8 @@ class MovieJob(Job):
                 pane.settings.update(
                     motion=motion, period=self.frames.seconds, speed=self.frames.speed
                 )
-        count, tiled = len(self.frames), self._tiled(viewport)
+        self._prepare()
+        count = len(self.frames)
         writer = MovieWriter(self.path, self._size, self.frames.fps, self._quality)
         try:
             writing: asyncio.Future[None] | None = None
@@ -426,7 +406,7 @@ class MovieJob(Job):
                     time = self.frames.times[n]
                     await self._in_thread(viewport.trace, time)
                     viewport.set_time(time)
-                picture = await self._draw(tiled, 0.95 * n / count, 0.95 / count)
+                picture = await self._draw(0.95 * n / count, 0.95 / count)
                 if writing is not None:
                     await writing
                 # The next frame is drawn while this one is writing.

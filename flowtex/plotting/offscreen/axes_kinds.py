@@ -121,7 +121,6 @@ def _room(axis: Any) -> int:
 
 
 def _step(degrees: float, most: float) -> float:
-    """Return the degrees between ticks, of which ``most`` have room."""
     return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
 
 
@@ -138,7 +137,6 @@ class _Border(Locator):
         return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
 
     def __call__(self) -> list[float]:
-        """Return the places along the border."""
         return [float(place) for place in self.crossings()[0]]
 
     def tick_values(self, vmin: float, vmax: float) -> list[float]:
@@ -147,7 +145,6 @@ class _Border(Locator):
         return self()
 
     def text(self, x: float, _position: int | None = None) -> str:
-        """Return the degrees at the nearest crossing."""
         places, values, text = self.crossings()
         return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""
 

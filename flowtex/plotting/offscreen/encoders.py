@@ -224,7 +224,6 @@ class _Pillow:
         self._spool.write(picture.data)
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Write all pictures."""
         palette = self._palette() if self._format == "GIF" else None
         # A GIF counts in hundredths of a second, a WebP in thousandths.
         unit = 1 if palette is None else 10

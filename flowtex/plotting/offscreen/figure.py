@@ -537,7 +537,6 @@ def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> Non
 
 
 def _kind(ax: Axes) -> tuple[str, str, str]:
-    """Return the kind of axes, and the names of their scales."""
     return ax.name, ax.get_xscale(), ax.get_yscale()
 
 

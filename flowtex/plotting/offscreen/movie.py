@@ -290,7 +290,6 @@ def frames(
 def _prepare(
     mesh: Any, words: dict[str, Any], fps: float, seconds: float | None, **drawing: Any
 ) -> tuple[FrameTimes, Generator[Bytes, None, None]]:
-    """Return the times of the frames, and a generator that draws them."""
     options = Options.split(mesh=mesh, **words)
     field = options.field.field(mesh)
     settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))

@@ -17,8 +17,8 @@ from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import point_camera, read_camera
-from flowtex.rendering.camera import CAMERA_LIMITS
+from flowtex.plotting.vtk_camera import point_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.annotations import Layout, annotate, difference_text
 from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions

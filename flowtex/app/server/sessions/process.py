@@ -143,7 +143,6 @@ class _Files:
         self.token, self._http = token, http
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Pass on a request for a file, or an upload."""
         del name
         async with self._http.request(
             request.method,

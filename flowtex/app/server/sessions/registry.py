@@ -210,7 +210,6 @@ class Sessions:
         return session
 
     def _forget(self, session: Session, how: str) -> None:
-        """Remove a session that was lost."""
         _log.error("a session was lost: %s", how)
         self._by_token.pop(session.token, None)
         if self._ready is session:
