@@ -7,11 +7,13 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import lru_cache
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from flowtex.errors import FieldError
 from flowtex.sources.inspection import netcdf, vtk_legacy, vtk_xml
+from flowtex.sources.inspection.vtk_legacy import Data
 from flowtex.sources.reader_errors import check_count, check_memory, check_other
 
 #: Bytes that identify most files.
@@ -24,8 +26,6 @@ DOCUMENTS = ("zarr.json", ".zarray", ".zmetadata")
 #: Most bytes of a number.
 NUMBER_BYTES = 8
 GRIB_MAGIC = b"GRIB"
-#: Bytes that are read at once between messages.
-CHUNK_BYTES = 1 << 16
 #: Messages of GRIB 1 that are too long for three bytes count in units of 120.
 LONG_MESSAGE, LONG_UNIT = 0x800000, 120
 
@@ -59,32 +59,35 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
 @lru_cache(maxsize=1024)
 def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, ...]:  # noqa: FBT001
     """Inspect one file, and return the files that it names."""
-    with path.open("rb") as stream:
-        head = stream.read(HEAD_BYTES)
-        is_hdf5 = _is_hdf5(stream, size)
-    suffix = path.suffix.lower()
+    if not size:  # it cannot be mapped
+        return _inspect(path, b"", whole=whole)
+    with path.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as data:
+        return _inspect(path, data, whole=whole)
+
+
+def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
+    head, is_hdf5, suffix = data[:HEAD_BYTES], _is_hdf5(data), path.suffix.lower()
     check_other(path, head)
     if is_hdf5:
         netcdf.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):
-        netcdf.check_netcdf(path, whole=whole)
+        netcdf.check_netcdf(data, whole=whole)
     elif suffix in netcdf.SUFFIXES and not is_hdf5:
         beginning = f"it begins with {head[:8]!r}" if head else "it is empty"
         raise FieldError(f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5")
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
-        check_grib(path)
+        check_grib(data)
     if suffix == ".vtk":
-        vtk_legacy.check_vtk_legacy(path)
+        vtk_legacy.check_vtk_legacy(data)
     is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
-    return tuple(vtk_xml.check_vtk_xml(path)) if is_xml else ()
+    return tuple(vtk_xml.check_vtk_xml(path, data)) if is_xml else ()
 
 
-def _is_hdf5(stream: BinaryIO, size: int) -> bool:
+def _is_hdf5(data: Data) -> bool:
     """Return whether HDF5 begins somewhere, perhaps after a block of the user."""
     at = 0
-    while at < size:
-        stream.seek(at)
-        if stream.read(len(netcdf.HDF5_MAGIC)) == netcdf.HDF5_MAGIC:
+    while at < len(data):
+        if data[at : at + len(netcdf.HDF5_MAGIC)] == netcdf.HDF5_MAGIC:
             return True
         at = 2 * at or 512
     return False
@@ -130,61 +133,44 @@ def _chunk(array: dict[str, Any]) -> list[int]:
     return list(map(int, inner["chunk_shape"]))
 
 
-def check_grib(path: Path) -> None:
+def check_grib(data: Data) -> None:
     """Raise a FieldError for a cut last message, or a grid that does not fit into memory."""
-    size = path.stat().st_size
-    with path.open("rb") as stream:
-        at = _next(stream, 0)
-        number = 0
-        while at is not None:
-            number += 1
-            stream.seek(at)
-            head = stream.read(16)
-            label = f"message {number}"
-            check_count(len(head), 16, label)
-            length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
-            if head[7] == 1 and length >= LONG_MESSAGE:
-                # The exact length follows only from the sections.
-                length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
-            check_count(size - at, length, label)
-            points = _points(stream, at, head[7], min(at + length, size), label)
-            check_memory(8 * points, f"the grid of {label}")
-            at = _next(stream, at + max(length, 4))
+    at = data.find(GRIB_MAGIC)
+    number = 0
+    while at >= 0:  # between two messages any bytes may lie
+        number += 1
+        label, head = f"message {number}", data[at : at + 16]
+        check_count(len(head), 16, label)
+        length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
+        if head[7] == 1 and length >= LONG_MESSAGE:
+            # The exact length follows only from the sections.
+            length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
+        check_count(len(data) - at, length, label)
+        points = _points(data, at, head[7], at + length, label)
+        check_memory(8 * points, f"the grid of {label}")
+        at = data.find(GRIB_MAGIC, at + max(length, 4))
 
 
-def _next(stream: BinaryIO, at: int) -> int | None:
-    """Return the position of the next message; between two any bytes may lie."""
-    stream.seek(at)
-    data = b""
-    while part := stream.read(CHUNK_BYTES):
-        data = data[-3:] + part
-        if (found := data.find(GRIB_MAGIC)) >= 0:
-            return stream.tell() - len(data) + found
-    return None
-
-
-def _points(stream: BinaryIO, at: int, edition: int, end: int, label: str) -> int:
+def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
     """Return the number of points of the largest grid of a message."""
+
+    def number(begin: int, count: int) -> int:
+        return int.from_bytes(data[begin : begin + count], "big")
+
     if edition == 1:
-        stream.seek(at + 8)
-        section = stream.read(8)
-        if len(section) < 8 or not section[7] & 0x80:
+        if not number(at + 15, 1) & 0x80:
             return 0
-        stream.seek(at + 8 + int.from_bytes(section[:3], "big") + 6)
-        columns, rows = stream.read(2), stream.read(2)
-        return int.from_bytes(columns, "big") * int.from_bytes(rows, "big")
+        grid = at + 8 + number(at + 8, 3)
+        return number(grid + 6, 2) * number(grid + 8, 2)
     place, most = at + 16, 0
     while place + 11 <= end:
-        stream.seek(place)
-        head = stream.read(10)
-        length = int.from_bytes(head[:4], "big")
+        length = number(place, 4)
         if not 5 <= length <= end - place:
             break
-        if head[4] == 3:
-            most = max(most, int.from_bytes(head[6:10], "big"))
+        if data[place + 4] == 3:
+            most = max(most, number(place + 6, 4))
         place += length
     # ecCodes reads for ever where sections do not lead to the end.
-    stream.seek(place)
-    if place + 4 != end or stream.read(4) != b"7777":
+    if place + 4 != end or data[place:end] != b"7777":
         raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
     return most

@@ -11,9 +11,10 @@ import math
 import re
 import struct
 from pathlib import Path
-from typing import Any, BinaryIO, NoReturn
+from typing import Any, NoReturn
 
 from flowtex.errors import FieldError
+from flowtex.sources.inspection.vtk_legacy import Data
 from flowtex.sources.reader_errors import check_attributes, check_count, check_memory
 
 SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
@@ -25,20 +26,18 @@ STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
 HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
-def check_netcdf(path: Path, *, whole: bool) -> None:
+def check_netcdf(data: Data, *, whole: bool) -> None:
     """Raise a FieldError for a file that is shorter than declared, or too large for the memory."""
-    with path.open("rb") as stream:
-        size = path.stat().st_size
-        header = _Header(stream, size)
-        check_count(size, header.length(size), "the header")
-        for name, shape, nbytes in header.arrays:
-            if whole or len(shape) < 2:
-                check_memory(nbytes, f"the variable {name}")
+    header = _Header(data)
+    check_count(len(data), header.length(len(data)), "the header")
+    for name, shape, nbytes in header.arrays:
+        if whole or len(shape) < 2:
+            check_memory(nbytes, f"the variable {name}")
 
 
 class _Header:
-    def __init__(self, stream: BinaryIO, size: int) -> None:
-        self._stream, self._left = stream, size
+    def __init__(self, data: Data) -> None:
+        self._data, self._at = data, 0
         version = self._read(4)[3]
         self._wide = version == 5
         self._offset = ">I" if version == 1 else ">Q"
@@ -126,15 +125,16 @@ class _Header:
 
     def _read(self, count: int) -> bytes:
         self._fits(count, 1)
-        self._left -= count
-        return self._stream.read(count)
+        self._at += count
+        return self._data[self._at - count : self._at]
 
     def _fits(self, count: int, nbytes: int) -> None:
         """Raise a FieldError if the rest of the file is too short for a count of entries."""
-        if count * nbytes > self._left:
+        left = len(self._data) - self._at
+        if count * nbytes > left:
             raise FieldError(
                 f"the file is truncated or damaged: its header needs {count * nbytes:,} more "
-                f"bytes, but the file has {self._left:,}; write or copy it again"
+                f"bytes, but the file has {left:,}; write or copy it again"
             )
 
 

@@ -7,22 +7,21 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
-from typing import BinaryIO, NoReturn
-
-import numpy as np
+from mmap import mmap
+from typing import NoReturn, TypeAlias
 
 from flowtex.errors import FieldError
 from flowtex.sources.reader_errors import check_count, check_memory
 
-CHUNK_BYTES = 1 << 20
+#: A file that is mapped into memory; an empty one cannot be mapped.
+Data: TypeAlias = mmap | bytes
 #: Longest word that VTK reads at once.
 WORD_LENGTH = 255
 _WORD = re.compile(rb"\S{1,%d}" % WORD_LENGTH)
-_BLANK = np.zeros(256, dtype=bool)
-_BLANK[list(b" \t\n\v\f\r")] = True
-_OF_NUMBERS = np.zeros(256, dtype=bool)
-_OF_NUMBERS[list(b"0123456789+-.eEdDnNaAiIfFtTyY")] = True
+_NUMBER = rb"(?:\s*+[0-9+\-.eEdDnNaAiIfFtTyY]++(?!\S))"
+_NUMBERS = re.compile(_NUMBER + b"*+")
+#: Most repetitions that a pattern may name.
+MOST_REPEATED = 2**32 - 2
 MAGIC = b"# vtk DataFile Version"
 #: Bytes of a value in the file and in memory; VTK recognises types by the beginning of the name.
 TYPES = {
@@ -62,111 +61,62 @@ KEYWORDS = (
 )
 
 
+def count_numbers(data: Data, most: int | None, begin: int, end: int) -> tuple[int, int]:
+    """Return the count of numbers from ``begin``, at most ``most``, and where they end."""
+    if most is not None:
+        fitting = min(most, (end - begin + 1) // 2, MOST_REPEATED)
+        if match := re.compile(_NUMBER + b"{%d}+" % fitting).match(data, begin, end):
+            return fitting, match.end()
+    stop = _NUMBERS.match(data, begin, end).end()  # type: ignore[union-attr]
+    return sum(1 for _ in _WORD.finditer(data, begin, stop)), stop
+
+
 class TextScanner:
-    """One pass through a file of words, numbers and blocks of bytes, up to ``end`` in bytes."""
+    """One pass through words, numbers and blocks of bytes."""
 
-    def __init__(self, stream: BinaryIO, end: int) -> None:
-        self._stream, self._end = stream, end
-        self._buffer, self._at = b"", 0
-
-    @property
-    def left(self) -> int:
-        """Bytes that are not read yet."""
-        return max(self._end - self._stream.tell(), 0) + len(self._buffer) - self._at
+    def __init__(self, data: Data) -> None:
+        self._data, self._at = data, 0
 
     def word(self) -> bytes:
         """Return the next word, empty at the end."""
-        while True:
-            match = _WORD.search(self._buffer, self._at)
-            if match is not None and match.end() < len(self._buffer):
-                break
-            if not self._more():
-                break
-        if match is None:
-            self._at = len(self._buffer)
-            return b""
-        self._at = match.end()
-        return match.group()
+        match = _WORD.search(self._data, self._at)
+        self._at = match.end() if match else len(self._data)
+        return match.group() if match else b""
 
     def next_word(self) -> bytes:
         """Return the next word, and stay before it."""
         word = self.word()
-        # The buffer holds the word that was just read.
         self._at -= len(word)
         return word
 
     def line(self) -> bytes | None:
         """Return the rest of the line without its end, ``None`` at the end of the file."""
-        while (stop := self._buffer.find(b"\n", self._at)) < 0 and self._more():
-            pass
-        if stop < 0 and self._at == len(self._buffer):
-            return None
-        stop = len(self._buffer) if stop < 0 else stop
-        line = self._buffer[self._at : stop]
-        self._at = min(stop + 1, len(self._buffer))
-        return line.removesuffix(b"\r")
+        begin, length = self._at, len(self._data)
+        stop = self._data.find(b"\n", begin)
+        stop = length if stop < 0 else stop
+        self._at = min(stop + 1, length)
+        return None if begin == length else self._data[begin:stop].removesuffix(b"\r")
 
     def skip(self, count: int) -> int:
         """Skip bytes, and return their number."""
-        count = min(count, self.left)
-        inside = min(count, len(self._buffer) - self._at)
-        self._at += inside
-        self._stream.seek(count - inside, 1)
+        count = min(count, len(self._data) - self._at)
+        self._at += count
         return count
 
     def read(self, count: int) -> bytes:
         """Return the next bytes, at most ``count``."""
-        while len(self._buffer) - self._at < count and self._more():
-            pass
-        data = self._buffer[self._at : self._at + count]
-        self._at += len(data)
-        return data
+        count = self.skip(count)
+        return self._data[self._at - count : self._at]
 
-    def numbers(self, most: int | None = None) -> int:
+    def numbers(self, most: int) -> int:
         """Skip numbers, at most ``most``, up to another word; return their count."""
-        count = 0
-        while most is None or count < most:
-            if self._at == len(self._buffer) and not self._more():
-                break
-            part = np.frombuffer(self._buffer, np.uint8, offset=self._at)
-            blank = _BLANK[part]
-            stop = len(part)
-            if not blank[-1] and self._stream.tell() < self._end:
-                # The last word may continue in the next chunk.
-                blanks = np.flatnonzero(blank)
-                stop = int(blanks[-1]) + 1 if blanks.size else 0
-                if not stop and len(part) <= WORD_LENGTH:
-                    self._more()
-                    continue
-                stop = stop or len(part)
-            starts = np.flatnonzero(~blank & np.concatenate([[True], blank[:-1]]))
-            others = np.flatnonzero(~blank & ~_OF_NUMBERS[part])
-            ended = bool(others.size) and int(others[0]) < stop
-            if ended:
-                stop = int(starts[np.searchsorted(starts, others[0], "right") - 1])
-            found = int(np.searchsorted(starts, stop))
-            if most is not None and count + found > most:
-                found = most - count
-                stop = int(starts[found])
-            count += found
-            self._at += stop
-            if ended:
-                break
+        count, self._at = count_numbers(self._data, most, self._at, len(self._data))
         return count
 
-    def _more(self) -> bool:
-        """Read a chunk if there is one, and drop the bytes before the position."""
-        room = min(CHUNK_BYTES, self._end - self._stream.tell())
-        data = self._stream.read(max(room, 0))
-        if data:
-            self._buffer, self._at = self._buffer[self._at :] + data, 0
-        return bool(data)
 
-
-def check_vtk_legacy(path: Path) -> None:
+def check_vtk_legacy(data: Data) -> None:
     """Raise a FieldError for a file that ends early, or does not fit into memory."""
-    with path.open("rb") as stream:
-        _Legacy(TextScanner(stream, path.stat().st_size)).check()
+    _Legacy(TextScanner(data)).check()
 
 
 class _Legacy:

@@ -12,13 +12,13 @@ import re
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, Literal
+from typing import Literal
 from xml.parsers import expat
 
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection.vtk_legacy import TextScanner
+from flowtex.sources.inspection.vtk_legacy import Data, count_numbers
 from flowtex.sources.reader_errors import check_count, check_memory
 
 #: Endings of files of one mesh, of its pieces, of blocks and of series.
@@ -28,6 +28,7 @@ SUFFIXES = (
 )
 CHUNK_BYTES = 1 << 20
 _TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
+_INTEGER, _BLANKS = re.compile(rb"\d+"), re.compile(rb"\s*")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
 #: Kinds of cells, and the attributes with their counts.
 CELLS = {"Verts": "NumberOfVerts", "Lines": "NumberOfLines"}
@@ -39,22 +40,20 @@ def is_xml(head: bytes) -> bool:
     return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
-def check_vtk_xml(path: Path) -> list[Path]:
+def check_vtk_xml(path: Path, data: Data) -> list[Path]:
     """Return the files that a file names, if its arrays fit into it and into memory."""
-    with path.open("rb") as stream:
-        if b"\0" in stream.read(4):
-            raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
-        stream.seek(0)
-        document = _Document()
-        document.parse(stream)
-        contents = _Contents(stream, path.stat().st_size, document)
-        times: dict[str, int] = {}
-        for array in document.arrays:
-            contents.check(array)
-            nbytes = (array.values or 0) * array.bits // 8 * document.copies
-            times[array.time] = times.get(array.time, 0) + nbytes
-        check_memory(max(times.values(), default=0), "the file")
-        check_memory(max(24 * document.points, document.parallel), "the grid")
+    if b"\0" in data[:4]:
+        raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
+    document = _Document()
+    document.parse(data)
+    contents = _Contents(data, document)
+    times: dict[str, int] = {}
+    for array in document.arrays:
+        contents.check(array)
+        nbytes = (array.values or 0) * array.bits // 8 * document.copies
+        times[array.time] = times.get(array.time, 0) + nbytes
+    check_memory(max(times.values(), default=0), "the file")
+    check_memory(max(24 * document.points, document.parallel), "the grid")
     return [path.parent / name for name in document.members]
 
 
@@ -108,13 +107,12 @@ class _Document:
     def points(self) -> int:
         return max(self._points, self._whole)
 
-    def parse(self, stream: BinaryIO) -> None:
+    def parse(self, data: Data) -> None:
         try:
-            while self.appended is None:
-                data = stream.read(CHUNK_BYTES)
-                self._parser.Parse(data, not data)
-                if not data:
-                    break
+            # After the elements expat would read the rest of a part as well.
+            for at in range(0, len(data), CHUNK_BYTES):
+                self._parser.Parse(data[at : at + CHUNK_BYTES])
+            self._parser.Parse(b"", True)  # noqa: FBT003
         except _Appended:
             pass
         except expat.ExpatError as error:
@@ -213,15 +211,15 @@ class _Appended(Exception):
 class _Contents:
     """The content of the arrays in a file."""
 
-    def __init__(self, stream: BinaryIO, size: int, document: _Document) -> None:
-        self._stream, self._size, self._document = stream, size, document
-        self._base = size
+    def __init__(self, data: Data, document: _Document) -> None:
+        self._data, self._document = data, document
+        self._base = len(data)
         #: Numbers of values of the connectivity of cells, and of those that their offsets need.
         self._joined: dict[tuple[int, str], dict[str, int]] = {}
         if document.appended is not None:
             tag = self._after_tag(document.appended)
             # An underscore stands before the data.
-            self._base = tag + self._read(tag, CHUNK_BYTES).find(b"_") + 1
+            self._base = max(data.find(b"_", tag) + 1, tag)
 
     def check(self, array: _Array) -> None:
         """Raise a FieldError if the file has less of an array than declared."""
@@ -231,12 +229,11 @@ class _Contents:
         is_topology = array.section in CELLS and array.name in ("offsets", "connectivity")
         if array.format == "ascii":
             begin = self._after_tag(array.begin)
-            self._stream.seek(begin)
-            values = TextScanner(self._stream, array.end).numbers(array.values)
-            tail = self._read(max(begin, array.end - 64), array.end - max(begin, array.end - 64))
-            last = int((re.findall(rb"\d+", tail) or [b"0"])[-1]) if is_topology else None
+            values, _ = count_numbers(self._data, array.values, begin, array.end)
+            tail = _INTEGER.findall(self._data, max(begin, array.end - 64), array.end)
+            last = int((tail or [b"0"])[-1]) if is_topology else None
         else:
-            block = _Block(self._stream, self._document, *self._place(array), label)
+            block = _Block(self._data, self._document, *self._place(array), label)
             values = block.nbytes * 8 // array.bits
             last = block.last(array.bits // 8) if is_topology else None
         if array.values is not None:
@@ -250,18 +247,13 @@ class _Contents:
     def _place(self, array: _Array) -> tuple[int, int, bool]:
         """Return the begin of an array, its latest end, and whether it is in base64."""
         if array.format == "appended":
-            return self._base + array.offset, self._size, self._document.encoded
-        begin = self._after_tag(array.begin)
-        head = self._read(begin, CHUNK_BYTES)
-        return begin + len(head) - len(head.lstrip()), array.end, True
+            return self._base + array.offset, len(self._data), self._document.encoded
+        blanks = _BLANKS.match(self._data, self._after_tag(array.begin))
+        return blanks.end() if blanks else 0, array.end, True
 
     def _after_tag(self, begin: int) -> int:
-        match = _TAG.match(self._read(begin, CHUNK_BYTES))
-        return begin + (match.end() if match else 0)
-
-    def _read(self, begin: int, count: int) -> bytes:
-        self._stream.seek(begin)
-        return self._stream.read(count)
+        match = _TAG.match(self._data, begin)
+        return match.end() if match else begin
 
 
 class _Block:
@@ -269,14 +261,14 @@ class _Block:
 
     def __init__(
         self,
-        stream: BinaryIO,
+        data: Data,
         document: _Document,
         begin: int,
         end: int,
         encoded: bool,  # noqa: FBT001
         what: str,
     ) -> None:
-        self._stream, self._encoded, self._order = stream, encoded, document.order
+        self._data, self._encoded, self._order = data, encoded, document.order
         self._begin, self._word = begin, document.header
         room = max(end - begin, 0)
         self._room = room * 3 // 4 if encoded else room
@@ -320,19 +312,15 @@ class _Block:
     def _read(self, offset: int, count: int, head: int) -> bytes:
         """Return bytes of the block, whose first ``head`` may be encoded separately."""
         if not self._encoded:
-            self._stream.seek(self._begin + offset)
-            return self._stream.read(count)
+            return self._data[self._begin + offset : self._begin + offset + count]
         begin = self._begin
         if head:
             encoded_head = -(-head // 3) * 4
-            self._stream.seek(begin)
-            if self._sizes or b"=" in self._stream.read(encoded_head):
+            if self._sizes or b"=" in self._data[begin : begin + encoded_head]:
                 begin, offset = begin + encoded_head, offset - head
         first, stop = offset // 3 * 4, -(-(offset + count) // 3) * 4
-        self._stream.seek(begin + first)
-        text = self._stream.read(stop - first)
         try:
-            return base64.b64decode(text)[offset % 3 :][:count]
+            return base64.b64decode(self._data[begin + first : begin + stop])[offset % 3 :][:count]
         except binascii.Error:
             return b""
 
