@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps, map_steps, typical_steps
@@ -23,8 +22,6 @@ from flowtex.field.units import speed_unit, velocity_units
 LINE_WIDTH = 1e-7
 #: Ranges of lengths, for single precision, and of speeds and times, whose squares must be finite.
 LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
-#: Lines of nodes along each axis that are examined first.
-FEW_LINES = 100
 #: The scalar that is 1 where there are no data, 0 elsewhere.
 NO_DATA = "no data"
 
@@ -218,32 +215,15 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
             "check the mask"
         ]
-    if _is_wide(p, ok):
-        return []
-    offsets = p[ok] - p[ok].mean(axis=0)
-    if np.abs(offsets).max() == 0:
+    offsets = p[ok]
+    offsets -= offsets.mean(axis=0)
+    if (size := largest(offsets)) == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
-    spans = np.linalg.svd(np.cov((offsets / np.abs(offsets).max()).T), compute_uv=False)
+    offsets /= size
+    spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
     if spans[1] <= LINE_WIDTH**2 * spans[0]:
         return ["all usable nodes lie on one line; expected a surface: check the coordinates"]
     return []
-
-
-def _is_wide(p: Floats, ok: Bools) -> bool:
-    """Return whether a sample of the nodes is wider than a line, and so are all of them."""
-    thinned = tuple(slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape)
-    sample = p[thinned][ok[thinned]]
-    if len(sample) < 3:
-        return False
-    low, high = bounds(p if ok.all() else p[ok])
-    offsets = sample - sample.mean(axis=0)
-    # Where all nodes are at one point, only rounding remains.
-    size = float(max((high - low).max(), np.abs(offsets).max()))
-    if not np.finfo(float).tiny < size:
-        return False
-    offsets /= size
-    spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
-    return bool(spans[1] > 2 * LINE_WIDTH**2 * p.shape[-1] * ok.size)
 
 
 def finite_nodes(a: Floats) -> Bools:

@@ -177,10 +177,10 @@ def test_a_file_is_looked_into_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     looks = 0
     check = vtk_legacy.check_vtk_legacy
 
-    def counted(path: Path) -> None:
+    def counted(data: vtk_legacy.Data) -> None:
         nonlocal looks
         looks += 1
-        check(path)
+        check(data)
 
     monkeypatch.setattr(vtk_legacy, "check_vtk_legacy", counted)
     path = tmp_path / "mesh.vtk"

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import UserList
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
 
 from flowtex._util.arguments import check_field, checked_count
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.extras import import_extra
 from flowtex._util.notices import notify
 from flowtex._util.progress import track
@@ -20,6 +21,7 @@ from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
 from flowtex.field.formula import Rates
 from flowtex.field.grids.poles import Pole
+from flowtex.field.interpolation import between_nodes
 from flowtex.field.locate import surface_point
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.structure.cells import (
@@ -142,7 +144,7 @@ class CriticalPoint:
         return [way for way, leaves in self.directions if leaves == forward]
 
 
-class CriticalPoints(Records, Sequence[CriticalPoint]):
+class CriticalPoints(Records, UserList[CriticalPoint]):
     """Critical points of a field, in the order of times and places.
 
     A sequence of records with ``position`` (3,), ``kind``, ``eigenvalues`` (2,), ``eigenvectors``
@@ -157,21 +159,6 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
     ('centre', [0.5, 0.5, 0.0])
     """
 
-    def __init__(self, points: Sequence[CriticalPoint]) -> None:
-        self._points = tuple(points)
-
-    @overload
-    def __getitem__(self, key: int) -> CriticalPoint: ...
-    @overload
-    def __getitem__(self, key: slice) -> CriticalPoints: ...
-    def __getitem__(self, key: int | slice) -> CriticalPoint | CriticalPoints:
-        if isinstance(key, slice):
-            return CriticalPoints(self._points[key])
-        return self._points[key]
-
-    def __len__(self) -> int:
-        return len(self._points)
-
     def of_kind(self, *kinds: str) -> CriticalPoints:
         """Return the points of the given kinds."""
         for kind in kinds:
@@ -179,17 +166,17 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
                 raise FieldError(
                     f"kind {kind!r} does not exist; expected one of {', '.join(KINDS)}"
                 )
-        return CriticalPoints([p for p in self._points if p.kind in kinds])
+        return CriticalPoints([p for p in self if p.kind in kinds])
 
     def strongest(self, count: int) -> CriticalPoints:
         """Return at most ``count`` points, the strongest first."""
         count = checked_count("count", count, expected="a number of points, 0 or more", low=0)
-        return CriticalPoints(sorted(self._points, key=lambda p: -p.strength)[:count])
+        return CriticalPoints(sorted(self, key=lambda p: -p.strength)[:count])
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dictionary of numbers and strings for each point."""
         rows = []
-        for p in self._points:
+        for p in self:
             row: dict[str, Any] = {"kind": p.kind, "poincare_index": p.poincare_index}
             row |= {"time": p.time, "strength": p.strength}
             row |= dict(zip("xyz", (float(x) for x in p.position), strict=True))
@@ -201,7 +188,7 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         return rows
 
     def _geometries(self) -> list[dict[str, Any] | None]:
-        places = (point.lonlat for point in self._points)
+        places = (point.lonlat for point in self)
         return [place and {"type": "Point", "coordinates": list(place)} for place in places]
 
     def to_pyvista(self) -> pv.PolyData:
@@ -211,14 +198,14 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         """
         import pyvista as pv
 
-        mesh = pv.PolyData(np.array([p.position for p in self._points]).reshape(-1, 3))
-        mesh["kind"] = np.array([KINDS.index(p.kind) for p in self._points], dtype=np.uint8)
-        mesh["time"] = np.array([p.time for p in self._points])
-        mesh["strength"] = np.array([p.strength for p in self._points])
+        mesh = pv.PolyData(np.array([p.position for p in self]).reshape(-1, 3))
+        mesh["kind"] = np.array([KINDS.index(p.kind) for p in self], dtype=np.uint8)
+        mesh["time"] = np.array([p.time for p in self])
+        mesh["strength"] = np.array([p.strength for p in self])
         return mesh
 
     def __repr__(self) -> str:
-        counts = [(kind, sum(p.kind == kind for p in self._points)) for kind in KINDS]
+        counts = [(kind, sum(p.kind == kind for p in self)) for kind in KINDS]
         found = ", ".join(f"{count} x {kind}" for kind, count in counts if count)
         return f"CriticalPoints({found or 'no points'})"
 
@@ -320,19 +307,12 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     gradient = np.stack([by_i, by_j], axis=-1)
     index = np.stack([i + s, j + t], axis=-1)
     position = field.surface.at(index)
-    tangents = [_blend(tangent, j, i, s, t) for tangent in field.surface.tangents]
-    found = _points(field, position, gradient, np.stack(tangents, axis=1), index)
+    parts = np.moveaxis(field.surface.tangents, -1, 1)  # (2, 3, J, I)
+    tangents = np.array([[between_nodes(part, index) for part in tangent] for tangent in parts])
+    found = _points(field, position, gradient, np.moveaxis(tangents, -1, 0), index)
     for pole in poles:
         found += _at_pole(field, pole)
     return _resolved(_distinct(found, field), field)
-
-
-def _blend(nodal: Floats, j: Indices, i: Indices, s: Floats, t: Floats) -> Floats:
-    """Return nodal values (J, I, C) within cells, (K, C)."""
-    s, t = s[:, None], t[:, None]
-    low = nodal[j, i] * (1 - s) + nodal[j, i + 1] * s
-    high = nodal[j + 1, i] * (1 - s) + nodal[j + 1, i + 1] * s
-    return np.asarray(low * (1 - t) + high * t)
 
 
 def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
