@@ -16,7 +16,7 @@ from flowtex.settings import Settings
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 
 #: Pixels of the longer side of a cell above which the next level is drawn.
-CELL_PIXELS = 3.0
+CELL_PIXELS = 4.0
 
 
 @dataclass(frozen=True)

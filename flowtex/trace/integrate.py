@@ -32,6 +32,9 @@ BISECTIONS = 20
 #: Rounds of steps after which the remaining paths are ended: so many for each line of nodes, as a
 #: path in few cells goes round and round, within these limits.
 STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
+#: Steps within which a path in a steady flow leaves a square whose sides are so many times the
+#: error allowed in a step; otherwise it stays there.
+CIRCLE_STEPS, CIRCLE_ERRORS = 48, 20.0
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, also in computations.
@@ -69,10 +72,12 @@ def integrate(
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     lines = sampler.grid.rows + sampler.grid.columns
-    for _ in range(min(max(STEPS_PER_LINE * lines, LEAST_STEPS), MOST_STEPS)):
+    for number in range(min(max(STEPS_PER_LINE * lines, LEAST_STEPS), MOST_STEPS)):
         run.end_resting()
         if not len(run.state.which):
             break
+        if number % CIRCLE_STEPS == 0 and not np.isfinite(sampler.longest):
+            run.end_circling()
         run.advance()
     run.go_straight(run.state, run.state.rate)
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
@@ -150,6 +155,7 @@ class _Run:
         self.charts, self.within = sampler.charts, within
         self.span = sampler.span(direction)
         self.lags = lags
+        self.before = np.full(start.shape, np.inf)
         #: The lags and one that is never reached, for particles that have passed all.
         self.next_lags = np.append(lags, np.inf)
         self.out = np.repeat(start[None], len(lags), axis=0)
@@ -181,6 +187,16 @@ class _Run:
             ended = self.state.pick(resting)
             self.go_straight(ended, np.zeros_like(ended.y))
             self.state = self.state.pick(~resting)
+
+    def end_circling(self) -> None:
+        """Leave paths in place that go round and round in a small part of a cell."""
+        state = self.state
+        circling = _speed(state.y - self.before[:, state.which]) < CIRCLE_ERRORS * self.tolerance
+        self.before[:, state.which] = state.y
+        if circling.any():
+            self.go_straight(state.pick(circling), np.zeros((2, circling.sum())))
+            self.reach[state.which[circling]] = np.inf
+            self.state = state.pick(~circling)
 
     def advance(self) -> None:
         """Try one step of every particle, and accept it where its error is small enough."""

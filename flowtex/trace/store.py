@@ -77,10 +77,9 @@ class SliceStore:
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
             self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell, first_cells)
-            # On a globe the lags that are long enough near a pole are many times that elsewhere.
-            poles = field.surface.poles
-            closed = poles is not None and poles.both
-            self.long_enough = (longest or longest_path(field)) if closed else np.inf
+            # Where cells differ, lags that are long enough for small ones are many times that for
+            # large ones.
+            self.long_enough = (longest or longest_path(field)) if np.ptp(self.unit) else np.inf
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 

@@ -173,7 +173,7 @@ def trace(
     most = np.full(field.shape, longest if parameter == "arclength" else np.inf)
     if nodes is not None and parameter == "arclength" and field.surface.poles is None:
         outside = _distance(_checked_nodes(field, nodes))
-        np.minimum(most, (1 - outside) * lag_values[-1] * units, out=most, where=outside > 0)
+        most = (1 - outside) * np.minimum(most, lag_values[-1] * units)
     tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress, most)
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
