@@ -184,6 +184,8 @@ class FlowLayer:
         time has moved are prepared.
         """
         old_time = self.view.time
+        if between and not self.view.between:
+            self._retire("u_slicesNext")  # in whose place something small was sent
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
             reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
@@ -196,7 +198,8 @@ class FlowLayer:
         first, last = self.textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
         if self._drawn and self.view.time != old_time:
-            self._prefetch.prepare(after + 1 if self.view.time > old_time else before - 1)
+            ahead = after + (between > 0) if self.view.time > old_time else before - 1
+            self._prefetch.prepare(ahead)
 
     def close(self) -> None:
         """Restore the actor and free the graphics card's memory."""
@@ -332,12 +335,11 @@ class FlowLayer:
         """Return the function that loads the texture of each sampler of the shader."""
         paper = self.textures.paper
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
-        if self.textures.store.steps > 1:
-            loaders["u_slicesNext"] = lambda: send(**self._slices(1))
         colours, geometry = self._colours, self.textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
         none, single = np.zeros((1, 1, 1, 4)), partial(send, levels=0, single=True)
         loaders |= {
+            "u_slicesNext": lambda: send(**self._slices(1)) if self.view.between else single(none),
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
             "u_nodes": lambda: single(_nodes(geometry, self.view.anchor)),

@@ -219,7 +219,8 @@ class FlowSurface:
         loader = self._loader
         if loader is None:
             return {None: []}
-        steps = sorted({*self._moment[:2]})
+        before, after, between = self._moment
+        steps = sorted({before, after if between else before})
         choices = choose_tiles(loader.pyramid, view)
         if self._base.deferred and any(not loader.get(k, steps) for k in wanted_tiles(choices)):
             visible = loader.pyramid.visible_blocks(self._passes.places(self._base))
