@@ -470,7 +470,12 @@ class FlowField(FieldConstructors, FieldQuantities):
     @property
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
-        return self.index_velocity.normal_share
+        frame = self.surface.frame
+        if frame is None or isinstance(self.velocity, LazySteps):
+            return self.index_velocity.normal_share
+        flow = np.asarray(self.velocity[:, self.valid])
+        total, out = np.vdot(flow, flow), flow @ np.cross(*frame)
+        return float(np.sqrt(min(np.vdot(out, out) / total, 1.0))) if total > 0 else 0.0
 
     @property
     def leaves_surface(self) -> bool:

@@ -200,7 +200,8 @@ class _SliceLookup:
         self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
         self._trust = np.zeros(self._pace.shape, np.float32)
         # The second differences at the corners of a cell take the nodes beside them.
-        self._filled = _corners(np.minimum, scipy.ndimage.minimum_filter(counts, 3)[None])
+        least = scipy.ndimage.minimum_filter(counts, 3) if np.ptp(counts) else counts
+        self._filled = _corners(np.minimum, least[None])
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
         #: Which nodes have a path that has come close to a pole, (T, J, I).

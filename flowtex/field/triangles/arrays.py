@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -194,19 +194,24 @@ def nodal_means(
     at, face = triangles.ravel(), np.repeat(np.arange(len(triangles)), triangles.shape[1])
     weights = areas if known is None else np.where(known, areas, 0.0)
     present = at >= 0
-    matrix = scipy.sparse.csr_array(
-        (weights[face[present]], (at[present], face[present])), shape=(nodes, len(triangles))
-    )
-
-    return map_steps(values, partial(known_means, matrix=matrix))
+    face = face[present]
+    summed = partial(sums_at, at[present], count=nodes, of=face, weights=weights[face])
+    return map_steps(values, partial(known_means, summed=summed))
 
 
-def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
-    """Return means (n, ...) of finite values (N, ...) by the rows of a matrix; NaN without any."""
+def sums_at(
+    number: Indices, values: Floats, count: int, of: Any = slice(None), weights: Any = 1.0
+) -> Floats:
+    """Return sums (count, C), by number (n,), of weighted values (N, C) ``of`` some items (n,)."""
+    columns = (np.bincount(number, weights * column[of], count) for column in values.T)
+    return np.stack([*columns], axis=-1)
+
+
+def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
+    """Return means (n, ...) of finite values (N, ...), which are summed; NaN without any."""
     flat = values.reshape(len(values), -1)
-    finite = np.asarray(np.isfinite(flat).all(axis=1))
-    sums = np.asarray(matrix @ np.where(finite[:, None], flat, 0.0))
-    total = np.asarray(matrix @ finite.astype(float))[:, None]
+    finite = np.asarray(np.isfinite(flat).all(axis=1, keepdims=True))
+    sums, total = summed(np.where(finite, flat, 0.0)), summed(finite * 1.0)
     means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
     return np.asarray(means.reshape(-1, *values.shape[1:]))
 
@@ -216,12 +221,10 @@ def _joined(
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
     """Average the values of nodes at one place; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)
-    matrix = scipy.sparse.csr_array(
-        (np.ones(len(kept)), (number[kept], kept)), shape=(count, len(number))
-    )
+    summed = partial(sums_at, number[kept], count=count, of=kept)
 
     def mean(step: Floats) -> Floats:
-        return known_means(step[0], matrix)[None]
+        return known_means(step[0], summed)[None]
 
     usable = np.bincount(number[kept], ok[kept], count) > 0
     return usable, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}

@@ -9,16 +9,16 @@ thin sheet. Triangles remain where their corners lie in three bins.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
-from flowtex.field.triangles.arrays import known_means, triangle_normals
+from flowtex.field.triangles.arrays import known_means, sums_at, triangle_normals
 from flowtex.field.triangles.surface import TriangleSurface
 
 #: Side of the first bins in edges there.
@@ -97,7 +97,7 @@ class Clusters:
         sides, border = np.zeros(count), np.zeros(count, dtype=bool)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
-        normals = _sums(self.normals[kept], cluster[kept], count)
+        normals = sums_at(cluster[kept], self.normals[kept], count)
         field = _averaged(self.whole, number, corners)
         kept = _untangled(field.points[0], corners, normals, border)
         corners, cells = corners[kept], self.cells[cells[kept]]
@@ -125,8 +125,8 @@ class Clusters:
     def _compact(self, cluster: Indices) -> Indices:
         """Return clusters (n,) in which each node belongs to the nearest one beside it."""
         points, count = self.field.points[0], int(cluster.max()) + 1
-        center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
-        normal = _sums(self.normals, cluster, count)
+        center = sums_at(cluster, points, count) / np.bincount(cluster)[:, None]
+        normal = sums_at(cluster, self.normals, count)
         away = points - center[cluster]
         distances = np.einsum("nc,nc->n", away, away)
         parts = []
@@ -165,16 +165,14 @@ def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
 def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowField:
     """Return a field on other triangles, whose nodes have the means of the nodes of a number."""
     kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
-    members = np.bincount(number[kept], minlength=count)
-    weights = 1 / members[number[kept]]
-    matrix = scipy.sparse.csr_array((weights, (number[kept], kept)), shape=(count, len(number)))
+    summed = partial(sums_at, number[kept], count=count, of=kept)
 
     def means(steps: Steps) -> Steps:
-        return map_steps(steps, lambda step: known_means(step[0], matrix)[None])
+        return map_steps(steps, lambda step: known_means(step[0], summed)[None])
 
     return replace(
         field,
-        points=(matrix @ field.points[0])[None],
+        points=known_means(field.points[0], summed)[None],
         velocity=means(field.velocity),
         valid=np.ones((1, count), dtype=bool),
         scalars={
@@ -240,7 +238,7 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
         total, count = np.zeros_like(points), np.zeros(len(points))
         for by in (1, 2):
             other = points[np.roll(near, by, axis=1).ravel()]
-            total += _sums(other, near.ravel(), len(points))
+            total += sums_at(near.ravel(), other, len(points))
             count += np.bincount(near.ravel(), minlength=len(points))
         points[moved] = total[moved] / count[moved, None]
         turned[changed] = _turned(points, near, normals)
@@ -251,7 +249,3 @@ def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
     """Return which triangles (M,) face away from the normals of their corners."""
     normal = np.asarray(sum(normals[triangles[:, k]] for k in range(3)))
     return np.asarray(dot(triangle_normals(points, triangles), normal) <= 0)
-
-
-def _sums(values: Floats, number: Indices, count: int) -> Floats:
-    return np.stack([np.bincount(number, column, count) for column in values.T], axis=-1)
