@@ -37,7 +37,7 @@ from flowtex.trace.slices import FIRST_CELLS, small_cell, typical_speed
 from flowtex.trace.store import SliceStore
 
 #: Most nodes, of one time, of a field that is traced whole.
-ROOT_NODES = 150_000
+ROOT_NODES = 100_000
 #: Cells along a side of a block, the smallest part of a tile that is drawn or left out by itself,
 #: and blocks along a side of a tile.
 BLOCK_CELLS, TILE_BLOCKS = 64, 4
