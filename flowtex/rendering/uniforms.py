@@ -15,7 +15,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
-from flowtex.rendering.constants import FAR_CELLS, KERNELS, UNCERTAIN_LAYER
+from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.texture_set import TextureSet
@@ -37,10 +37,6 @@ CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 ARROW_PIECES, ARROW_LEAST, ARROW_MOST_DENSE = 12, 0.85, 8.0
 #: Length of an arrow over the least distance, at most.
 ARROW_LONGEST = 1.6
-
-#: How much more lag a path may take than its length: beside critical points, where those of
-#: neighbours part, their mean is slow.
-SLOWER = 4.0
 
 #: Texels along a pixel from which on some are skipped.
 SKIPPED_TEXELS = 2.0
@@ -71,8 +67,6 @@ class ViewState:
     density: float = 1.0
     #: Length that a pixel drawn covers at the focus; 0 means as near as possible.
     pixel: float = 0.0
-    #: Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
-    lags: int | None = None
     #: Mip levels of the slices besides the finest that are drawn with; ``None`` for all.
     levels: int | None = None
 
@@ -147,15 +141,14 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     moving, sparse = is_moving(textures, settings, view), is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
-    lags = textures.lags[: view.lags]
     values: dict[str, Any] = {
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
         "u_deepest": float(geometry.levels if view.levels is None else view.levels),
-        "u_lags": [float(lag) for lag in lags],
-        "u_lagCount": len(lags),
-        "u_rateLayer": textures.count_of(view.lags) - 1,
+        "u_lags": [float(lag) for lag in textures.lags],
+        "u_lagCount": len(textures.lags),
+        "u_rateLayer": textures.count - 1,
         "u_cell": textures.cell,
         "u_sides": sides,
         "u_unit": textures.unit,
@@ -223,27 +216,6 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
     near = _pixel_at(textures, view, -0.5)
     side = settings.samples // 2 * _distance(textures, settings, view, near)
     return bool(side < FAR_CELLS * textures.critical_cell)
-
-
-def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
-    """Return how many lags of the slices a view needs; ``None`` where that is not known.
-
-    It is for paths by length on a plane that is seen along parallel rays, as pixels are alike.
-    """
-    store, geometry = textures.store, textures.geometry
-    is_known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
-    if not is_known or not geometry.planar or view.eye[3]:
-        return None
-    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
-    pixel = view.pixel / max(float(facing), 1e-30)
-    sides, samples = _direction(textures, settings)[0], _samples(textures, settings, view)
-    count = samples // 2 if sides == 2 else samples - 1
-    longest = count * _distance(textures, settings, view, pixel)
-    if has_arrows(textures, settings):
-        longest = max(longest, ARROW_LONGEST * arrow_distance(settings) * view.density * pixel)
-    longest *= SLOWER
-    least = UNCERTAIN_LAYER if geometry.field.uncertainty else 1
-    return max(int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1, least)
 
 
 def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:

@@ -149,11 +149,7 @@ class TextureSet:
     @property
     def count(self) -> int:
         """Number of layers."""
-        return self.count_of(None)
-
-    def count_of(self, lags: int | None) -> int:
-        """Return the number of layers of this many lags."""
-        return 1 + self.sides * len(self.store.lags[:lags]) + self.in_cells
+        return 1 + self.sides * len(self.store.lags) + self.in_cells
 
     @property
     def in_cells(self) -> bool:
@@ -199,23 +195,22 @@ class TextureSet:
         for name in ("_displacements", "_length"):
             self.__dict__.pop(name, None)
 
-    def layers(self, step: int = 0, lags: int | None = None, dtype: type = np.float16) -> AnyArray:
+    def layers(self, step: int = 0, dtype: type = np.float16) -> AnyArray:
         """Return texels of the slice texture for one destination time, (layers, H, W, 4).
 
-        They hold the ``lags`` shortest lags, by default all. They are rounded to half precision
-        here: drivers may cut digits off, which would move a critical point.
+        They are rounded to half precision here: drivers may cut digits off, which would move a
+        critical point.
         """
-        all_nodes = self.store.at(step, lags)
+        all_nodes = self.store.at(step)
         slices, tangent = all_nodes.part(*self.geometry.texels), self._tangent(all_nodes)
-        count = self.count_of(lags)
-        result: AnyArray = np.empty((count, *self.geometry.size, 4), dtype)
+        result: AnyArray = np.empty((self.count, *self.geometry.size, 4), dtype)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)
             self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
         with pool(min(os.cpu_count() or 1, 8), "flowtex-layers") as threads:
-            list(threads.map(make, range(count)))
+            list(threads.map(make, range(self.count)))
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
@@ -225,7 +220,7 @@ class TextureSet:
             result[..., :3] = tangent
             result[..., 3] = slices.unit * self.pace / self.unit
             return result
-        if self.in_cells and layer == self.count_of(len(slices.lags)) - 1:
+        if self.in_cells and layer == self.count - 1:
             result[..., :2] = slices.rate[0] * (self.cell / self.unit)
             # Tangents by arc length do not contain the speed.
             timed = self.store.parameter == "time"
@@ -318,27 +313,27 @@ class LayerPrefetch:
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
         self._pool: Executor | None = None
-        self._ready: tuple[tuple[int, int | None], Future[Halves]] | None = None
+        self._ready: tuple[int, Future[Halves]] | None = None
 
-    def prepare(self, step: int, lags: int | None = None) -> None:
+    def prepare(self, step: int) -> None:
         """Begin to compute the layers of a step, if it exists, as work of this thread."""
         if not 0 <= step < self._textures.store.steps:
             return
-        if self._ready is not None and self._ready[0] == (step, lags):
-            return
         if self._ready is not None:
+            if self._ready[0] == step:
+                return
             self._ready[1].cancel()
         if self._pool is None:
             self._pool = pool(1, "flowtex-prefetch")
         make = contextvars.copy_context().run
-        self._ready = (step, lags), self._pool.submit(make, self._textures.layers, step, lags)
+        self._ready = step, self._pool.submit(make, self._textures.layers, step)
 
-    def take(self, step: int, lags: int | None = None) -> Halves:
+    def take(self, step: int) -> Halves:
         """Return the layers of a step, (layers, H, W, 4), prepared or computed now."""
-        ready = self._ready
-        if ready is None or ready[0] != (step, lags):
-            return self._textures.layers(step, lags)
-        self._ready = None
+        ready, self._ready = self._ready, None
+        if ready is None or ready[0] != step:
+            self._ready = ready
+            return self._textures.layers(step)
         return ready[1].result()
 
     def close(self) -> None:

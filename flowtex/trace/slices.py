@@ -133,15 +133,6 @@ class TraceSlices:
         slices = self._mapped(lambda data, axis: data[span] if axis else data)
         return replace(slices, times=self.times[span])
 
-    def up_to(self, lags: int) -> TraceSlices:
-        """Return the slices of the ``lags`` shortest lags, as if no more had been traced."""
-        parts: dict[str, Any] = {}
-        for moved, reach in (("displacement", "reach"), ("forward", "forward_reach")):
-            if (far := getattr(self, reach)) is not None:
-                parts[moved] = getattr(self, moved)[:, :lags]
-                parts[reach] = np.where(far > self.lags[lags - 1], np.float32(np.inf), far)
-        return replace(self, lags=self.lags[:lags], **parts)
-
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return some rows and columns of the slices."""
         return self._mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])

@@ -7,13 +7,12 @@ quicker.
 
 from __future__ import annotations
 
-import threading
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Indices
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -73,7 +72,6 @@ class SliceStore:
         self._compose = compose
         self._nodes = nodes
         self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
-        self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
             self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell, first_cells)
@@ -103,27 +101,21 @@ class SliceStore:
         """Whether paths lead forward too."""
         return self._whole is None or self._whole.forward is not None
 
-    def at(self, step: int, lags: int | None = None) -> TraceSlices:
-        """Return slices of one destination time, T = 1, at this many lags, by default all."""
-        count = len(self.lags[:lags])
-        with self._lock:
-            kept = self._cache.peek(step)
-            if kept is None or len(kept.lags) < count:
-                kept = self._trace(step, count)
-                self._cache.put(step, kept)
-        return kept if len(kept.lags) == count else kept.up_to(count)
+    def at(self, step: int) -> TraceSlices:
+        """Return slices of one destination time, T = 1."""
+        return self._cache.get(step, lambda: self._trace(step))
 
     def forget(self) -> None:
         """Drop the slices that can be traced again."""
         self._cache.clear()
 
-    def _trace(self, step: int, lags: int) -> TraceSlices:
+    def _trace(self, step: int) -> TraceSlices:
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.streamlines:
             compose = self._compose and not self.field.sign_free
-            moment, shortest = self.field.at_step(step), self.lags[:lags]
-            return self._trace_with(moment, shortest, parameter=self.parameter, compose=compose)
+            moment = self.field.at_step(step)
+            return self._trace_with(moment, parameter=self.parameter, compose=compose)
         if isinstance(self.field.velocity, LazySteps):
             # Only the steps that paths to this time can meet are read.
             reach = float(self.lags[-1] * self.unit.max())
@@ -136,7 +128,7 @@ class SliceStore:
             some = range(first + (step - first) % apart, last, apart)
             steps = sorted({first, *some, last - 1})
             part = self.field.at_steps(steps)
-            return self._trace_with(part, self.lags, steps=[steps.index(step)])
+            return self._trace_with(part, steps=[steps.index(step)])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose
@@ -144,20 +136,20 @@ class SliceStore:
             and landings(self.field, self.lags, self.unit) is not None
         ):
             # Composed, all steps together take about as long as four that are integrated.
-            self._whole = self._trace_with(self.field, self.lags, compose=True)
+            self._whole = self._trace_with(self.field, compose=True)
             return self._whole.at_step(step)
-        return self._trace_with(self.field, self.lags, steps=[step])
+        return self._trace_with(self.field, steps=[step])
 
-    def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
+    def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, so it has no progress bar.
         alone = self._nodes is None
         arguments = {**options, "nodes": self._nodes, "longest": self.long_enough}
-        follow = partial(trace, field, lags=lags, unit=self.unit, progress=alone, **arguments)
-        return _slices.get(self._key(field, lags, options), follow) if alone else follow()
+        follow = partial(trace, field, lags=self.lags, unit=self.unit, progress=alone, **arguments)
+        return _slices.get(self._key(field, options), follow) if alone else follow()
 
-    def _key(self, field: FlowField, lags: Floats, options: dict[str, Any]) -> bytes:
+    def _key(self, field: FlowField, options: dict[str, Any]) -> bytes:
         """Return a hash of all numbers that determine the slices of a field."""
-        arrays = (field.points, field.valid, *field.velocity, field.times, lags, self.unit)
+        arrays = (field.points, field.valid, *field.velocity, field.times, self.lags, self.unit)
         optional = (part for part in (field.has_position, field.triangles) if part is not None)
         choices = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
         return digest(*arrays, *optional, words=(choices, *sorted(options.items())))

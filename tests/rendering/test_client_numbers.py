@@ -392,7 +392,6 @@ def tiled_triangles(seed: int) -> dict[str, Any]:
 
 def test_tiles_of_triangles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 150)
-    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
     expected = tiled_triangles(1)
     assert expected["pyramid"]["depth"] > 1
     assert any(len(view["shown"]) > 1 for view in expected["views"])

@@ -28,9 +28,9 @@ def counted(made: TextureSet, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int
     found: list[tuple[int, str]] = []
     layers = TextureSet.layers
 
-    def count(self: TextureSet, step: int = 0, lags: int | None = None) -> Any:
+    def count(self: TextureSet, step: int = 0) -> Any:
         found.append((step, threading.current_thread().name))
-        return layers(self, step, lags)
+        return layers(self, step)
 
     monkeypatch.setattr(TextureSet, "layers", count)
     return found

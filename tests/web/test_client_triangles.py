@@ -169,7 +169,6 @@ def test_a_large_surface_is_shown_in_tiles(
     client: ClientPage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 1000)
-    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
     field = ball(5)
     look: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
     view = web_views(field, Options.split(background=GROUND, samples=11, **look))[0]

@@ -211,7 +211,7 @@ def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     """Return means (n, ...) of finite values (N, ...), which are summed; NaN without any."""
     flat = values.reshape(len(values), -1)
     finite = np.asarray(np.isfinite(flat).all(axis=1, keepdims=True))
-    sums, total = summed(np.where(finite, flat, 0.0)), summed(finite * 1.0)
+    sums, total = summed(np.where(finite, flat, 0.0)), summed(finite.astype(np.float64))
     means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
     return np.asarray(means.reshape(-1, *values.shape[1:]))
 

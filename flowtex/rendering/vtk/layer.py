@@ -36,7 +36,6 @@ from flowtex.rendering.uniforms import (
     is_moving,
     is_near,
     is_sparse,
-    needed_lags,
     needed_levels,
     uniforms,
     variants,
@@ -173,7 +172,7 @@ class FlowLayer:
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
-        self.view.lags = self.view.levels = None
+        self.view.levels = None
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._variant = None
 
@@ -354,7 +353,7 @@ class FlowLayer:
     def _slices(self, number: int) -> dict[str, Any]:
         """Return the slices of the first or the second of the two steps, as of a texture."""
         step = self._steps[number]
-        layers = self._layers(step) if self._layers else self._prefetch.take(step, self.view.lags)
+        layers = self._layers(step) if self._layers else self._prefetch.take(step)
         levels = self.textures.geometry.levels if self.view.levels is None else self.view.levels
         return {"texels": layers, "levels": levels}
 
@@ -382,19 +381,17 @@ class FlowLayer:
         self._move_anchor()
 
     def _choose_slices(self) -> None:
-        """Draw with the lags and mip levels that the first view needs, later perhaps with all."""
-        lags = levels = None
+        """Draw with the mip levels that the first view needs, later perhaps with all."""
+        levels = None
         if not self._layers:
-            lags = needed_lags(self.textures, self._settings, self.view)
             levels = needed_levels(self.textures, self._settings, self.view)
-        if "u_slices" not in self._gpu:
-            self.view.lags, self.view.levels = lags, levels
-        elif _is_more(lags, self.view.lags) or _is_more(levels, self.view.levels):
-            self.view.lags = self.view.levels = None
+        if "u_slices" in self._gpu and levels is None and self.view.levels is not None:
             self._retire("u_slices")
-        if "u_slices" not in self._gpu and not self._layers:
-            # A separate thread traces while this one continues with meshes and shaders.
-            self._prefetch.prepare(self._steps[0], self.view.lags)
+        if "u_slices" not in self._gpu:
+            self.view.levels = levels
+            if not self._layers:
+                # A separate thread traces while this one continues with meshes and shaders.
+                self._prefetch.prepare(self._steps[0])
 
     def _move_anchor(self) -> None:
         """Move the origin of positions near the focus where precision needs it."""
@@ -503,11 +500,6 @@ def _corners(corners: Floats32) -> Floats32:
     texels = np.zeros((1, rows, columns, 4), np.float32)
     texels.reshape(-1, 4)[: len(corners) // 3] = corners[::3]
     return texels
-
-
-def _is_more(needed: int | None, present: int | None) -> bool:
-    """Return whether more is needed than present, where ``None`` means all."""
-    return present is not None and (needed is None or needed > present)
 
 
 def insert_text(

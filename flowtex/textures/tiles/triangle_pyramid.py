@@ -27,9 +27,8 @@ from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.store import SliceStore
 
-#: Most nodes of a field that is traced whole; and of one with such long paths that the windows of
-#: its quarters would together contain each triangle more than so many times.
-ROOT_NODES, MOST_ROOT_NODES, MOST_OVERLAP = 25_000, 60_000, 2.0
+#: Most nodes of a field that is traced whole.
+ROOT_NODES = 25_000
 #: Most nodes from which boxes are computed.
 MOST_MEASURED = 100_000
 #: First lag of a tile's paths in cells, and most lags.
@@ -55,8 +54,6 @@ class TrianglePyramid(Pyramid):
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
         self._clusters = levels_of(field, ROOT_NODES)
-        if len(self._clusters) > 1 and _overlaps(self._clusters[-2]):
-            self._clusters.pop()
         super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
         self._parts: dict[int, list[Indices]] = {}
 
@@ -262,20 +259,6 @@ class TrianglePyramid(Pyramid):
         least, most = corner_ends(points, clusters.triangles[nearby])
         inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
         return np.unique(nearby[inside])
-
-
-def _overlaps(level: Clusters) -> bool:
-    """Return whether each quarter would trace most of a level, as with long and thin cells."""
-    if level.field.shape[1] > MOST_ROOT_NODES:
-        return False
-    low, high = corner_ends(level.field.points[0], level.triangles)
-    size = BIN_SHARE / 2 * level.sides[level.triangles].max(axis=1)
-    total = 0.0
-    for part in Boxes((low + high) / 2, 1).members(low, high, 1):
-        width = PATH_CELLS * _most(size[part])
-        near = (high >= low[part].min(axis=0) - width) & (low <= high[part].max(axis=0) + width)
-        total += float(near.all(axis=1).mean())
-    return total > MOST_OVERLAP
 
 
 def _most(values: Floats) -> float:

@@ -220,9 +220,9 @@ def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.Monke
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
     traced: list[tuple[int, int]] = []
 
-    def counted(store: SliceStore, step: int, lags: int) -> Any:
+    def counted(store: SliceStore, step: int) -> Any:
         traced.append(store.field.shape)
-        return made(store, step, lags)
+        return made(store, step)
 
     made = SliceStore._trace
     monkeypatch.setattr(SliceStore, "_trace", counted)

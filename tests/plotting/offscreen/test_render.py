@@ -130,21 +130,6 @@ def test_what_is_kept_of_a_file_does_not_hold_it_open(tmp_path: Path) -> None:
     assert len(_drawn) and all(isinstance(kept, TraceSlices) for kept in _drawn.values())
 
 
-@pytest.mark.usefixtures("opengl")
-def test_the_first_view_traces_what_it_needs_and_another_one_the_rest(traced: list[int]) -> None:
-    # Of no other test, whose slices would do for it.
-    field = examples.double_gyre_field(shape=(99, 203))
-    first = flowtex.render(field, size=(320, 240), samples=9)
-    (kept,) = (k for k in _drawn.values() if not isinstance(k, TraceSlices))
-    lags = len(kept.store.traced[0].lags)
-    assert lags < len(kept.store.lags)
-    flowtex.render(field, size=(320, 240), samples=9, zoom=0.05)
-    assert len(traced) == 2 and len(kept.store.traced[0].lags) > lags
-    # What was seen before makes no difference.
-    assert np.array_equal(first, flowtex.render(field, size=(320, 240), samples=9))
-    assert len(traced) == 2 and len(kept.store.at(0, lags).lags) == lags
-
-
 def test_a_picture_of_one_moment_is_that_of_a_steady_flow() -> None:
     field = swinging()
     look: dict[str, Any] = {"size": (160, 120), "clim": (0, 1.5), "fade": 0.0}

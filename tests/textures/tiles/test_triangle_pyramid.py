@@ -27,7 +27,6 @@ from flowtex.trace.trace import trace
 def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 350)
     # As any surface has:
-    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
 
 
 def flow_on(points: Floats, triangles: Indices, **options: Any) -> FlowField:
@@ -54,21 +53,6 @@ def drawn(pyramid: TrianglePyramid, key: TileKey) -> TriangleGeometry:
     assert textures is not None
     assert isinstance(textures.geometry, TriangleGeometry)
     return textures.geometry
-
-
-def test_a_surface_of_thin_layers_is_one_root(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 3000)
-    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 2.0)
-    layers = flowtex.examples.airfoil_field((60, 121))
-    node = np.arange(60 * 121).reshape(60, 121)
-    a, b, c, d = (
-        part.ravel() for part in (node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1])
-    )
-    triangles = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
-    assert TrianglePyramid(flow_on(layers.points.reshape(-1, 3), triangles)).depth == 0
-    assert TrianglePyramid(plane(rng, 8000)).depth == 1
 
 
 def test_levels_keep_the_means(rng: np.random.Generator) -> None:
