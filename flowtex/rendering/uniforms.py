@@ -35,11 +35,7 @@ CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 
 #: Pieces of an arrow, the least distance of two over the mean one, and that in pixels at least.
 ARROW_PIECES, ARROW_LEAST, ARROW_MOST_DENSE = 12, 0.85, 8.0
-#: Length of an arrow over the least distance, at most.
-ARROW_LONGEST = 1.6
 
-#: Texels along a pixel from which on some are skipped.
-SKIPPED_TEXELS = 2.0
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
 
@@ -67,8 +63,6 @@ class ViewState:
     density: float = 1.0
     #: Length that a pixel drawn covers at the focus; 0 means as near as possible.
     pixel: float = 0.0
-    #: Mip levels of the slices besides the finest that are drawn with; ``None`` for all.
-    levels: int | None = None
 
 
 def variants(
@@ -145,14 +139,14 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
-        "u_deepest": float(geometry.levels if view.levels is None else view.levels),
+        "u_deepest": float(geometry.levels),
         "u_lags": [float(lag) for lag in textures.lags],
         "u_lagCount": len(textures.lags),
         "u_rateLayer": textures.count - 1,
         "u_cell": textures.cell,
         "u_sides": sides,
         "u_unit": textures.unit,
-        "u_samples": _samples(textures, settings, view),
+        "u_samples": 2 * settings.samples - 1 if moving else settings.samples,
         "u_spacing": settings.spacing,
         "u_grain": settings.grain * view.density,
         "u_kernel": KERNELS.index(kernel),
@@ -213,35 +207,13 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
     In perspective the nearest point of the surface counts, or of the ball around it.
     """
-    near = _pixel_at(textures, view, -0.5)
+    near, geometry = view.pixel, textures.geometry
+    if view.eye[3]:
+        to_focus = float(np.linalg.norm(view.eye[:3] - view.focus))
+        away = float(np.linalg.norm(view.eye[:3] - geometry.center)) - 0.5 * geometry.extent
+        near *= max(away, 0.0) / to_focus
     side = settings.samples // 2 * _distance(textures, settings, view, near)
     return bool(side < FAR_CELLS * textures.critical_cell)
-
-
-def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
-    """Return 0 where a view needs only the finest mip level of slices; ``None`` elsewhere.
-
-    As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel,
-    the farthest one, skips no texel, but of a few cells.
-    """
-    if textures.store.steps > 1 or not textures.geometry.levels:
-        return None
-    near = _pixel_at(textures, view, 0.5) < SKIPPED_TEXELS * textures.grid.small_side
-    return 0 if near or not settings.lod else None
-
-
-def _pixel_at(textures: TextureSet, view: ViewState, extents: float) -> float:
-    """Return the length of a pixel, ``extents`` farther away than the surface's middle."""
-    if not view.eye[3]:
-        return view.pixel
-    from_center, from_focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
-    distance = max(float(np.linalg.norm(from_center)) + extents * textures.geometry.extent, 0.0)
-    return view.pixel * distance / float(np.linalg.norm(from_focus))
-
-
-def _samples(textures: TextureSet, settings: Settings, view: ViewState) -> int:
-    """Return the number of samples along a path."""
-    return 2 * settings.samples - 1 if is_moving(textures, settings, view) else settings.samples
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:

@@ -134,8 +134,6 @@ class NodeDisplacements:
 
 #: Most mip levels of a texture besides its finest one, and those of a tile.
 DEEPEST, TILE_LEVELS = 5, 3
-#: Percentile of the sides of cells that counts as that of small ones.
-SMALL_CELLS = 5
 
 
 @dataclass(frozen=True)
@@ -395,12 +393,6 @@ class SurfaceGeometry(DrawnSurface):
         safe = np.where(length > 0, length, 1.0)
         unit = np.where(length > 0, normal / safe, [0.0, 0.0, 1.0])
         return unit[self.drawn].astype(np.float32)
-
-    @cached_property
-    def small_side(self) -> float:
-        """Length of the longer sides of small cells."""
-        sides = norm(self.field.surface.tangents).max(axis=0)
-        return float(np.percentile(sides[self.field.valid], SMALL_CELLS))
 
     @property
     def is_smooth(self) -> bool:

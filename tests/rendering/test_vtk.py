@@ -47,23 +47,6 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
     assert np.abs(pictures[0] - pictures[2]).mean() > 10
 
 
-def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
-    velocity = np.random.default_rng(3).normal([1, 0], size=(160, 320, 2))
-    points = np.stack(np.meshgrid(np.linspace(0, 2, 320), np.linspace(0, 1, 160)), axis=-1)
-    field = flowtex.FlowField.from_arrays(points, velocity)
-    pictures: list[Any] = []
-    for zooms in ((1,), (30, 1)):
-        with contextlib.closing(pv.Plotter(off_screen=True, window_size=[80, 60])) as plotter:
-            handle = plotter.flowtex.add(field, scalars=False)
-            for zoom in zooms:
-                point_camera(plotter, field.surface, ViewOptions(zoom=zoom))
-                plotter.render()
-                picture = plotter.screenshot(return_img=True)
-                assert (handle._surface._base.view.levels == 0) == (zoom > 1)
-            pictures.append(picture)
-    np.testing.assert_array_equal(pictures[0], pictures[1])
-
-
 def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
     field = gyre_field()
     options: dict[str, Any] = {"scalars": False, "zoom": 8, "focus": (0.63, 0.37)}

@@ -36,7 +36,6 @@ from flowtex.rendering.uniforms import (
     is_moving,
     is_near,
     is_sparse,
-    needed_levels,
     uniforms,
     variants,
 )
@@ -172,7 +171,6 @@ class FlowLayer:
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
-        self.view.levels = None
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._variant = None
 
@@ -354,8 +352,7 @@ class FlowLayer:
         """Return the slices of the first or the second of the two steps, as of a texture."""
         step = self._steps[number]
         layers = self._layers(step) if self._layers else self._prefetch.take(step)
-        levels = self.textures.geometry.levels if self.view.levels is None else self.view.levels
-        return {"texels": layers, "levels": levels}
+        return {"texels": layers, "levels": self.textures.geometry.levels}
 
     def look(self) -> None:
         """Choose the shader, and transform the camera and the anchor to the mesh's coordinates."""
@@ -376,22 +373,11 @@ class FlowLayer:
         height = 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2))
         self.height = float(2 * camera.GetParallelScale() if parallel else height) / scale
         self.view.pixel = self.height / renderer.GetSize()[1]
-        self._choose_slices()
+        if "u_slices" not in self._gpu and not self._layers:
+            # A separate thread traces while this one continues with meshes and shaders.
+            self._prefetch.prepare(self._steps[0])
         self._write_text(renderer)
         self._move_anchor()
-
-    def _choose_slices(self) -> None:
-        """Draw with the mip levels that the first view needs, later perhaps with all."""
-        levels = None
-        if not self._layers:
-            levels = needed_levels(self.textures, self._settings, self.view)
-        if "u_slices" in self._gpu and levels is None and self.view.levels is not None:
-            self._retire("u_slices")
-        if "u_slices" not in self._gpu:
-            self.view.levels = levels
-            if not self._layers:
-                # A separate thread traces while this one continues with meshes and shaders.
-                self._prefetch.prepare(self._steps[0])
 
     def _move_anchor(self) -> None:
         """Move the origin of positions near the focus where precision needs it."""

@@ -143,7 +143,7 @@ class FlowSurface:
         self._base.close()
         self._actor.mapper.SetInputData(surface_mesh(textures))
         self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
-        self._base.view = replace(view, anchor=np.zeros(3), levels=None)
+        self._base.view = replace(view, anchor=np.zeros(3))
         self._base.set_moment(*self._moment)
         self.write_scalars()
 
@@ -201,8 +201,7 @@ class FlowSurface:
         for key, layer in layers.items():
             if key is None:
                 continue
-            own = {name: getattr(layer.view, name) for name in ("anchor", "levels")}
-            layer.view = replace(self._base.view, **own)
+            layer.view = replace(self._base.view, anchor=layer.view.anchor)
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)

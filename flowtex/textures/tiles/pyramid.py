@@ -282,11 +282,9 @@ class Pyramid:
         cells = valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]
         made: dict[TileKey, TextureSet | None] = dict.fromkeys(keys)
         boxes = {key: self._box([key]) for key in keys}
-        for key, (start, end) in list(boxes.items()):
-            rows, columns = (slice(a - f, b - f) for a, b, f in zip(start, end, first, strict=True))
-            if not cells[rows, columns].any():
-                del boxes[key]
-        if not boxes:
+        starts = {key: np.subtract(box[0], first) for key, box in boxes.items()}
+        shown = [k for k, (j, i) in starts.items() if cells[j:, i:][:TILE_CELLS, :TILE_CELLS].any()]
+        if not shown:
             return made
         longest, widths = _reach(points, valid)
         halo = _within_window(
@@ -301,10 +299,10 @@ class Pyramid:
         field = self._part(level, lines[0], lines[1], closed)
         nodes = np.zeros(field.shape, dtype=bool)
         geometries = {}
-        for key, (start, end) in boxes.items():
+        for key in shown:
             rows, columns = (
                 slice(a - int(line[0]), b - int(line[0]) + 1)
-                for a, b, line in zip(start, end, lines, strict=True)
+                for a, b, line in zip(*boxes[key], lines, strict=True)
             )
             geometries[key] = SurfaceGeometry.of_tile(
                 field, (rows, columns), self.root.surface, (sides[0], sides[1])
