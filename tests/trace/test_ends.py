@@ -7,6 +7,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
+from flowtex.trace.integrate import _Run
 from flowtex.trace.trace import paths, trace
 
 
@@ -47,6 +48,29 @@ def test_a_path_that_has_left_goes_straight_on() -> None:
     assert np.hypot(*(second - first)) == pytest.approx(20, rel=0.02)
     exit_point = second - (second - first) / 20 * (40 - found.reach[0])
     assert min(exit_point.min(), 20 - exit_point.max()) == pytest.approx(0, abs=0.05)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_path_around_a_small_vortex_takes_few_steps(
+    monkeypatch: pytest.MonkeyPatch, tolerance: float
+) -> None:
+    points = plane(21, 21) - 10.0
+    field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1], periodic="")
+    radius, steps, advance = 2 * tolerance, [0], _Run.advance
+
+    def count(run: _Run) -> None:
+        steps[0] += 1
+        advance(run)
+
+    monkeypatch.setattr(_Run, "advance", count)
+    near = paths(field, [[10 + radius, 10]], [1.0, 1000.0], tolerance=tolerance)
+    assert np.abs(near.positions - 10).max() < 10 * tolerance
+    assert np.isinf(near.reach).all()
+    assert steps[0] < 200
+    # A circle of a tenth of a cell is followed to the end.
+    far = paths(field, [[10.1, 10]], np.linspace(0.05, 9, 60), tolerance=1e-6).positions[:, 0] - 10
+    np.testing.assert_allclose(np.hypot(*far.T), 0.1, atol=1e-3)
+    assert np.hypot(*np.diff(far, axis=0).T).min() > 0.02
 
 
 def test_positions_are_held_where_a_path_ended() -> None:

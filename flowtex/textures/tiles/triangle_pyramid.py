@@ -35,7 +35,7 @@ MOST_MEASURED = 100_000
 FIRST_CELLS, MOST_LAGS = 0.25, 24
 #: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
 #: are drawn no sooner, for a triangle costs as much as the pixels beside it.
-BIN_SHARE = 1 / 4
+BIN_SHARE = 1 / 3
 #: Share of the triangles of a block whose size counts as that of all.
 MOST_SHARE = 0.95
 #: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
