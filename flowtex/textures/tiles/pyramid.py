@@ -43,7 +43,7 @@ ROOT_NODES = 100_000
 BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
-PATH_CELLS = 21
+PATH_CELLS = 28
 #: First lag in cells where a finer level is drawn before cells cover more than a few pixels: the
 #: parabolas up to there are off by hundredths of a pixel.
 COARSE_FIRST_CELLS = 1.0

@@ -176,7 +176,7 @@ class TrianglePyramid(Pyramid):
 
     def _longest(self, places: Floats) -> float:
         """Return the length of paths in blocks (..., 5)."""
-        return 0.99 * PATH_CELLS * float(places[..., 4].max())
+        return 0.75 * PATH_CELLS * float(places[..., 4].max())
 
     def _nodes_of(self, keys: Sequence[TileKey]) -> int:
         number = keys[0].level
