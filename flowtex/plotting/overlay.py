@@ -148,7 +148,11 @@ class Overlay:
         if renderer is None or not self._parts:
             return
         is_visible = bool(self._actor.GetVisibility())
-        nearer = _depth_of_share(renderer.GetActiveCamera())
+        camera = renderer.GetActiveCamera()
+        near, far = camera.GetClippingRange()
+        # The depth in clip space by which a point comes nearer by its distance.
+        nearer = 2 * (camera.GetDistance() if camera.GetParallelProjection() else near * far)
+        nearer /= far - near
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
         height, density = renderer.GetSize()[1], self._surface.view.density
         full_height = self._surface.full_height or height
@@ -167,14 +171,6 @@ class Overlay:
                     part.actor.mapper.dataset = mesh
                 uniforms.SetUniformf("flowtexRadius", 0.5 * part.width * pixel)
                 uniforms.SetUniform4f("flowtexViewport", viewport)
-
-
-def _depth_of_share(camera: vtkCamera) -> float:
-    """Return the change of the depth in clip space that brings a point nearer by its distance."""
-    near, far = camera.GetClippingRange()
-    if camera.GetParallelProjection():
-        return float(2 * camera.GetDistance() / (far - near))
-    return float(2 * near * far / (far - near))
 
 
 def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:

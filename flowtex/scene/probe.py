@@ -241,7 +241,6 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        """Draw the pixel, and return how it is computed."""
         values, recorder = self._values, self._lookup
         value = self._summing.texture(self._fragments.place, self._level, self._fragments.by)[0]
         sides = list(self._sides(1))

@@ -44,11 +44,6 @@ def accepts_options(*kinds: type) -> Callable[[Function], Function]:
     return complete
 
 
-def option_text(kind: type, name: str) -> str:
-    """Return the description of a field of an option class, as one paragraph."""
-    return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
-
-
 def _described(text: str, options: Iterable[Field[Any]]) -> str:
     """Put the description of options into a docstring."""
     lines = []
@@ -80,7 +75,7 @@ def _attribute(name: str) -> property:
             self.scene.fit_range()
         self.scene.appearance = self.scene.appearance.changed(**{name: value})
 
-    return property(get, change, doc=option_text(Appearance, name))
+    return property(get, change, doc=Appearance.__dataclass_fields__[name].metadata["text"])
 
 
 class AppearanceAttributes:

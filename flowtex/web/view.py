@@ -272,8 +272,18 @@ class TileSource:
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> ClientData | None:
         """Return a tile as it is sent, or ``None`` where nothing of it is drawn."""
-        scene = self.scene
-        textures = self._tiles.get(key, lambda: _made(scene, key, steps)).textures
+        scene, pyramid = self.scene, self.scene.pyramid
+        if pyramid is None:
+            raise LookupError(f"tile {tuple(key)} does not exist: the surface is sent as a whole")
+
+        def make() -> _Tile:
+            if scene.traced:
+                return _Tile(pyramid.textures(key), None)
+            # Slices that are sent have a halo large enough for these steps.
+            textures = pyramid.tile(key, [scene.source(step) for step in steps])
+            return _Tile(textures, None if textures is None else packing_of(textures))
+
+        textures = self._tiles.get(key, make).textures
         if textures is None:
             return None
         return scene.tile(textures, partial(steps_of, textures.geometry.field))
@@ -311,16 +321,6 @@ class TileSource:
         """Stop making parts."""
         self._is_closed = True
         self._tiles.clear()
-
-
-def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
-    """Return a tile; slices that are sent have a halo large enough for these steps."""
-    if scene.pyramid is None:
-        raise LookupError(f"tile {tuple(key)} does not exist: the surface is sent as a whole")
-    if scene.traced:
-        return _Tile(scene.pyramid.textures(key), None)
-    textures = scene.pyramid.tile(key, [scene.source(step) for step in steps])
-    return _Tile(textures, None if textures is None else packing_of(textures))
 
 
 def asset(name: str) -> Path:

@@ -37,8 +37,6 @@ from flowtex.web.view import WebView, browser_options, client_module, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.feed import Feed, Send
 
-__all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait", "TraitValueError"]
-
 
 class TraitValueError(SettingsError, traitlets.TraitError):
     """A value is refused; traitlets restores the old one after its own errors alone."""

@@ -109,13 +109,6 @@ class Appearance(Controller):
         else:
             self.state.set(painter=element.painter)
 
-    def _change(self, **changes: Any) -> None:
-        """Change the appearance, or report why that is not possible."""
-        try:
-            self.area.scene.appearance = self.area.scene.appearance.changed(**changes)
-        except FieldError as error:
-            self.context.complain(error)
-
     def take_background(self) -> None:
         """Set the background that the page requests."""
         theme, choice = self.state.get("theme"), self.state.get("background")
@@ -180,7 +173,10 @@ class Appearance(Controller):
             look.pop("cmap", None)
         if name_among(name := saved.get("colour"), (PLAIN, *self.area.scene.scalar_names)):
             look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
-        self._change(**look)
+        try:
+            self.area.scene.appearance = self.area.scene.appearance.changed(**look)
+        except FieldError as error:
+            self.context.complain(error)
         self.take_background()
         self.take_comparison()
         if saved.get("time_beside") is not None:

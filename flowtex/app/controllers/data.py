@@ -435,7 +435,6 @@ class FileBeside(Controller):
         return choice, flow
 
     def _show(self, request: LoadRequest, choice: Choice, flow: TracedFlow) -> None:
-        """Show a flow in the second pane."""
         units = [field.length_unit for field in (self.viewport.field, flow.field)]
         if all(units) and units[0] != units[1]:
             raise FieldError(

@@ -176,11 +176,15 @@ class Library:
         """
         if len(flows) == 1 and isinstance(flows[0], Library):
             return flows[0]
-        if len(flows) == 1 and isinstance(flows[0], (str, Path)) and _is_folder(flows[0]):
-            return cls({}, Path(flows[0]))
+        if len(flows) == 1 and isinstance(flows[0], (str, Path)):
+            path = Path(flows[0])
+            if path.is_dir() and not is_dataset_file(path):
+                return cls({}, path)
         openers: dict[str, Opener] = {}
         for flow in flows:
-            if paths := _paths(flow):
+            items = flow if isinstance(flow, (list, tuple)) else (flow,)
+            if items and all(isinstance(item, (str, Path)) for item in items):
+                paths = tuple(map(Path, items))
                 name = paths[0].name if len(paths) == 1 else common_name(paths)
                 openers[_free(name, openers)] = _Files(paths)
                 continue
@@ -306,10 +310,6 @@ class Library:
         return flow
 
 
-def _is_folder(path: str | Path) -> bool:
-    return Path(path).is_dir() and not is_dataset_file(Path(path))
-
-
 def _source_of(flow: Any, options: dict[str, Any]) -> Source:
     """Return a source of a flow, or of the field that options select from a mesh."""
     options = {key: value for key, value in options.items() if value is not None}
@@ -322,13 +322,6 @@ def _source_of(flow: Any, options: dict[str, Any]) -> Source:
 
 def _constant(source: Source) -> Opener:
     return lambda: source
-
-
-def _paths(flow: Any) -> tuple[Path, ...]:
-    """Return the paths of a flow that is given as files; empty for meshes, fields and datasets."""
-    items = flow if isinstance(flow, (list, tuple)) else (flow,)
-    are_paths = all(isinstance(item, (str, Path)) for item in items)
-    return tuple(Path(item) for item in items) if are_paths else ()
 
 
 @dataclass(frozen=True)

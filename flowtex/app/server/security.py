@@ -94,7 +94,7 @@ def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> Non
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
-        name = _host_name(request)
+        name = (_split(f"//{request.headers.get('Host', '')}").hostname or "").removesuffix(".")
         if not (ANY in hosts or name in hosts or _is_address(name)):
             words = (
                 f"The server does not accept the host name {name[:100]!r}; allow it with "
@@ -139,11 +139,6 @@ def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> Non
 
     application.middlewares.extend((faults_to_log, in_time, own_pages_only))
     application.on_response_prepare.append(add_headers)
-
-
-def _host_name(request: web.Request) -> str:
-    """Return the name that a browser used, without the port and in small letters."""
-    return (_split(f"//{request.headers.get('Host', '')}").hostname or "").removesuffix(".")
 
 
 def _split(address: str) -> SplitResult:
