@@ -72,24 +72,9 @@ def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
     return np.moveaxis(parts, 0, -1)
 
 
-def shipped(name: str) -> Path:
-    """Return the path of a shipped file.
-
-    Raises a FileNotFoundError when the installation lacks the file.
-    """
-    path = DATA / name
-    if not path.is_file():
-        raise FileNotFoundError(
-            f"the example file {name!r} is missing from {path.parent}, although it comes with "
-            "flowtex: reinstall flowtex, or compute the file in a clone: python "
-            "tools/example_data/build.py"
-        )
-    return path
-
-
 def load(name: str) -> dict[str, AnyArray]:
     """Return the arrays of a shipped file by name."""
-    with np.load(shipped(name), allow_pickle=False) as file:
+    with np.load(DATA / name, allow_pickle=False) as file:
         return dict(file)
 
 
@@ -160,5 +145,5 @@ def weather() -> xr.Dataset:
 def _read(name: str) -> xr.Dataset:
     xarray = import_extra("xarray", "xarray")
     # Plain numbers, so that a copy that a user writes is as exact.
-    ds: xr.Dataset = xarray.load_dataset(shipped(name), engine="scipy").drop_encoding()
+    ds: xr.Dataset = xarray.load_dataset(DATA / name, engine="scipy").drop_encoding()
     return ds

@@ -186,13 +186,9 @@ class Scene:
         """Names of the scalars that can colour the surface."""
         return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
 
-    def label_of(self, name: str) -> str:
-        """Return the name of a scalar for legends; they are those of what is drawn."""
-        return self.whole.label_of(name)
-
     def title_of(self, name: str) -> str:
         """Return the title of a legend: words and unit."""
-        unit, label = self.field.unit_of(name), self.label_of(name)
+        unit, label = self.field.unit_of(name), self.whole.label_of(name)
         return f"{label} ({unit})" if unit else label
 
     @property

@@ -150,7 +150,7 @@ def colours_of(
         lighting=scene.is_lit,
         opacity=float(look.opacity) if look.visible else 0.0,
         bar=look.has_bar,
-        label="" if name is None else scene.label_of(name),
+        label="" if name is None else scene.whole.label_of(name),
         coastlines=look.coastlines is not False,
         graticule=look.graticule is not False,
         land=None if look.land is None else rgb(look.land),
@@ -166,7 +166,7 @@ def choices_of(scene: Scene) -> tuple[Header, ...]:
         choices.append(
             {
                 "name": name,
-                "label": scene.label_of(name),
+                "label": scene.whole.label_of(name),
                 "unit": scene.field.unit_of(name),
                 "cmap": default_cmap(name),
                 "low": low,
@@ -325,13 +325,7 @@ class TileSource:
 
 def asset(name: str) -> Path:
     """Return the path of one of the client's files, such as ``"core.js"``."""
-    path = Path(__file__).resolve().parent / name
-    if not path.is_file():
-        raise FileNotFoundError(
-            f"{path} is missing. Install flowtex again: "
-            "python -m pip install --force-reinstall --no-deps flowtex"
-        )
-    return path
+    return Path(__file__).resolve().parent / name
 
 
 def client_module() -> str:

@@ -274,7 +274,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
-        self._views.set_image(load_image(image))
+        views = self._views.views
+        lay_image([view.scene for view in views], load_image(image), views[-1].own)
 
     def set_still(self, picture: Bytes) -> None:
         """Show a picture, (H, W, 3) uint8, where no browser draws, until the scene changes."""
@@ -484,10 +485,6 @@ class Views:
         chosen = {name: value for name, value in changes.items() if name in CHOSEN}
         with suppress(ValueError, KeyError, TypeError):
             self.first.appearance = self.first.appearance.changed(**chosen)
-
-    def set_image(self, image: Any) -> None:
-        """Lay another image on the surface, in all views that show one."""
-        lay_image([view.scene for view in self.views], image, self.views[-1].own)
 
     def framed(self, frame: bytes, content: Header, camera: MakeCamera, axes: str | None) -> bytes:
         """Return a still of what a browser has drawn; raises an error for an invalid message."""

@@ -182,11 +182,6 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 LIMIT = web.RequestKey("limit", asyncio.Timeout)
 
 
-def keep(request: web.Request) -> None:
-    """Lift the time limit of a request's connection."""
-    request[LIMIT].reschedule(None)
-
-
 class LimitedServer:
     """A web application with ``most`` connections, by default half of the files of the process."""
 

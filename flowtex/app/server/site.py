@@ -36,11 +36,11 @@ from flowtex._util.terminal import SIGNALS, Ended, announce_end
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import (
     FAULT,
+    LIMIT,
     LOCAL,
     LimitedServer,
     guard,
     is_same,
-    keep,
     known_hosts,
 )
 from flowtex.app.server.sessions.registry import (
@@ -93,15 +93,9 @@ class Site:
         self._server: LimitedServer | None = None
         self._sweep: asyncio.Task[None] | None = None
 
-    async def prepare(self) -> None:
-        """Open the first session."""
-        application = self._application(await self.sessions.prepare())
-        self._server = LimitedServer(application)
-
     async def listen(self, endpoint: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
-        """Admit pages, after :meth:`prepare`, at a host and port, or on a listening socket."""
-        if self._server is None:
-            raise RuntimeError("the site is not prepared; call prepare() first")
+        """Open the first session; admit pages at a host and port, or on a listening socket."""
+        self._server = LimitedServer(self._application(await self.sessions.prepare()))
         self.port = await self._server.start(endpoint)
         self._sweep = asyncio.create_task(self.sessions.sweep())
 
@@ -147,7 +141,7 @@ class Site:
         session = self.sessions.get(request.match_info["token"])
         if session is None:
             raise web.HTTPNotFound
-        keep(request)
+        request[LIMIT].reschedule(None)  # a connection has no time limit
         return await session.connect(request)
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
@@ -223,7 +217,6 @@ def serve_sessions(
         site = Site(sessions, secret, hosts=hosts)
 
         async def listen() -> int:
-            await site.prepare()
             await site.listen((host, port))
             return site.port
 

@@ -16,7 +16,7 @@ from aiohttp import web
 from waiting import PATIENCE_S
 
 from flowtex.app.server import security
-from flowtex.app.server.security import LimitedServer, guard, keep, usual_most
+from flowtex.app.server.security import LIMIT, LimitedServer, guard, usual_most
 
 HALF = b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "
 FORM = b"POST /form HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n"
@@ -69,7 +69,7 @@ async def place(most: int | None = None) -> AsyncIterator[Place]:
         return web.Response(text="a page")
 
     async def socket(request: web.Request) -> web.WebSocketResponse:
-        keep(request)
+        request[LIMIT].reschedule(None)
         made = web.WebSocketResponse()
         await made.prepare(request)
         async for message in made:

@@ -44,7 +44,6 @@ async def place(**request: str) -> AsyncIterator[Place]:
         "hosted_sessions:host", ("hosted_sessions",), {"secret": secret, **request}, said.append
     )
     site = Site(Sessions(open_session, limit=4, idle=10.0), secret)
-    await site.prepare()
     await site.listen()
     async with aiohttp.ClientSession() as http:
         here = Place(site, secret, http)

@@ -76,7 +76,6 @@ async def place(
 ) -> AsyncIterator[Place]:
     secret = new_secret()
     site = Site(Sessions(opener(make, secret), limit=limit, idle=idle), secret)
-    await site.prepare()
     await site.listen()
     async with aiohttp.ClientSession() as http:
         try:

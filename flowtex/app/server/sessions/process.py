@@ -179,7 +179,6 @@ class HostedSession:
     async def _open(self) -> dict[str, Any]:
         socket = sockets.socket(sockets.AF_UNIX, sockets.SOCK_STREAM)
         socket.bind("")  # the system chooses a name
-        await self._site.prepare()
         await self._site.listen(socket)
         (session,) = self._site.sessions
         return {
