@@ -27,7 +27,6 @@ from flowtex.scene.scene import Scene
 from flowtex.scene.signatures import accepts_options
 from flowtex.textures.images import as_image
 
-__all__ = ["FlowHandle", "FlowtexComponent"]
 #: Name of the colours among the arrays of a mesh.
 COLOURS = "flowtex colours"
 #: VTK's shape of labels without a plate.

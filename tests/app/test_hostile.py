@@ -304,7 +304,7 @@ async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.Mo
     monkeypatch.setattr(app.context, "show", noted)
     told: list[Any] = []
     async with playing(app):
-        app.state.on("index")(lambda: told.append(app.state.get("index")))
+        app.state.on(lambda: told.append(app.state.get("index")), "index")
         for index in (4, 5, 6):
             app.state.send(index=index)
             # The first one has begun before the second one is requested.

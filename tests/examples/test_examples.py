@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import delta_wing_run
@@ -305,14 +304,6 @@ def test_the_shipped_vortices_are_strong_and_move() -> None:
         assert np.mean(w**4) / np.mean(w**2) ** 2 > 5.0
     assert np.corrcoef(vorticity[0].ravel(), vorticity[1].ravel())[0, 1] > 0.8
     assert np.corrcoef(vorticity[0].ravel(), vorticity[30].ravel())[0, 1] < 0.3
-
-
-def test_a_missing_file_says_how_to_make_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(_shipped, "DATA", tmp_path)
-    with pytest.raises(FileNotFoundError, match=r"vortex\.npz.*tools/example_data/build\.py"):
-        _shipped.vortex_arrays()
 
 
 @pytest.fixture(scope="module")

@@ -81,10 +81,10 @@ class Appearance(Controller):
         )
         self.show_field()
         on = self.state.on
-        on("theme", "background")(self.take_background)
-        on("compare")(self.take_comparison)
-        on("time_beside")(self.take_time_beside)
-        on("painter")(self.take_painter)
+        on(self.take_background, "theme", "background")
+        on(self.take_comparison, "compare")
+        on(self.take_time_beside, "time_beside")
+        on(self.take_painter, "painter")
         context.field_changed.connect(self.show_field)
         self.area.element.painter_changed.connect(
             lambda: self.state.set(painter=self.area.element.painter)

@@ -77,8 +77,8 @@ class Data(Controller):
         self.uploads = Uploads(context.routes, self.take_upload)
         self.state.set(busy="", file=name, upload=self.uploads.address, **self._options())
         self.list_files()
-        self.state.on("file")(self.take_file)
-        self.state.on("vectors", "block", "axis", "index")(self.take_choice)
+        self.state.on(self.take_file, "file")
+        self.state.on(self.take_choice, "vectors", "block", "axis", "index")
         context.field_changed.connect(self._show_choice)
         self.stream.data_failed.connect(
             lambda error: context.complain(without_folder(str(error), self.name))
@@ -311,7 +311,7 @@ class FileBeside(Controller):
         self._opening: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening beside")
         self.state.set(file_beside="")
-        self.state.on("file_beside")(self.take_file)
+        self.state.on(self.take_file, "file_beside")
         context.field_changed.connect(self.follow)
 
     @property

@@ -107,13 +107,9 @@ class PageState:
         with self._state:
             self.set(**values)
 
-    def on(self, *names: str) -> Callable[[Callable[[], object]], None]:
-        """Return a function that connects a listener without arguments to changes of values."""
-
-        def listen(call: Callable[[], object]) -> None:
-            self._state.change(*(self.key(name) for name in names))(lambda **_: call())
-
-        return listen
+    def on(self, call: Callable[[], object], *names: str) -> None:
+        """Call a listener without arguments after changes of values."""
+        self._state.change(*map(self.key, names))(lambda **_: call())
 
 
 def number(value: object, low: float = -math.inf, high: float = math.inf) -> float | None:
