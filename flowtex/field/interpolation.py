@@ -96,25 +96,17 @@ def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
     """Interpolate increasing values (N,) at any index; they continue straight, or by a period."""
     last = len(line) - 1
-    if periodic:
-        turns = np.floor(index / last)
-        inside = np.interp(index - turns * last, np.arange(last + 1), line)
-        return np.asarray(inside + turns * (line[-1] - line[0]))
-    inside = np.interp(index, np.arange(last + 1), line)
-    before = np.minimum(index, 0) * (line[1] - line[0])
-    return np.asarray(inside + before + np.maximum(index - last, 0) * (line[-1] - line[-2]))
+    turns = np.floor(index / last) if periodic else 0.0
+    inside = scipy.interpolate.make_interp_spline(np.arange(last + 1.0), line, k=1)
+    return np.asarray(inside(index - turns * last) + turns * (line[-1] - line[0]))
 
 
 def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Floats:
     """Return the index at which :func:`along_line` has these values, for a line from zero."""
     last = len(line) - 1
-    turns = np.floor(values / line[-1]) if periodic else np.zeros_like(values)
-    inside = np.interp(values - turns * line[-1], line, np.arange(last + 1))
-    if periodic:
-        return np.asarray(inside + turns * last)
-    before = np.minimum(values, 0) / (line[1] - line[0])
-    after = np.maximum(values - line[-1], 0) / (line[-1] - line[-2])
-    return np.asarray(inside + before + after)
+    turns = np.floor(values / line[-1]) if periodic else 0.0
+    inside = scipy.interpolate.make_interp_spline(line, np.arange(last + 1.0), k=1)
+    return np.asarray(inside(values - turns * line[-1]) + turns * last)
 
 
 def every_line(count: int, factor: int, *, closed: bool) -> Indices:

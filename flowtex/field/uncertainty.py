@@ -89,9 +89,7 @@ def _at_nodes(field: Any, steps: Steps) -> Steps:
     def mean(step: Floats) -> Floats:
         cells = np.pad(step[:-1, :-1], 1, constant_values=np.nan)
         around = np.stack([cells[j : j + len(step), i : i + step.shape[1]] for j, i in CORNERS])
-        known = np.isfinite(around)
-        total = np.where(known, around, 0.0).sum(axis=0)
-        return np.where(known.any(axis=0), total / np.maximum(known.sum(axis=0), 1), np.nan)
+        return np.asarray(np.ma.masked_invalid(around).mean(axis=0).filled(np.nan))
 
     return map_steps(steps, mean)
 

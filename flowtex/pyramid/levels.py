@@ -351,9 +351,7 @@ async def _lines(
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:
     """Return vectors or points (..., 2) with a third component."""
-    if values.shape[-1] == 3:
-        return values
-    third = np.full((*values.shape[:-1], 1), height)
+    third = np.full((*values.shape[:-1], 3 - values.shape[-1]), height)
     return np.concatenate([values, third], axis=-1)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import warnings
@@ -38,15 +37,13 @@ from flowtex.sources.datasets.values import Regions
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.sources.inspection.inspect_file import check_zarr
 from flowtex.sources.maps import Lines
-from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group
+from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group, is_dataset_file
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
-#: Metadata of groups and arrays, of Zarr's formats 3 and 2.
-GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
 
 
 class Source:
@@ -271,19 +268,15 @@ def has_parts(place: object) -> bool:
     if is_remote(place):
         return True
     folder = Path(place_text(place))
-    metadata = [_json(folder / name) for name in GROUPS]
-    if any("multiscales" in group.get("attributes", group) for group in metadata):
-        return True
-    shapes = (_json(file).get("shape", []) for name in ARRAYS for file in folder.glob(name))
-    return any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
-
-
-def _json(path: Path) -> dict[str, Any]:
+    if not (folder.is_dir() and is_dataset_file(folder)):
+        return False
     try:
-        content = json.loads(path.read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return content if isinstance(content, dict) else {}
+        group = import_extra("zarr", "xarray").open_group(folder, mode="r")
+        shapes = [array.shape for _, array in group.arrays()]
+    except (OSError, ValueError, KeyError, TypeError):  # whoever reads it reports the fault
+        return False
+    large = any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
+    return large or "multiscales" in group.attrs
 
 
 def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:

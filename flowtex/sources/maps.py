@@ -168,7 +168,7 @@ class NodeLines:
 
 def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
-    projection, _ = projection_of(places, name)
+    projection = projection_of(places, name)
     is_flat, is_line, periodic = not projection.is_globe, places.is_line, None
     if is_line:
         lines = lines_on_map(places, projection)
@@ -373,10 +373,10 @@ def shown_rows(points: Floats) -> slice:
     return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, len(points))
 
 
-def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
-    """Return the map of a name, or one that suits, and whether the region is around the Earth."""
+def projection_of(places: Places, name: str | None) -> Projection:
+    """Return the map of a name, or one that suits the region."""
     if name == GLOBE:
-        return Projection(GLOBE), False
+        return Projection(GLOBE)
     lon, lat = places.lines if places.is_line else (places.a, places.b)
     middle, span = _middle(lon)
     around = span >= AROUND
@@ -389,7 +389,7 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
     projection = Projection(name, center, max((high - low) / 2, 1.0))
     if (origin := projection.origin) is not None:
         projection = replace(projection, center=(origin, center[1]))
-    return projection, around
+    return projection
 
 
 def _has_pole(places: Places) -> bool:
@@ -458,7 +458,7 @@ class MeshMap:
 
 def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     """Put a mesh on a map, by its name; by default a flat one that suits the region."""
-    projection, _ = projection_of(places, name)
+    projection = projection_of(places, name)
     numbers = np.arange(len(mesh.a))
     nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
     west = projection.center[0] - 180.0

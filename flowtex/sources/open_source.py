@@ -312,7 +312,7 @@ class DatasetSource(Source):
         names = (f"{pair.u.name},{pair.v.name}" for pair in (flow.pair, *pairs))
         self.vectors = tuple(dict.fromkeys(names))
         if flow.places.is_earth:
-            flat = projection_of(flow.places, None)[0].name
+            flat = projection_of(flow.places, None).name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
         self.block_word, self.reads_late = "Map", True

@@ -81,7 +81,7 @@ class NodeGradient:
         """Set nodes of poles, whose directions differ, to the mean beside them, in place."""
         for axis, line in self.poles:
             lines = np.moveaxis(nodal, axis, 0)
-            beside = lines[_beside(line), :-1]
+            beside = lines[abs(line - 1), :-1]  # the first or the last line but one
             finite = np.isfinite(beside)
             lines[line] = beside[finite].mean() if finite.any() else np.nan
         return nodal
@@ -110,7 +110,7 @@ def _grid_gradient(
     p_i, p_j = (difference(points, axis, offset) for axis in (1, 0))
     for axis, line in poles:  # a pole has the directions of the line beside it
         lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
-        lines[line] = lines[_beside(line)]
+        lines[line] = lines[abs(line - 1)]
     with np.errstate(invalid="ignore", divide="ignore"):
         length = np.sqrt(_dot(p_i, p_i))
         one = p_i / length
@@ -180,10 +180,7 @@ def _one_sided(
 
 def _dot(one: Floats, two: Floats) -> Floats:
     """Return the scalar product of vectors (3, ...)."""
-    result = one[0] * two[0]
-    result += one[1] * two[1]
-    result += one[2] * two[2]
-    return np.asarray(result)
+    return np.asarray(np.einsum("c...,c...->...", one, two))
 
 
 def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -> NodeGradient:
@@ -254,17 +251,12 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
     return rows[order].astype(np.intp), columns[order].astype(np.intp)
 
 
-def _beside(line: int) -> int:
-    """Return the line next to the first or the last one."""
-    return 1 if line == 0 else line - 1
-
-
 def _poles(points: Floats, valid: Bools) -> Iterator[tuple[int, int]]:
     """Find the axes, and their first or last lines, where all nodes (J, I, 3) are at one point."""
     for axis in (0, 1):
         lines, valid_lines = np.moveaxis(points, axis, 0), np.moveaxis(valid, axis, 0)
         for line in (0, len(lines) - 1):
-            beside = _beside(line)
+            beside = abs(line - 1)
             used = valid_lines[line] & valid_lines[beside]
             if used.any():
                 apart = norm(lines[line, used] - lines[line, used].mean(axis=0)).max()

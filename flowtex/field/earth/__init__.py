@@ -444,7 +444,9 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     right = np.concatenate([right, gap, torn_right])
     first, last, left, right = first[order], last[order], left[order], right[order]
     starts, stops = projection.positions(*first.T), projection.positions(*last.T)
-    keep = np.linalg.norm(stops - starts, axis=1) <= MOST_STRETCHED * _lengths(first, last)
+    begin, end = (Projection(GLOBE).positions(*places.T) for places in (first, last))
+    length, true = (np.linalg.norm(a, axis=1) for a in (stops - starts, end - begin))
+    keep = length <= MOST_STRETCHED * true
     if box is not None:
         outside = ((starts < box[0]) & (stops < box[0])) | ((starts > box[1]) & (stops > box[1]))
         keep &= ~outside.any(axis=1)
@@ -462,13 +464,6 @@ def _pieces(lonlat: Floats, joined: Bools) -> tuple[Floats, Floats, Floats]:
     part = np.stack([number, number + 1], axis=1) / counts[segment, None]
     first, last = (start[segment] + steps[segment] * part[:, k, None] for k in (0, 1))
     return first, last, index[segment, None] + part
-
-
-def _lengths(first: Floats, last: Floats) -> Floats:
-    """Return lengths of short pieces on the Earth in metres."""
-    steps = np.radians(last - first)
-    steps[:, 0] *= np.cos(np.radians((first[:, 1] + last[:, 1]) / 2))
-    return np.asarray(EARTH_RADIUS * np.linalg.norm(steps, axis=1))
 
 
 def tears(

@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
@@ -110,17 +111,13 @@ class TriangleSurface(Surface):
         """Unit normals at the nodes, (1, N, 3): means by the angles of the triangles there."""
         if self._plane_normal is not None:
             return np.tile(self._plane_normal, (1, self.shape[1], 1))
-        total = np.zeros(self.points.shape[1:])
         length = np.linalg.norm(self.crosses, axis=1, keepdims=True)
         unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
         corners = self.points[0][self.triangles]
-        for k in range(3):
-            first = corners[:, (k + 1) % 3] - corners[:, k]
-            second = corners[:, (k + 2) % 3] - corners[:, k]
-            angle = np.arctan2(length[:, 0], np.einsum("mc,mc->m", first, second))
-            for axis in range(3):
-                weights = angle * unit[:, axis]
-                total[:, axis] += np.bincount(self.triangles[:, k], weights, len(total))
+        first, second = (np.roll(corners, by, axis=1) - corners for by in (-1, 1))
+        angle = np.arctan2(length, dot(first, second))
+        at = self.triangles.ravel(), np.repeat(np.arange(len(corners)), 3)
+        total = scipy.sparse.csr_array((angle.ravel(), at), (self.shape[1], len(corners))) @ unit
         size = np.linalg.norm(total, axis=1, keepdims=True)
         away = np.divide(total, size, out=np.zeros_like(total), where=size > 1e-12)
         away[size[:, 0] <= 1e-12] = (0.0, 0.0, 1.0)
@@ -142,14 +139,10 @@ class TriangleSurface(Surface):
     def cell_size(self) -> Floats:
         """Mean length of the edges at each node, (1, N), or a share of those beside it."""
         corners = self.points[0][self.triangles]
-        total, count = np.zeros((2, self.shape[1]))
-        for k in range(3):
-            start, end = self.triangles[:, k], self.triangles[:, (k + 1) % 3]
-            length = np.linalg.norm(corners[:, (k + 1) % 3] - corners[:, k], axis=1)
-            for at in (start, end):
-                total += np.bincount(at, length, len(total))
-                count += np.bincount(at, minlength=len(total))
-        size = total / np.maximum(count, 1)
+        length = norm(np.roll(corners, -1, axis=1) - corners).ravel()
+        ends = np.concatenate([self.triangles, np.roll(self.triangles, -1, axis=1)]).ravel()
+        count = np.bincount(ends, minlength=self.shape[1])
+        size = np.bincount(ends, np.tile(length, 2), self.shape[1]) / np.maximum(count, 1)
         # Slivers, as in a cut close to nodes, are not cells, whose sizes change gradually.
         beside = np.zeros_like(size)
         np.maximum.at(beside, self.triangles, size[self.triangles].max(axis=1, keepdims=True))
@@ -259,8 +252,6 @@ class TriangleSurface(Surface):
         if self._plane_normal is not None:
             return sharp[None]
         length = np.linalg.norm(self.crosses, axis=1)
-        for k in range(3):
-            nodes = self.triangles[:, k]
-            alike = np.einsum("mc,mc->m", self.crosses, self.normals[0, nodes])
-            sharp[nodes[alike < SHARP * length]] = True
+        alike = np.einsum("mc,mkc->mk", self.crosses, self.normals[0, self.triangles])
+        sharp[self.triangles[alike < SHARP * length[:, None]]] = True
         return sharp[None]

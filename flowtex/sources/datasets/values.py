@@ -251,7 +251,7 @@ def region_lines(places: Places, name: str | None) -> NodeLines | None:
             return None
         columns = np.tile(np.arange(len(a)), (2, 1))
         return NodeLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, "")
-    projection, _ = projection_of(places, name)
+    projection = projection_of(places, name)
     if not (projection.is_globe or projection.family in CYLINDERS):
         return None
     lines = lines_on_map(places, projection)

@@ -75,9 +75,7 @@ class _Header:
 
     def _variable(self) -> None:
         name = self._name()
-        ranks = self._number()
-        self._fits(ranks, 4)
-        numbers = [self._number() for _ in range(ranks)]
+        numbers = [self._number() for _ in range(self._number())]
         if any(number >= len(self._dimensions) for number in numbers):
             raise FieldError(
                 f"the file is damaged: the variable {name} has an undeclared dimension"
@@ -108,9 +106,7 @@ class _Header:
     def _entries(self) -> range:
         """Return a range over the entries of a list."""
         self._unpack(">I")  # the kind of entries
-        count = self._number()
-        self._fits(count, 8)
-        return range(count)
+        return range(self._number())
 
     def _name(self) -> str:
         length = self._number()
@@ -120,22 +116,19 @@ class _Header:
         return self._unpack(">Q" if self._wide else ">I")
 
     def _unpack(self, form: str) -> int:
-        value: int = struct.unpack(form, self._read(struct.calcsize(form)))[0]
+        try:
+            value: int = struct.unpack_from(form, self._data, self._at)[0]
+        except (struct.error, OverflowError) as error:
+            raise FieldError(
+                f"the file is truncated or damaged: its header needs more than {len(self._data):,} "
+                "bytes; write or copy it again"
+            ) from error
+        self._at += struct.calcsize(form)
         return value
 
     def _read(self, count: int) -> bytes:
-        self._fits(count, 1)
         self._at += count
         return self._data[self._at - count : self._at]
-
-    def _fits(self, count: int, nbytes: int) -> None:
-        """Raise a FieldError if the rest of the file is too short for a count of entries."""
-        left = len(self._data) - self._at
-        if count * nbytes > left:
-            raise FieldError(
-                f"the file is truncated or damaged: its header needs {count * nbytes:,} more "
-                f"bytes, but the file has {left:,}; write or copy it again"
-            )
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
