@@ -35,7 +35,7 @@ from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
-from flowtex.sources.inspection.inspect_file import check_zarr
+from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group, is_dataset_file
 from flowtex.textures.tiles.pyramid import Pyramid
@@ -288,7 +288,7 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     components = {str(options[name]) for name in "uv" if options.get(name)}
     if not is_remote(place):
         with errors_of(place):
-            check_zarr(Path(place))
+            inspect_file(Path(place))
     try:
         store = OthersObjects(store_at(place), tuple(components))
         attributes = zarr.open_group(store, mode="r").attrs
