@@ -379,7 +379,7 @@ class SurfaceGeometry(DrawnSurface):
     @cached_property
     def normal(self) -> Floats32:
         """Unit normals at the nodes, (J, I, 3); collapsed cells have those of the line beside."""
-        normal = np.cross(*self.field.surface.tangents)
+        normal = np.cross(*self.field.surface.tangents[:, *self.drawn])
         length = norm(normal)[..., None]
         small = _is_small(length[..., 0])
         if small.any() and not small.all():
@@ -392,7 +392,7 @@ class SurfaceGeometry(DrawnSurface):
             length = np.linalg.norm(normal, axis=-1, keepdims=True)
         safe = np.where(length > 0, length, 1.0)
         unit = np.where(length > 0, normal / safe, [0.0, 0.0, 1.0])
-        return unit[self.drawn].astype(np.float32)
+        return unit.astype(np.float32)
 
     @property
     def is_smooth(self) -> bool:

@@ -29,6 +29,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
 from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -173,6 +174,11 @@ class TextureSet:
         if not self.in_cells:
             return 0.0
         field = self.geometry.field
+        if field not in _critical_cells:
+            _critical_cells[field] = self._critical_cell(field)
+        return _critical_cells[field]
+
+    def _critical_cell(self, field: FlowField) -> float:
         if not field.steady:
             return float(field.surface.cell_lengths[field.surface.cells].max(initial=0.0))
         flow, tangents = field.index_velocity.components[0], field.surface.tangents
@@ -291,6 +297,10 @@ class TextureSet:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
         length = (self.store.unit * self.pace)[self.geometry.texels]
         return length[..., None].astype(np.float32)
+
+
+#: Of the windows of tiles, which share it.
+_critical_cells: WeakKeyDictionary[FlowField, float] = WeakKeyDictionary()
 
 
 def check_noise(field: FlowField, noise: str) -> None:

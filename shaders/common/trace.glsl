@@ -60,13 +60,15 @@ float flowtexInside(int pole, vec2 place, vec2 first, vec2 bend, float piece)
 {
   float low = 0.0;
   float high = piece;
-  for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
+  float middle = piece;
+  // Compilers do not unroll it: without a graphics card all of it would be run each time.
+  while (high - low > FLOWTEX_BISECTED * piece)
   {
-    float middle = n == 0 ? piece : 0.5 * (low + high);
     if (flowtexAlive(flowtexLeave(pole, place + middle * (first + bend * middle))))
       low = middle;
     else
       high = middle;
+    middle = 0.5 * (low + high);
   }
   return low;
 }

@@ -35,6 +35,7 @@ from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.slices import FIRST_CELLS, small_cell, typical_speed
 from flowtex.trace.store import SliceStore
+from flowtex.trace.trace import paths
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 100_000
@@ -56,8 +57,9 @@ MOST_WINDOW = 600_000
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
 WIDENINGS = (1, 2, 4)
-#: Share of a path's length that must not be cut, and most cut paths as a share of those of a tile.
-NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
+#: Share of a path's length that must not be cut, and most cut paths as a share of those of a tile;
+#: every so many lines are sampled for that.
+NEEDED_SHARE, MOST_CUT_SHARE, SAMPLED_LINES = 0.75, 5e-3, 8
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -429,20 +431,25 @@ def is_cut(textures: TextureSet, step: int) -> bool:
     """
     if not isinstance(textures.geometry, SurfaceGeometry):
         return False
-    slices = textures.store.at(step).part(*textures.geometry.texels)
-    needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
-    for moved, reach in (
-        (slices.displacement, slices.reach),
-        (slices.forward, slices.forward_reach),
-    ):
-        if moved is None or reach is None:
-            continue
-        ends = slices.nodes + moved[0, -1]
-        outside = np.zeros(reach[0].shape, dtype=bool)
+    store, field = textures.store, textures.geometry.field
+    needed = NEEDED_SHARE * textures.longest / textures.pace
+    first, last = step, step + 1
+    if not store.streamlines:
+        near = np.flatnonzero(np.abs(field.times - field.times[step]) <= needed)
+        first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, len(field.times))
+    moment = field.at_steps(range(first, last))
+    j, i = (np.arange(n)[p] for n, p in zip(field.shape, textures.geometry.texels, strict=True))
+    start = np.stack(np.meshgrid(i[::SAMPLED_LINES], j[::SAMPLED_LINES]), axis=-1).reshape(-1, 2)
+    start = start[field.valid[start[:, 1], start[:, 0]]]
+    for forward in (False, True):
+        followed = paths(
+            moment, start, [needed], step=step - first, parameter=store.parameter, forward=forward
+        )
+        outside = np.zeros(len(start), dtype=bool)
         for axis, (before, after) in enumerate(textures.grid.open_sides):
-            at, last = ends[..., 1 - axis], textures.geometry.field.shape[axis] - 1
-            outside |= (before & (at < 0)) | (after & (at > last))
-        if (outside & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
+            at, end = followed.positions[0, :, 1 - axis], field.shape[axis] - 1
+            outside |= (before & (at < 0)) | (after & (at > end))
+        if (outside & (followed.reach < needed)).sum() > MOST_CUT_SHARE * len(start):
             return True
     return False
 
