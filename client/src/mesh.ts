@@ -1,6 +1,6 @@
 // The nodes of a surface as the arrays of a draw call, and values between nodes.
 
-import { shareOf, type Data, type Geometry, type Header, type Padding } from "./protocol.ts";
+import { shareOf, type Data, type Geometry, type Header } from "./protocol.ts";
 import { clamp, type Vector } from "./vectors.ts";
 
 /** What a node without a value has, far below every colour map, and the farthest share that others have. */
@@ -15,24 +15,12 @@ export function positions(data: Data, anchor: Vector): Float32Array {
   return result;
 }
 
-/** Pairs (u, v) of all nodes. */
-function grid(us: number[], vs: number[]): Float32Array {
-  const result = new Float32Array(2 * us.length * vs.length);
-  let n = 0;
-  for (const v of vs) {
-    for (const u of us) {
-      result[n++] = u;
-      result[n++] = v;
-    }
-  }
-  return result;
-}
-
-/** Coordinates of the nodes in the slices: middles of texels. */
+/** Coordinates (u, v) of the nodes in the slices: middles of texels. */
 export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
-  const middles = (count: number, { before, size }: Padding) =>
-    Array.from({ length: count }, (_, n) => (n + before + 0.5) / size);
-  return grid(middles(shape[1], columns), middles(shape[0], rows));
+  return Float32Array.from({ length: 2 * shape[0] * shape[1] }, (_, n) => {
+    const [at, { before, size }] = n % 2 ? [Math.floor((n >> 1) / shape[1]), rows] : [(n >> 1) % shape[1], columns];
+    return (at + before + 0.5) / size;
+  });
 }
 
 /** Coordinates of columns and of rows side by side. */

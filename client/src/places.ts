@@ -169,19 +169,21 @@ export class Places {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  /** What is drawn at (x, y), from -1 to 1, right and up; null beside the surface. */
+  /** What is drawn at (x, y), from -1 to 1, right and up, at an outline in the next pixel; null beside the surface. */
   at(x: number, y: number): PlaceAt | null {
     const { graphics, target, layers } = this;
     const gl = graphics.context;
-    const [column, row] = [[x, this.width], [y, this.height]].map(([at, size]) =>
-      clamp(Math.floor((0.5 + 0.5 * at) * size), 0, size - 1),
-    );
-    const bits = new Uint32Array(4);
+    const [column, row] = [(0.5 + 0.5 * x) * this.width, (0.5 + 0.5 * y) * this.height];
+    const left = clamp(Math.floor(column - 0.5), 0, this.width - 2);
+    const low = clamp(Math.floor(row - 0.5), 0, this.height - 2);
+    const bits = new Uint32Array(16);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frames[0] ?? null);
-    gl.readPixels(column, row, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, bits);
+    gl.readPixels(left, low, 2, 2, gl.RGBA_INTEGER, gl.UNSIGNED_INT, bits);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    const [u, v] = new Float32Array(bits.buffer, 0, 2);
-    return bits[3] ? { layer: layers[bits[3] - 1], coordinate: [u, v], triangle: bits[2] } : null;
+    const own = Number(column >= left + 1) + 2 * Number(row >= low + 1);
+    const at = 4 * ([own, own ^ 1, own ^ 2, own ^ 3].find((n) => bits[4 * n + 3]) ?? own);
+    const [u, v] = new Float32Array(bits.buffer, 4 * at, 2);
+    return bits[at + 3] ? { layer: layers[bits[at + 3] - 1], coordinate: [u, v], triangle: bits[at + 2] } : null;
   }
 
   dispose(): void {

@@ -162,11 +162,9 @@ export class WebGL2Painter implements Painter {
     view.painted(isComplete);
   }
 
-  /** Whether the surface is there, and the programs that find points are built. */
+  /** Whether something is drawn, so that points can be found. */
   get canPick(): boolean {
-    const { scene, view, shown } = this;
-    const { graphics } = view;
-    return !!scene && !!shown && !graphics.isLost && !!graphics.gl && scene.isReady(view.settings);
+    return !!this.places?.width && !this.view.graphics.isLost;
   }
 
   find(x: number, y: number): Found | null {

@@ -267,9 +267,8 @@ let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOu
 hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
 push([first,count2])}return runs}var NO_VALUE=-1e9,MOST_RANGES=500;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))
 return data;let result2=new Float32Array(data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}
-function grid(us,vs){let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=
-u,result2[n++]=v2;return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.
-from({length:count2},(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function alongAxes(alongI,alongJ){
+function coordinates({shape:shape2,rows,columns}){return Float32Array.from({length:2*shape2[0]*shape2[1]},(_,n)=>{let[at,
+{before,size}]=n%2?[Math.floor((n>>1)/shape2[1]),rows]:[(n>>1)%shape2[1],columns];return(at+before+.5)/size})}function alongAxes(alongI,alongJ){
 let count2=Math.max(alongI.length,alongJ.length);return Float32Array.from({length:2*count2},(_,n)=>(n%2?alongJ:alongI)[n>>
 1]??0)}function unitNormals(data){let result2=Float32Array.from(data);for(let n=0;n<data.length;n+=3){let size=Math.hypot(
 data[n],data[n+1],data[n+2])||1;for(let k=n;k<n+3;k+=1)result2[k]/=size}return result2}function shares(steps,scalars){let nodes=steps[0]?.
@@ -1511,11 +1510,11 @@ speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}pa
 level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(3*rows*
 columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+j-1,from[1]+
 i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;if(!formula)
-return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
+return null;let grid=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid.shape(level),corner=far=>grid.
 local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
-corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
-(x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
-0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var MEASURED_STEPS=8,FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
+corner(0),corner(1)],cell=Math.hypot(...subtract2(grid.local(level,0,1),grid.local(level,0,0))),own=low.map((x,k)=>.5*(x+
+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,0)),
+.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var MEASURED_STEPS=8,FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
 this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
 settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
 slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
@@ -1532,42 +1531,42 @@ step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),isPart=
 high);return String(this.window)===String(isPart?window2:null)?[]:(this.window=isPart?window2:null,[...names].filter(name=>name.
 startsWith("nullclines/")).map(name=>this.marks("nullclines",stepOf(name))))}load=(key,steps,_signal,_has,mark)=>mark?Promise.
 resolve(steps.map(step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){
-let{grid:grid2,header}=this,{rate,gradient}=grid2.rate(header.slices.times[step],this.parameters),points=kind==="nullcli\
-nes"?[]:fixedPoints(rate,gradient,grid2.ends),kinds=header.structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.
-localOf(at),number],rows=[];if(kind==="nullclines")nullclines(rate,grid2.ends,this.window).forEach((pieces,component)=>rows.
-push(...pieces.flat().map(at=>row2(at,component))));else if(kind==="critical")rows.push(...points.map(point=>row2(point.
-at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).forEach(({path,isStable},n)=>{let number=LINE.
-orbit+LINE.leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,number)))});let saddles=points.filter(({ways})=>ways.
-length).slice(0,MOST_SADDLES);separatrices(rate,gradient,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{
-let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),
-rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}let part=this.named(`${kind}/${step}`,{data:Float32Array.
-from(rows.flat()),shape:[rows.length,4]});return kind==="nullclines"?{...part,digest:`${part.digest} ${this.window}`}:part}trajectory([
-x,y]){let{grid:grid2,header}=this;if(header.slices.times.length>1)return null;let{rate,gradient}=grid2.rate(header.slices.
-times[0],this.parameters),inSpace=([u,v2])=>[u,v2,0],velocity=inSpace(rate(x,y));if(!velocity.every(Number.isFinite))return null;
-let points=fixedPoints(rate,gradient,grid2.ends);return{path:trajectory(rate,grid2.ends,points,[x,y]).map(inSpace),velocity}}whole(steps){
-let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-
-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+let{grid,header}=this,{rate,gradient}=grid.rate(header.slices.times[step],this.parameters),points=kind==="nullclines"?[]:
+fixedPoints(rate,gradient,grid.ends),kinds=header.structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid.localOf(
+at),number],rows=[];if(kind==="nullclines")nullclines(rate,grid.ends,this.window).forEach((pieces,component)=>rows.push(
+...pieces.flat().map(at=>row2(at,component))));else if(kind==="critical")rows.push(...points.map(point=>row2(point.at,kinds.
+indexOf(point.kind))));else{closedOrbits(rate,grid.ends,points).forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.
+leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,number)))});let saddles=points.filter(({ways})=>ways.length).
+slice(0,MOST_SADDLES);separatrices(rate,gradient,grid.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.
+saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
+[]).map(at=>row2(at,number+LINE.orbit)))})}let part=this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
+rows.length,4]});return kind==="nullclines"?{...part,digest:`${part.digest} ${this.window}`}:part}trajectory([x,y]){let{
+grid,header}=this;if(header.slices.times.length>1)return null;let{rate,gradient}=grid.rate(header.slices.times[0],this.parameters),
+inSpace=([u,v2])=>[u,v2,0],velocity=inSpace(rate(x,y));if(!velocity.every(Number.isFinite))return null;let points=fixedPoints(
+rate,gradient,grid.ends);return{path:trajectory(rate,grid.ends,points,[x,y]).map(inSpace),velocity}}whole(steps){let{shape:shape2}=this.
+header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,
+[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
 return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
 shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
 start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
-missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
-cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
-(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
-shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
--grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
-size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
-shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
-unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
-n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
-e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
-return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
-unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
-...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-data=new Float32Array(rows*columns*PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<
-rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+
-row2,key[2]*tileBlocks+column)??[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid}=this,{mesh,
+pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are missin\
+g");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid.shape(level),first=place.map(at=>at*cells),
+last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.
+min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.
+map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid.padded(window2),share=2**-grid.doublings(
+level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*
+Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),
+levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],unit:slices.
+unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),
+middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}\
+/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);return[this.named(
+`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(
+nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){
+let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),data=new Float32Array(rows*columns*
+PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,
+column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??
+[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1644,25 +1643,26 @@ ceil(right),width)-x,Math.min(Math.ceil(high),bottom+rows)-y];if(w<=0||h<=0)retu
 scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.TRIANGLES,0,3)}),gl.readPixels(
 0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}show(program){let gl=this.graphics.
 context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.use(program,{u_bottom:0}),gl.drawArrays(gl.TRIANGLES,
-0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[column,row2]=[[x,this.width],[y,this.height]].map(([at,
-size])=>clamp(Math.floor((.5+.5*at)*size),0,size-1)),bits=new Uint32Array(4);gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??
-null),gl.readPixels(column,row2,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null);let[u,
-v2]=new Float32Array(bits.buffer,0,2);return bits[3]?{layer:layers[bits[3]-1],coordinate:[u,v2],triangle:bits[2]}:null}dispose(){
-let{graphics,target}=this;for(let texture of target?.textures??[])graphics.free("Texture",texture);for(let frame of target?.
-frames??[])graphics.free("Framebuffer",frame);this.target=null,this.key=""}sendStrides(){let{layers,seen,target}=this,gl=this.
-graphics.context,[{scene:root}]=layers,{pyramid,geometry}=root.header,finest=geometry.triangles?[1,1]:pyramid?.blocks[0]??
-root.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),0);let scale3=2**-this.squares,
-[rows,columns]=finest.map(n=>Math.ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.forEach(({scene,key:[step,
-...tile]},n)=>{let across=scene.blocks.shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{if(level<0||geometry.
-triangles)return;let[[top,bottom],[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{let first=(at+tile[k]*
-(pyramid?.tileBlocks??0))*size;return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});for(let j=top;j<
-bottom;j+=1)for(let i=left+j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),gl.activeTexture(
-gl.TEXTURE0+UNITS2[3]),gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.
-texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{target,
-graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,size={
-width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.RGBA32UI,
-gl.DEPTH_COMPONENT24,gl.RGBA8,0].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(gl.
-TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,
+0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[column,row2]=[(.5+.5*x)*this.width,(.5+.5*y)*this.height],
+left=clamp(Math.floor(column-.5),0,this.width-2),low=clamp(Math.floor(row2-.5),0,this.height-2),bits=new Uint32Array(16);
+gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??null),gl.readPixels(left,low,2,2,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),
+gl.bindFramebuffer(gl.FRAMEBUFFER,null);let own=+(column>=left+1)+2*+(row2>=low+1),at=4*([own,own^1,own^2,own^3].find(n=>bits[4*
+n+3])??own),[u,v2]=new Float32Array(bits.buffer,4*at,2);return bits[at+3]?{layer:layers[bits[at+3]-1],coordinate:[u,v2],
+triangle:bits[at+2]}:null}dispose(){let{graphics,target}=this;for(let texture of target?.textures??[])graphics.free("Tex\
+ture",texture);for(let frame of target?.frames??[])graphics.free("Framebuffer",frame);this.target=null,this.key=""}sendStrides(){
+let{layers,seen,target}=this,gl=this.graphics.context,[{scene:root}]=layers,{pyramid,geometry}=root.header,finest=geometry.
+triangles?[1,1]:pyramid?.blocks[0]??root.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),
+0);let scale3=2**-this.squares,[rows,columns]=finest.map(n=>Math.ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.
+forEach(({scene,key:[step,...tile]},n)=>{let across=scene.blocks.shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{
+if(level<0||geometry.triangles)return;let[[top,bottom],[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{
+let first=(at+tile[k]*(pyramid?.tileBlocks??0))*size;return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});
+for(let j=top;j<bottom;j+=1)for(let i=left+j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),
+gl.activeTexture(gl.TEXTURE0+UNITS2[3]),gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,
+1),gl.texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{
+target,graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,
+size={width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.
+RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,0].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(
+gl.TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,
 gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),frames=[[textures[0],
 textures[1]],[textures[2]]].map(attached=>{let frame=graphics.counted(gl.createFramebuffer());return gl.bindFramebuffer(
 gl.FRAMEBUFFER,frame),attached.forEach((texture,n)=>{let point=n?gl.DEPTH_ATTACHMENT:gl.COLOR_ATTACHMENT0;gl.framebufferTexture2D(
@@ -2123,11 +2123,11 @@ available(until);view.camera||view.place();let program=this.program(header);if(s
 if(program.error)return view.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.
 ready||!scene.isReady(view.settings,this.smooth))return view.request();let isComplete=!view.sharp&&this.renderer.draw(program,
 shown,until);isComplete&&(header.slices.critical&&this.program(header,!0),view.player.varies&&this.program(header,this.isClose(
-header),!1)),view.painted(isComplete)}get canPick(){let{scene,view,shown}=this,{graphics}=view;return!!scene&&!!shown&&!graphics.
-isLost&&!!graphics.gl&&scene.isReady(view.settings)}find(x,y){let{tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.
-length&&shown?this.renderer.placeAt(shown,x,y):null;if(!at||!camera||!shown||!scene)return null;let found=pickedPoint(at,
-scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.point.position,height:view.root.clientHeight};return found.
-point.mark=scene.marks.at(pointed,camera,view.settings,shown),found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+header),!1)),view.painted(isComplete)}get canPick(){return!!this.places?.width&&!this.view.graphics.isLost}find(x,y){let{
+tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.length&&shown?this.renderer.placeAt(shown,x,y):null;if(!at||
+!camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.
+point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.at(pointed,camera,view.settings,shown),
+found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};camera=null;sharp=!1;frames=0;isVisible=!0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
 this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.

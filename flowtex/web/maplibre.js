@@ -67,7 +67,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new $r[i](s);for(let m=0,u=0;m<c;m+=1)for(let p=m;p<s;p+=c,u+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+u]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let m=0;m<r[0];m+=1)for(let u=h;u<s;u+=1)l[u]+=l[u-h];for(let m=0;m<r[1];m+=1)for(let u=0;u<
 s;u+=h)for(let p=u+c;p<u+h;p+=1)l[p]+=l[p-c];return Yr(a,n?Na(l,n.map(m=>2**m)):l)}function Na(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>cr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var mr=1e-6,et=typeof Float32Array<"u"?Float32Array:Array;var Tc=Math.PI/180,_c=180/Math.PI;function Zr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>cr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var mr=1e-6,et=typeof Float32Array<"u"?Float32Array:Array;var Sc=Math.PI/180,Tc=180/Math.PI;function Zr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function Qr(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<mr?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
 a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Ua(){var a=new et(3);return et!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function en(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function tn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function rn(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function nn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -75,7 +75,7 @@ r,a[2]=e[2]+t[2]*r,a}function sn(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;ret
 s,a}function an(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function on(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[0],o=t[1],c=t[2];
 return a[0]=n*c-s*o,a[1]=s*i-r*c,a[2]=r*o-n*i,a}function cn(a,e,t){var r=e[0],n=e[1],s=e[2],i=t[3]*r+t[7]*n+t[11]*s+t[15];return i=i||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 i,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/i,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/i,a}function ur(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Lc=(function(){var a=Ua();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Rc=(function(){var a=Ua();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var G=a=>a,te=()=>[0,0,0],ln=a=>new Array(a).fill(0),L=(a,e)=>an(G(a),G(e)),F=a=>en(G(a)),E=(a,e)=>tn(te(),G(a),G(e)),k=(a,e)=>rn(
 te(),G(a),e),I=(a,e)=>on(te(),G(a),G(e)),U=a=>sn(te(),G(a)),T=(a,e,t=1)=>nn(te(),G(a),G(e),t);function tt(a,e,t){let r=Qr(
 ln(16),t*Math.PI/180,G(e));return r===null?te():cn(te(),G(a),r)}function O(a,e){let t=Zr(ln(9),a);return ur(te(),G(e),t)}
@@ -360,86 +360,85 @@ n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==Stri
 this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Bn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
 frame,E(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(E(h,t))?u(h)?h:[0,
 0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var _i=-1e9,Hn=500;function gt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);
-for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function Pi(a,e){let t=new Float32Array(2*a.length*e.length),r=0;for(let n of e)
-for(let s of a)t[r++]=s,t[r++]=n;return t}function zn({shape:a,rows:e,columns:t}){let r=(n,{before:s,size:i})=>Array.from(
-{length:n},(o,c)=>(c+s+.5)/i);return Pi(r(a[1],t),r(a[0],e))}function Gn(a,e){let t=Math.max(a.length,e.length);return Float32Array.
-from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Wn(a){let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.
-hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=r}return e}function bt(a,e){let t=a[0]?.length??0,r=new Float32Array(
-2*t),n=lr(e);return a.forEach((s,i)=>{for(let o=0;o<t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?S(c,-Hn,Hn):_i}}),
-r}function $n([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],c=s*e+n,[l,
-h]=[Math.min(i,o),Math.max(i,o)],m=c+(i>=o?1:e);return[[c,1-h],[m,h-l],[c+e+1,l]]}function yt(a,e){return a.reduce((t,[r,
-n])=>t+n*e(r),0)}var jn=180/Math.PI;var Ri=1e-4;function Li(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=S(
-Math.floor(t)-1,0,e-4);return[r,Li(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Yn((i[0]-a)/(t-a),c),
+for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function zn({shape:a,rows:e,columns:t}){return Float32Array.from({
+length:2*a[0]*a[1]},(r,n)=>{let[s,{before:i,size:o}]=n%2?[Math.floor((n>>1)/a[1]),e]:[(n>>1)%a[1],t];return(s+i+.5)/o})}
+function Gn(a,e){let t=Math.max(a.length,e.length);return Float32Array.from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Wn(a){
+let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=
+r}return e}function bt(a,e){let t=a[0]?.length??0,r=new Float32Array(2*t),n=lr(e);return a.forEach((s,i)=>{for(let o=0;o<
+t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?S(c,-Hn,Hn):_i}}),r}function $n([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
+t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],c=s*e+n,[l,h]=[Math.min(i,o),Math.max(i,o)],m=c+(i>=o?1:e);return[[
+c,1-h],[m,h-l],[c+e+1,l]]}function yt(a,e){return a.reduce((t,[r,n])=>t+n*e(r),0)}var jn=180/Math.PI;var Pi=1e-4;function Ri(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=S(
+Math.floor(t)-1,0,e-4);return[r,Ri(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Yn((i[0]-a)/(t-a),c),
 [m,u]=Yn((i[1]-e)/(r-e),o),p=[0,0,0];return u.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((m+d)*
 c+l+y)+b]})}),p}function vt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?Mr(a.map,t,e):e,i=[Math.atan2(n,r),Math.
 atan2(s,Math.hypot(r,n))];return i.every(Number.isFinite)?[i[0]*jn,i[1]*jn]:null}function Xn(a,e,t,r){let[n,s]=[e,t];if(a.
-map&&r){let{map:p,radius:f}=a,d=Ri*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
+map&&r){let{map:p,radius:f}=a,d=Pi*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d].map(b=>Mr(p,r,e.map((v,x)=>v+b*t[x])));
 n=Mr(p,r,e),s=y.map((b,v)=>f*(b-g[v])/(2*d))}let[i,o,c]=n,[l,h]=[Math.hypot(i,o)||1,Math.hypot(i,o,c)||1],m=(i*s[1]-o*s[0])/
-l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var ki=.9999999;function Kn(a,e){return Uint32Array.from({length:4*e.length},(t,r)=>r%4<3?a[3*(r>>2)+r%4]:e[r>>2])}function Oe(a,e,t){
-return[t,a+Math.min(Math.max(e,0),ki)]}function qn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[
-a[3*r+c],o])}var Jn=8,Oi=4,Fi=10,Ni=.05,Ii=.25,es=1e-6,Ci=.001;function Ui({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
+l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var Li=.9999999;function Kn(a,e){return Uint32Array.from({length:4*e.length},(t,r)=>r%4<3?a[3*(r>>2)+r%4]:e[r>>2])}function Oe(a,e,t){
+return[t,a+Math.min(Math.max(e,0),Li)]}function qn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[
+a[3*r+c],o])}var Jn=8,ki=4,Oi=10,Fi=.05,Ni=.25,es=1e-6,Ii=.001;function Ci({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
 header.geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[o,c]=[e[0]+t+s.before,e[1]+r+
 n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=S(
 l+(f&1),0,s.size-1);return[S(h+(f>>1),0,n.size-1)*s.size+d,p]})}function ts(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
-header,s=Ui(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
-Vi(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
+header,s=Ci(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
+Ui(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
 -1:1)*n.lags.length,b=u[g]<0&&p>0?y:p;h.forEach((v,x)=>{m[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*m[x]*w*(M<3?u[g]:1)})})}),f}}
-function Vi(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Di(a,e,t,r,n){
+function Ui(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Vi(a,e,t,r,n){
 let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let m=a(t+h+
 1).slice(0,3);for(let u=1;u<=Jn;u+=1){let p=u/Jn,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(m[b]-y));
 if(l.push(k(g,r*f*n)),f===c)break}[s,i]=[m,e[h]]}return l}function rs({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.
 header;if(!r)return l=>T(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Zn(s,e[0]),Zn(i,e[1])],c=Fe(a,e);return([l,h])=>{let m=[
 Qn(s,o[0]+l),Qn(i,o[1]+h)];return m.some(Number.isNaN)?null:T(t,E(Fe(a,m),c))}}function Ne(a,e){return T(Fe(a,e),a.header.
 geometry.center)}function Fe(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>yt(r,i=>t[3*i+s]));return Z(
-a.header.geometry.frame,n)}function Bi(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
+a.header.geometry.frame,n)}function Di(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
 e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>S(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
 return[E(i(.5,0),i(-.5,0)),E(i(0,.5),i(0,-.5))]}function Zn(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Qn(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Hi({scene:a,place:e,position:t},r,n,s){let{
-geometry:i,paper:o}=a.header,c=I(...Bi(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Ni),u=2*l/s;if(o){let[
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Bi({scene:a,place:e,position:t},r,n,s){let{
+geometry:i,paper:o}=a.header,c=I(...Di(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Fi),u=2*l/s;if(o){let[
 y,b]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.size[w]}),v=Math.
 sqrt(F(c)/(y*b));return o.grain*(r.lod?Math.max(u/Math.sqrt(m),v):v)}let p=i.extent/Number(r.resolution),f=L(h,n.at(n.state.
-focal_point).ray),g=u*Math.sqrt(Math.max(f,Ii/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function zi(a,e,t){
+focal_point).ray),g=u*Math.sqrt(Math.max(f,Ni/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Hi(a,e,t){
 let r=[],[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(T(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}
 return r}function Er(a){let{scene:e,position:t}=a,{slices:r,paper:n,speed:s}=e.header,i=ts(a),[o,c,l]=i(0),h=[o,c,l],m=k(
-h,Ci*(n?1/n.size[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){
+h,Ii*(n?1/n.size[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){
 let{scene:n,position:s}=a,{slices:i,paper:o}=n.header,c=ts(a),l=!me(n.header),h=c(0),m=[h[0],h[1],h[2]],u=rs(a),p=[],f=e.
-two_sided||!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,A=Di(c,i.lags,w*i.lags.length,w?1:-1,M).map(
+two_sided||!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,A=Vi(c,i.lags,w*i.lags.length,w?1:-1,M).map(
 u),P=A.findIndex(R=>R===null);p.push(A.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=lt(n.header,e,!0)?2*d-1:d,y=f===
-2?Math.floor(g/2):g-1,b=Number(e.spacing)*Hi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(A=>zi(s,A,w));return[...M.reverse(),s,..._]};
-return{path:v(Oi*Math.max(y,Fi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var Gi=8,Wi=1e-6,$i=.001,ji=89.99,Yi=a=>a-360*Math.round(a/360);function Ar([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+2?Math.floor(g/2):g-1,b=Number(e.spacing)*Bi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(A=>Hi(s,A,w));return[...M.reverse(),s,..._]};
+return{path:v(ki*Math.max(y,Oi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var zi=8,Gi=1e-6,Wi=.001,$i=89.99,ji=a=>a-360*Math.round(a/360);function Ar([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function xt({header:a},e){return e.map((t,r)=>S(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ss=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function as(a,e,[t,r],n){let{earth:s}=a.header,i=Ar(e).map(d=>s&&vt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
-abs(d[1])>ji))return null;let[o,c,l,h]=i.map(d=>[Yi(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
-...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>$i*p)?null:[(o[1]*
+abs(d[1])>$i))return null;let[o,c,l,h]=i.map(d=>[ji(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
+...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Wi*p)?null:[(o[1]*
 u[0]-o[0]*u[1])/f,(o[0]*m[1]-o[1]*m[0])/f]}function is(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&vt(n,
-t,r);if(!i)return e;let o=xt(a,e);for(let c=0;c<Gi;c+=1){let l=as(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
-.5+Wi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+S(l[p],0,1));o=m}return e}function os(a,e){
+t,r);if(!i)return e;let o=xt(a,e);for(let c=0;c<zi;c+=1){let l=as(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
+.5+Gi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+S(l[p],0,1));o=m}return e}function os(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=xt(a,e),s=ss(e.map((i,o)=>i-n[o]));return Ar(
 n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function cs(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
 o=s&&vt(s,n,e);if(!o)return null;let c=u=>Xn(s,u.position,Er(u),e),l=xt(t,r);if(i.triangles||!as(t,l,o,e))return c(a);let h=ss(
 r.map((u,p)=>u-l[p])),m=Ar(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[0,1].map(u=>m.reduce((p,f,d)=>p+h[d]*f[u],
-0))}var Xi=16;function hs(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
-c,...o):Ki(l,...o),m=t.ray(n,s),u=ls(i.scene,h,m)[1],[p,f]=ls(i.scene,u,m),d=is(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
-d:qi(e.header,i,d);return{point:{position:p,index:g,values:Ji(i.scene,r,d)},layer:i,place:d}}function Ki({rows:a,columns:e,
-shape:t},r,n){let s=(i,{size:o,before:c},l)=>S(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function qi(a,{key:e},[t,
+0))}var Yi=16;function hs(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
+c,...o):Xi(l,...o),m=t.ray(n,s),u=ls(i.scene,h,m)[1],[p,f]=ls(i.scene,u,m),d=is(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
+d:Ki(e.header,i,d);return{point:{position:p,index:g,values:qi(i.scene,r,d)},layer:i,place:d}}function Xi({rows:a,columns:e,
+shape:t},r,n){let s=(i,{size:o,before:c},l)=>S(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function Ki(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,m]=n?.shapes[0]??s.shape,u=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>ft(
 f+d*u,o,g);return[p(t,l,m),p(r,c,h)]}function ls(a,e,[t,r]){let{geometry:n}=a.header,{data:s}=a.part("position"),i=a.cornersAt(
 e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(
-t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Xi)){
+t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Yi)){
 let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(e[1]),d,Math.max(g,0))];let[y,b]=n.
-shape,v=(x,w)=>{let[M,_,A]=i.map(x);return S(M+d*(_-M)+g*(A-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function Ji(a,e,t){
+shape,v=(x,w)=>{let[M,_,A]=i.map(x);return S(M+d*(_-M)+g*(A-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function qi(a,e,t){
 let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=os(a,t),c=i.triangles?Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.
 map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===
-null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):yt(o,b)}return u}var Zi=3,ms=5;function us({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
+null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):yt(o,b)}return u}var Ji=3,ms=5;function us({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let m of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let u of[Math.floor((h-1)/n),Math.floor(h/n)])m>=0&&m<s&&u>=0&&u<i&&(o[m*i+u]=0)}return o}function ps({
 shape:a,data:e},t,r,n,s){let[i,o]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(i*o).fill(-1),h=[1,1,-1,-1];for(let m=0;m<
 l.length;m+=1){let[u,p]=[Math.floor(m/o),m%o],f=e.subarray(ms*m,ms*(m+1));if(n.some(([y,b,v])=>u>=y&&u<y+v&&p>=b&&p<b+v)||
-!vr(c,f))continue;let g=Math.floor(Math.log2(Zi/xr(c,f)));l[m]=Math.min(Math.max(g,0),s[m]),Qi(t,f).forEach((y,b)=>h[b]=
-b<2?Math.min(h[b],y):Math.max(h[b],y))}return{levels:l,box:h}}function Qi(a,[e,t,r,n]){let[s,i,o]=a.axes,{parallel:c,position:l,
+!vr(c,f))continue;let g=Math.floor(Math.log2(Ji/xr(c,f)));l[m]=Math.min(Math.max(g,0),s[m]),Zi(t,f).forEach((y,b)=>h[b]=
+b<2?Math.min(h[b],y):Math.max(h[b],y))}return{levels:l,box:h}}function Zi(a,[e,t,r,n]){let[s,i,o]=a.axes,{parallel:c,position:l,
 focal_point:h}=a.state,m=E([e,t,r],c?h:l),u=[-n,n].map(d=>a.at(T([e,t,r],o,d)).height);if(!(u[0]>0))return[-1,-1,1,1];let[
 p,f]=[-n,n].map(d=>[L(m,s)/a.aspect,L(m,i)].map((g,y)=>u.map(b=>(g+d/(y?1:a.aspect))/b)));return[...p.map(d=>Math.min(...d)),
-...f.map(d=>Math.max(...d))]}var eo=1024,fs=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
+...f.map(d=>Math.max(...d))]}var Qi=1024,fs=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let i=e.map(({scene:p,covered:f})=>[p.number,p.version,
 f]),o=JSON.stringify([i,t.state,t.aspect,r,n,s]);if(o===this.key)return;Object.assign(this,{key:o,layers:e,width:n,height:s});
 let c=this.graphics.context,{frames:l}=this.make(n,s),[{scene:h}]=e,m=Math.min(...e.map(({key:[p]})=>p))+Math.log2(h.header.
@@ -462,37 +461,37 @@ x]=[Math.min(Math.ceil(d),i)-y,Math.min(Math.ceil(g),h+r)-b];if(v<=0||x<=0)retur
 s.programs.use(e,{...w,u_layer:u+1}),l.drawArrays(l.TRIANGLES,0,3)}),l.readPixels(0,0,1,1,l.RGBA,l.UNSIGNED_BYTE,new Uint8Array(
 4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}show(e){let t=this.graphics.context;this.bind(),t.bindVertexArray(null),this.graphics.
 programs.use(e,{u_bottom:0}),t.drawArrays(t.TRIANGLES,0,3)}at(e,t){let{graphics:r,target:n,layers:s}=this,i=r.context,[o,
-c]=[[e,this.width],[t,this.height]].map(([u,p])=>S(Math.floor((.5+.5*u)*p),0,p-1)),l=new Uint32Array(4);i.bindFramebuffer(
-i.FRAMEBUFFER,n?.frames[0]??null),i.readPixels(o,c,1,1,i.RGBA_INTEGER,i.UNSIGNED_INT,l),i.bindFramebuffer(i.FRAMEBUFFER,
-null);let[h,m]=new Float32Array(l.buffer,0,2);return l[3]?{layer:s[l[3]-1],coordinate:[h,m],triangle:l[2]}:null}dispose(){
-let{graphics:e,target:t}=this;for(let r of t?.textures??[])e.free("Texture",r);for(let r of t?.frames??[])e.free("Frameb\
-uffer",r);this.target=null,this.key=""}sendStrides(){let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,
-{pyramid:i,geometry:o}=s.header,c=o.triangles?[1,1]:i?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(
-Math.max(...c)/eo)),0);let l=2**-this.squares,[h,m]=c.map(p=>Math.ceil(p*l)),u=new Uint8Array(h*m);e.forEach(({scene:p,key:[
-f,...d]},g)=>{let y=p.blocks.shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,A]]=[
-Math.floor(x/y),x%y].map((P,R)=>{let N=(P+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});
-for(let P=w;P<M;P+=1)for(let R=_+P*m;R<A+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+fs[3]),n.bindTexture(
-n.TEXTURE_2D,r?.textures[3]??null),n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,m,h,0,n.RED_INTEGER,
-n.UNSIGNED_BYTE,u)}make(e,t){let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:i}=this,
-o={width:Math.max(e,r?.width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.
-RGBA8,0].map(h=>{let m=n.counted(s.createTexture());return s.bindTexture(s.TEXTURE_2D,m),h&&s.texStorage2D(s.TEXTURE_2D,
-1,h,o.width,o.height),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MAG_FILTER,
-s.NEAREST),m}),l=[[c[0],c[1]],[c[2]]].map(h=>{let m=n.counted(s.createFramebuffer());return s.bindFramebuffer(s.FRAMEBUFFER,
-m),h.forEach((u,p)=>{let f=p?s.DEPTH_ATTACHMENT:s.COLOR_ATTACHMENT0;s.framebufferTexture2D(s.FRAMEBUFFER,f,s.TEXTURE_2D,
-u,0)}),m});return this.key=i,this.target={frames:l,textures:c,...o}}bind(){let e=this.graphics.context;fs.forEach((t,r)=>{
-e.activeTexture(e.TEXTURE0+t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+de.
-length)}};function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
+c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=S(Math.floor(o-.5),0,this.width-2),h=S(Math.floor(c-.5),0,this.height-
+2),m=new Uint32Array(16);i.bindFramebuffer(i.FRAMEBUFFER,n?.frames[0]??null),i.readPixels(l,h,2,2,i.RGBA_INTEGER,i.UNSIGNED_INT,
+m),i.bindFramebuffer(i.FRAMEBUFFER,null);let u=+(o>=l+1)+2*+(c>=h+1),p=4*([u,u^1,u^2,u^3].find(g=>m[4*g+3])??u),[f,d]=new Float32Array(
+m.buffer,4*p,2);return m[p+3]?{layer:s[m[p+3]-1],coordinate:[f,d],triangle:m[p+2]}:null}dispose(){let{graphics:e,target:t}=this;
+for(let r of t?.textures??[])e.free("Texture",r);for(let r of t?.frames??[])e.free("Framebuffer",r);this.target=null,this.
+key=""}sendStrides(){let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:i,geometry:o}=s.header,
+c=o.triangles?[1,1]:i?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/Qi)),0);let l=2**
+-this.squares,[h,m]=c.map(p=>Math.ceil(p*l)),u=new Uint8Array(h*m);e.forEach(({scene:p,key:[f,...d]},g)=>{let y=p.blocks.
+shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,A]]=[Math.floor(x/y),x%y].map((P,R)=>{
+let N=(P+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});for(let P=w;P<M;P+=1)for(let R=_+
+P*m;R<A+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+fs[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??
+null),n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,m,h,0,n.RED_INTEGER,n.UNSIGNED_BYTE,u)}make(e,t){
+let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:i}=this,o={width:Math.max(e,r?.
+width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0].map(h=>{let m=n.
+counted(s.createTexture());return s.bindTexture(s.TEXTURE_2D,m),h&&s.texStorage2D(s.TEXTURE_2D,1,h,o.width,o.height),s.texParameteri(
+s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MAG_FILTER,s.NEAREST),m}),l=[[c[0],c[1]],
+[c[2]]].map(h=>{let m=n.counted(s.createFramebuffer());return s.bindFramebuffer(s.FRAMEBUFFER,m),h.forEach((u,p)=>{let f=p?
+s.DEPTH_ATTACHMENT:s.COLOR_ATTACHMENT0;s.framebufferTexture2D(s.FRAMEBUFFER,f,s.TEXTURE_2D,u,0)}),m});return this.key=i,
+this.target={frames:l,textures:c,...o}}bind(){let e=this.graphics.context;fs.forEach((t,r)=>{e.activeTexture(e.TEXTURE0+
+t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+de.length)}};function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function gs(a){return a[0]*a[3]-a[1]*a[2]}function bs(a,e,t){var r=e[0],n=e[1],
 s=e[2],i=e[3],o=e[4],c=e[5],l=t[0],h=t[1],m=t[2],u=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+i*h,a[2]=r*m+s*u,a[3]=
-n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var ro=4,no=.3,Sr=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
-i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(gs(o));if(!(c>no**2&&c<ro**2))return null;
+n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var to=4,ro=.3,Sr=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
+i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(gs(o));if(!(c>ro**2&&c<to**2))return null;
 let[l,h,m,u,p,f]=vs(o),d=([M,_])=>Math.abs((l*M+m*_+p)/n-1)<1+Sr&&Math.abs((h*M+u*_+f)/s-1)<1+Sr,g=[[0,0],[t,0],[0,r],[t,
 r]].every(d),[y,b,v,x]=o,w=Math.abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Sr;if(w)for(let M of[4,5])o[M]=Math.round(
-o[M]);return{matrix:o,covers:g,shifts:w}}var so=14,ao=40,io=256;function ws(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var oo=(a,e)=>a.getContext(
+o[M]);return{matrix:o,covers:g,shifts:w}}var no=14,so=40,ao=256;function ws(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var io=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
 this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=e.canvas;let{canvas:r,last:n,coarse:s}=this,i=[r,n,s].
-map(o=>oo(o,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=i}restart(e=!1){e||(this.lastCamera=null),this.version+=
+map(o=>io(o,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=i}restart(e=!1){e||(this.lastCamera=null),this.version+=
 1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=
 !0}resize(e,t){let{canvas:r,coarse:n,last:s}=this;n.width=r.width,n.height=r.height,this.coarsePen?.drawImage(r,0,0),r.width=
 s.width=e,r.height=s.height=t,n.width>1&&this.pen?.drawImage(n,0,0,e,t)}dispose(){for(let e of[this.last,this.coarse,this.
@@ -501,14 +500,14 @@ return!1;let s=!1;do s=this.strip(e,t)&&!this.isRefined;while(!s&&performance.no
 viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(e){this.isRefined=
 !1,this.layers=this.content.arrange(e)}draft(e,t,r){let{width:n,height:s}=this.canvas,i=Number(this.viewer.settings.samples),
 o=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(i),l=this.viewer.player.playing&&!this.viewer.
-isHeld,h=xn(c,this.fixed,n*s,i,l),m=Math.max(h/o,so),u=vn(c,this.fixed,n*s,i,m),p=Math.max(Math.round(n*u.scale),1),f=Math.
+isHeld,h=xn(c,this.fixed,n*s,i,l),m=Math.max(h/o,no),u=vn(c,this.fixed,n*s,i,m),p=Math.max(Math.round(n*u.scale),1),f=Math.
 max(Math.round(s*u.scale),1);this.draftVersion=this.version;let d=u.scale<1?this.reuse():null;if(!d?.covers){let y=performance.
 now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(S(performance.now()-y-b,.5,500)-
 this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),ws(this.pen,this.last),
 this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=u.scale<1||u.samples<i;let g=!this.isCoarse&&!this.content.smooth;return g&&
 this.complete(),this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(this.viewer.settings.
 samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))return!1;this.place(
-t,r,n);let i=e.price*this.factor(s),o=Math.min(n-this.rowsDone,wn(ao,i,r,s));return this.sum(e,t,this.rowsDone,o,s),this.
+t,r,n);let i=e.price*this.factor(s),o=Math.min(n-this.rowsDone,wn(so,i,r,s));return this.sum(e,t,this.rowsDone,o,s),this.
 rowsDone+=o,this.rowsDone<n?!1:(this.show(t,this.content.smooth),this.complete(),this.drawLines(t),!0)}drawLines(e){let{
 front:t,frontPen:r,graphics:n}=this,{camera:s,ratio:i}=this.viewer,{scene:o}=this.content,{width:c,height:l}=this.canvas;
 if(!o||!s||!r)return;let{earth:h,bodies:m}=o;if(!h.lines.length&&!m.labels.length)return;let{state:u,aspect:p}=s,f=JSON.
@@ -528,7 +527,7 @@ width:t,height:r})}density(e){return this.viewer.ratio*e/this.canvas.height}sum(
 settings.samples||h!==this.canvas.height,p=g=>(g.bindNodes(m.anchor),g.bindTextures(t[0],t[1]),{...this.values(g,o,c,m,s,
 u),...fn(g.header.geometry,c,m.anchor,l,h)});e.warm||i.sum(e,r,1,p),e.warm=!0;let f=performance.now();i.sum(e,r,n,p);let d=performance.
 now()-f;return e.price=En(e.price,d,l*n,s,this.factor(s)),d}show(e,t){let{places:r}=this.content;if(!r)return;let{width:n,
-height:s}=r,{canvas:i}=this.graphics;i.width<n&&(i.width=n),i.height<s&&(i.height=s);let o=t?io:s;for(let c=0;c<s;c+=o)this.
+height:s}=r,{canvas:i}=this.graphics;i.width<n&&(i.width=n),i.height<s&&(i.height=s);let o=t?ao:s;for(let c=0;c<s;c+=o)this.
 render(e,c,Math.min(o,s-c),t)}render(e,t,r,n){let{graphics:s,viewer:i}=this,{camera:o}=i,{scene:c,places:l}=this.content;
 if(!o||!c||!l)return;let h=s.context,{width:m,height:u}=l,p=i.view(e,this.density(u));n?s.bindSmooth(m,r):h.bindFramebuffer(
 h.FRAMEBUFFER,null),h.viewport(0,-t,m,u),h.enable(h.SCISSOR_TEST),h.scissor(0,0,m,r),h.enable(h.DEPTH_TEST),h.depthFunc(
@@ -570,22 +569,22 @@ l.position)),l.radius<r?!1:(o.add(l.position),!0)));return[...e,...c]}isNeeded(e
 limits,{cell:c,low:l,size:h}=e,m=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[u,p]=this.sides(e),f=.5*(F(u)+
 F(p)),d=Math.max(As(t,m)-f,0);return!(n<s*i*r*_r(t,d))&&this.sees(t,m,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
 t);if(!r.length)return e;let n=r.map(i=>{let[o,c]=this.sides(i),l=F(c)>F(o)?1:0,h=[...i.size];h[l]*=.5;let m=[...i.low];
-return m[l]+=h[l],[{...i,size:h,key:ce(i.key+Et)},{...i,size:h,low:m,key:ce(i.key+co)}]}),s=e.filter(i=>this.area(i)<=t);
+return m[l]+=h[l],[{...i,size:h,key:ce(i.key+Et)},{...i,size:h,low:m,key:ce(i.key+oo)}]}),s=e.filter(i=>this.area(i)<=t);
 return this.divided([...s,...n.map(([i])=>i),...n.map(([,i])=>i)],t)}sides({cell:e,low:t,size:r}){let n=(s,i)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*i]);return[E(n(1,.5),n(0,.5)),E(n(.5,1),n(.5,0))]}area(e){return F(I(...this.sides(e)))}};function Ie(a,e,[
 t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],i=new Array(n).fill(0);for(let o=0;o<Tt;o+=1)for(let c=0;c<n;c+=1)i[c]+=
 s[o]*a[n*e[o]+c];return i}var Pt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
 t/this.most))}add(e){let t=Es(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
 n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Es(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
-cubes.get(o)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,co=2246822507,lo=[739982445,695872825],Ms=15;function Es(a,e,t){
-return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of lo)
+cubes.get(o)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,oo=2246822507,co=[739982445,695872825],Ms=15;function Es(a,e,t){
+return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of co)
 e=Math.imul(e^e>>>Ms,t)>>>0;return(e^e>>>Ms)>>>0}var At=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var As=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,St=(a,e)=>_r(a,As(a,e));var _s=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Ss=4,ho=_s.reduce((a,[,e])=>a+e,0),mo=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+a)}}var As=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,St=(a,e)=>_r(a,As(a,e));var _s=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Ss=4,lo=_s.reduce((a,[,e])=>a+e,0),ho=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),Ts=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new _t(this.surface,n.constants.arrows);let i=this.seeds.seen(e,br(n,t));if(s?.seeds===
-i&&mo(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:m,place:u,radius:p})=>{let f=o.subarray(4*m,
+i&&ho(r,s.layers))return s.shared;let{corners:o}=this.surface,c=i.map(({cell:m,place:u,radius:p})=>{let f=o.subarray(4*m,
 4*m+4);return{corners:f,place:u,radius:p,cell:n.geometry.triangles?m:f[0]}}),l=new Map(r.map(m=>[m,[]])),h=[...r].sort((m,u)=>Ts(
 m)-Ts(u));for(let m of c)for(let u of h){let p=u.tile?this.inTile(m,u,u.tile):m;if(p){l.get(u)?.push(p);break}}return this.
 last={seeds:i,layers:r,shared:l},l}draw(e,t,r,n,s){let{graphics:i}=this,o=i.context;this.array??=this.make(),o.bindVertexArray(
@@ -602,7 +601,7 @@ M?null:[P,A-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if
 (p-1)+g[0]]===0)return null;let b=y[0]*p+g[0];return{corners:[b,b+1,b+p,b+p+1],place:[g[1],y[1]],radius:r,cell:b}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of _s)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,ho*Ss,r),e.vertexAttribDivisor(n,1),r+=s*Ss;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+n,s,e.FLOAT,!1,lo*Ss,r),e.vertexAttribDivisor(n,1),r+=s*Ss;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=bt(i,s),c=this.nodes,l=n.triangles?null:zn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:m,radius:u,cell:p})=>{let[f,d]=m,[g,y,b,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
@@ -610,8 +609,8 @@ x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let i=this.parts.get("triangles")?.data??[];for(let o=0;o<i.length;o+=3)n.push(
 i[o],i[o+1],i[o+2],i[o+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let i=0;i<(t-1)*(r-1);i+=1){
-if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Ps=8,[uo,po]=[24,8],Te=[1,2],fo=.2;function Ue(a,e,t){
-let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function go({
+if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Ps=8,[mo,uo]=[24,8],Te=[1,2],po=.2;function Ue(a,e,t){
+let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function fo({
 geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Ps),o=i.map(({way:l,turns:h})=>{let m=T(T(k(r,l[0]),
 n,l[1]),s,-l[2]);return O(a.frame,h?m:l)}),c=l=>Float32Array.from({length:3*Ps},(h,m)=>l.flat()[m]??0);return{u_lightWays:c(
 o),u_lightColours:c(i.map(({color:l})=>l))}}var Lt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
@@ -627,11 +626,11 @@ r.BLEND),r.disable(r.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height
 runs.filter(({clear:_})=>_===o);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:m}=l,u=h.context,[p,f]=this.
 programs,d=this.drawn??=this.make(),g=H(m,e,t),[y,b,v,x]=e.eye,w=O(m.frame,E([y,b,v],k(m.center,x)));o&&(u.enable(u.BLEND),
 u.blendFuncSeparate(u.SRC_ALPHA,u.ONE_MINUS_SRC_ALPHA,u.ZERO,u.ONE),u.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,
-u_eye:[...E(w,k(t,x)),x],...go(l,e)}),u.bindVertexArray(d.faces),u.enable(u.POLYGON_OFFSET_FILL),u.polygonOffset(Te[1],Te[1]);
+u_eye:[...E(w,k(t,x)),x],...fo(l,e)}),u.bindVertexArray(d.faces),u.enable(u.POLYGON_OFFSET_FILL),u.polygonOffset(Te[1],Te[1]);
 for(let{faces:[_,A],ambient:P,diffuse:R}of c)A&&(h.programs.use(p,{u_ambient:P,u_diffuse:R}),u.drawElements(u.TRIANGLES,
 3*A,u.UNSIGNED_INT,12*_));u.disable(u.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
 1]};h.programs.use(f,M),u.bindVertexArray(d.pieces);for(let{pieces:[_,A],width:P}of c)if(A){h.programs.use(f,{u_width:P*
-s});for(let[R,N,B,q,se]of[[d.ends,3,u.FLOAT,uo,0],[d.colours,4,u.UNSIGNED_BYTE,po,2]]){u.bindBuffer(u.ARRAY_BUFFER,R);for(let C of[
+s});for(let[R,N,B,q,se]of[[d.ends,3,u.FLOAT,mo,0],[d.colours,4,u.UNSIGNED_BYTE,uo,2]]){u.bindBuffer(u.ARRAY_BUFFER,R);for(let C of[
 0,1])u.vertexAttribPointer(se+C,N,B,N===4,q,q*(_+C/2))}u.drawArraysInstanced(u.TRIANGLE_STRIP,0,4,A)}u.bindVertexArray(null),
 u.depthMask(!0),u.disable(u.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,i=this.drawn??=
 this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
@@ -639,7 +638,7 @@ s.bindVertexArray(i.faces);for(let{faces:[o,c],clear:l}of r)l||s.drawElements(s.
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:i}){let{geometry:o}=this.
 header,c=H(o,t,r);for(let{text:l,position:h,size:m,color:u,plate:p}of this.labels){let f=E(O(o.frame,E(h,o.center)),r),[
 d,g,,y]=[0,1,2,3].map(A=>c[A]*f[0]+c[4+A]*f[1]+c[8+A]*f[2]+c[12+A]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
-s],x=m*i,w=fo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,_]=[e.measureText(l).width+2*w,x+
+s],x=m*i,w=po*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,_]=[e.measureText(l).width+2*w,x+
 2*w];e.fillStyle=Rs(p),e.beginPath(),e.roundRect(b,v-_,M,_,w),e.fill(),e.fillStyle=Rs(u),e.fillText(l,b+w,v-.5*_)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,i,o,c]=Ce.map(y=>t.get(y)?.data??[]),l=()=>{let y=e.counted(r.createVertexArray());
 return r.bindVertexArray(y),y},h=(y,b=r.ARRAY_BUFFER)=>{let v=e.counted(r.createBuffer());return r.bindBuffer(b,v),r.bufferData(
@@ -689,14 +688,14 @@ s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,i=this.parts.
 o,r),t),l={...this.emptyArray(),groups:Fs(c)};n.bindVertexArray(l.array),l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<
 Cs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);return l}landOf(e){let t=this.graphics.context,r=this.parts.
 get("land"),n=this.parts.get("position"),s=this.emptyArray();if(!r||!n)return s;let i=this.header.geometry.triangles?r.data:
-bo(r);t.bindVertexArray(s.array);let o=gt(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
-i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function bo({data:a,shape:[
+go(r);t.bindVertexArray(s.array);let o=gt(n.data,e);return s.buffers=[this.buffer(t.ARRAY_BUFFER,o),this.buffer(t.ELEMENT_ARRAY_BUFFER,
+i)],s.count=i.length,t.enableVertexAttribArray(0),t.vertexAttribPointer(0,3,t.FLOAT,!1,0,0),s}};function go({data:a,shape:[
 e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.floor(n/t),i=s+t+1;r.push(s,s+1,i+1,s,i+1,i)}return Uint32Array.
-from(r)}var[yo,vo]=[.01,.2],[re,Us]=[4,24],Vs=9;function Ds(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+from(r)}var[bo,yo]=[.01,.2],[re,Us]=[4,24],Vs=9;function Ds(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/re,t.points);s+=1){let i=a[re*s+3];(r.points[i]??=[]).push(
 ...[0,1,2].map(o=>a[re*s+o]))}let n=NaN;for(let s=0;s<e.length/re;s+=1){let i=e[re*s+3];if(i>=Qe.saddle*t.saddles)continue;
 let o=i&Qe.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[o[i&Qe.leaving?0:1]];i!==n&&c.push(
-[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function xo(a,e){let t=[];for(let r=0;r<a.length;r+=re)
+[]),n=i,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function vo(a,e){let t=[];for(let r=0;r<a.length;r+=re)
 a[r+3]===e&&t.push(a[r],a[r+1],a[r+2]);return Float32Array.from(t)}function Ve(a,e=!1){let t=Float32Array.from(a.flat());
 if(e)return Ue(t,Array.from({length:2*t.length/3},(s,i)=>i>>1),3);let r=[],n=0;for(let s of a){let i=s.length/3;for(let o=n;o<
 n+i-1;o+=1)r.push(o,o+1);n+=i}return Ue(t,r,3)}var Ot=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(e,t,r){
@@ -714,12 +713,12 @@ let{header:c,graphics:l}=this,{structure:h,geometry:m}=c,u=h&&this.layers(h,i,o)
 Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:H(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
 y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:A,width:P,
-above:R}of u){let[N,B,q,se=1]=A;l.programs.use(w,{u_width:P*v,u_nearer:yo*x*(1+vo*R)});for(let C of[0,1])p.vertexAttribPointer(
+above:R}of u){let[N,B,q,se=1]=A;l.programs.use(w,{u_width:P*v,u_nearer:bo*x*(1+yo*R)});for(let C of[0,1])p.vertexAttribPointer(
 C,3,p.FLOAT,!1,Us,Us*(M+C/2)),p.vertexAttrib4f(2+C,N,B,q,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Pr(r)]);if(this.drawn?.key===l)return this.
 drawn.layers;let h=Ds(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,A)=>{
-let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:A}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>xo(c?.data??
+let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:A}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>vo(c?.data??
 [],M));v.forEach(w=>b(w,p,m[0],0)),v.forEach((w,M)=>b(w,e.nullclines[M].color,m[1],1)),b(Ve(Object.values(h.lines).flat()),
 p,m[0],1.5),Object.entries(h.lines).forEach(([w,M],_)=>b(Ve(M),e.lines[w],m[1],2+_));let x=e.kinds.map((w,M)=>h.points[M]??
 []);return b(Ve(x,!0),p,u[0],6),e.kinds.forEach(({color:w},M)=>b(Ve([x[M]],!0),w,u[1],7)),b(Ve(x.filter((w,M)=>e.kinds[M].
@@ -731,10 +730,10 @@ header,[l,h]=this.shown(s,i,"critical"),m=2*n.height/Math.max(r,1),[u,p]=["",Vs]
 1){let[d,g,y,b]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),v=T(Z(o.frame,[d,g,y]),o.center),x=n.project(v);if(!x||Math.hypot(
 ...E(v,t))>4*Vs*m)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([u,p]=[c?.kinds[b]?.name??"",w])}
 return u}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
-buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var wo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},Bs=["padded","unit","open","nearest","rays"],Mo=8*(4/3),Eo=2048,
-Ao=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],So=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=So+=1;constructor(e,t,r,n=null){this.tile=
+buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var xo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
+"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},Bs=["padded","unit","open","nearest","rays"],wo=8*(4/3),Mo=2048,
+Eo=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],Ao=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=Ao+=1;constructor(e,t,r,n=null){this.tile=
 n,this.graphics=e,this.header=t,this.parts=r,this.earth=new kt(e,t,r),this.bodies=new Lt(e,t,r),this.arrows=new Rt(e,t,r),
 this.marks=new Ot(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(o=>this.arrows.program(e,o));return[...["place","surface","sm\
 ooth","probe"].filter(o=>t||o!=="smooth").map(o=>this.programs(o).ready),this.earth.isReady,this.bodies.isReady,this.marks.
@@ -762,7 +761,7 @@ e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graph
 ""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of the scene is missing`);return t}forget(e){let[
 t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].includes(
 t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?
-[`slices/${r}`]:wo[t]??[])this.drop(s);Bs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.get(e);this.
+[`slices/${r}`]:xo[t]??[])this.drop(s);Bs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.get(e);this.
 resources.delete(e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){
 for(let e of[...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.
 dispose(),this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Boolean)?
@@ -772,20 +771,20 @@ return m.users+=1,this.resources.set(e,m),l||(m.count=s(h)||0),c&&o.common.set(c
 h")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=us(e,this.blocks,this.part("position").data,t.
 tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?qn(this.part("triangles").data,e):$n(r,e)}isLoaded(e){
 return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?
-[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*Mo*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)
+[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*wo*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)
 this.slices(t)}bindNodes(e){let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.header.geometry;e.some((m,u)=>m!==
 this.anchor[u])&&this.drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture("nodes",this.key(["position","n\
 ormal"],o,e),m=>{gr(t,o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?3:6)*o*i);u.set(gt(this.part("p\
 osition").data,e)),s||u.set(Wn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,
 ...p,0,t.RGB,t.FLOAT,u),Hs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table(
-"cells",this.key(["triangles","blocks"]),t.RGBA32UI,Eo,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.
+"cells",this.key(["triangles","blocks"]),t.RGBA32UI,Mo,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.
 table("cells",this.key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_cor\
 ners":"u_open",h)}get nodesSize(){let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:
-e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Ao.includes(e)?r.TEXTURE_2D_ARRAY:
+e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Eo.includes(e)?r.TEXTURE_2D_ARRAY:
 r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,o={[i.RGBA32UI]:[i.RGBA_INTEGER,
 i.UNSIGNED_INT,4],[i.R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},
 [c,l,h]=o[r];return this.texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(i.TEXTURE_2D,m),i.pixelStorei(
-i.UNPACK_ALIGNMENT,1);let f=To(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Hs(i,i.TEXTURE_2D)})}shares(e,t){let{
+i.UNPACK_ALIGNMENT,1);let f=So(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Hs(i,i.TEXTURE_2D)})}shares(e,t){let{
 geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["triangles",...new Set(i)],s,n.low,
 n.high,n.log),()=>bt(i.map(l=>this.part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Text\
 ure",t,()=>n.createTexture(),r)}slices(e){let{slices:t,geometry:r}=this.header,n=this.key([`slices/${e}`,`extra/${e}`],r.
@@ -811,8 +810,8 @@ n.picture?[!0,!0]:i)),this.bind("u_stepImage",n&&this.image("step",i));let c=mn(
 4),s);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,c.length/4,()=>c));let[l,h]=this.shares(
 e,t);this.bind("u_shares",s.name===null?null:this.table("scalar",l,r.RG32F,this.nodesSize[1],h));let m=()=>Gn(n?.alongI??
 [],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),m))}};function Hs(a,e){
-a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function To(a,e){if(a.
-length===e)return a;let t=new a.constructor(e);return t.set(a),t}var _o=60,Po=25,Ro=9e8,Lo=3.5,ko={slices:4,flow:24},Ft=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function So(a,e){if(a.
+length===e)return a;let t=new a.constructor(e);return t.set(a),t}var To=60,_o=25,Po=9e8,Ro=3.5,Lo={slices:4,flow:24},Ft=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Se;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
@@ -831,7 +830,7 @@ V?this.root:this.tiles.get(s)?.scene,o=(n.get(s)??[]).flatMap(l=>this.pyramid?[t
 V?[this.root.header.pyramid?.depth??0,0,0]:oe(s);return i?[{scene:i,key:c,covered:o}]:[]}),this.layers}choose(e,t){let{header:r}=this.
 root,{settings:n,canvas:s,ratio:i}=this.host;if(!r.pyramid)return new Map;this.pyramid??=new pt(r.pyramid,Fn(r)??this.root.
 part("places").data);let o=this.pyramid.choose({...e.sight(s.height/i),planes:e.planes,cellPixels:In(r.pyramid,n)});this.
-count+=1;for(let m of o.keys()){let u=this.tiles.get(m);u&&(u.used=this.count)}let c=performance.now()+Po,l=this.obtainable(
+count+=1;for(let m of o.keys()){let u=this.tiles.get(m);u&&(u.used=this.count)}let c=performance.now()+_o,l=this.obtainable(
 Cn(o),t,r.pyramid.depth);this.missing=l.filter(m=>!this.isHere(m,t)),this.ask(),this.trim(t);for(let m of l)this.isHere(
 m,t)&&this.load(m,t,c);let h=wr(o,m=>this.isHere(m,t)&&this.load(m,t,c));return this.wanted=l.length,this.pending=l.filter(
 m=>!this.isHere(m,t)||!this.isLoaded(m,t)).length,this.chosen={choices:o,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
@@ -842,12 +841,12 @@ return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;!e||this.isWaiting||
 !(this.missing.length||this.hasAsked)||(this.isWaiting=!0,t.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=
 this.missing.length>0;let r=(i,o)=>this.tiles.get(i)?.scene?.lacking(o)??ie(this.root.header,o),n=this.missing.flatMap(i=>this.
-chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},_o))}trim(e){let t=0;
+chosen.steps.flatMap(o=>r(i,o))),s=[...new Set(n)].sort((i,o)=>i-o);e.wantTiles(this.missing.map(oe),s)},To))}trim(e){let t=0;
 for(let[r,n]of[...this.tiles].sort(([,s],[,i])=>i.used-s.used)){let{parts:s,scene:i,used:o}=n,c=i?.header.slices.trace?"\
 flow":"slices",l=[...s.keys()].filter(m=>m.startsWith(`${c}/`)),h=i?e.flatMap(m=>ie(i.header,m)):e;for(let m of l.slice(
-0,Math.max(l.length-ko[c],0))){let u=Y(m);if(h.includes(u))continue;for(let f of[c,"extra"])this.release(n,`${f}/${u}`);
+0,Math.max(l.length-Lo[c],0))){let u=Y(m);if(h.includes(u))continue;for(let f of[c,"extra"])this.release(n,`${f}/${u}`);
 let p=[...s.keys()].filter(f=>Ee(f,u,this.root.header));for(let f of p)this.release(n,f)}for(let{data:m}of s.values())t+=
-Lo*m.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??Ro)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
+Ro*m.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??Po)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
 t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var Nt=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];constructor(e){this.view=e,this.renderer=
 new Mt(e,this),!e.graphics.gl&&e.panel.fail("This browser has no WebGL2, which is needed to draw the picture.","Turn on \
@@ -872,10 +871,10 @@ view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||!s.gl||!r.isVisible||!
 [],r.advance(e);let o=this.available(t);r.camera||r.place();let c=this.program(i);if(n.prepare(),!o||!r.camera)return;if(c.
 error)return r.panel.fail("The shader does not compile with this graphics driver.",c.error);if(!c.ready||!n.isReady(r.settings,
 this.smooth))return r.request();let l=!r.sharp&&this.renderer.draw(c,o,t);l&&(i.slices.critical&&this.program(i,!0),r.player.
-varies&&this.program(i,this.isClose(i),!1)),r.painted(l)}get canPick(){let{scene:e,view:t,shown:r}=this,{graphics:n}=t;return!!e&&
-!!r&&!n.isLost&&!!n.gl&&e.isReady(t.settings)}find(e,t){let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.layers.
-length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||!n||!s)return null;let l=hs(c,s,o,n,[e,t]),h={place:[e,t],position:l.
-point.position,height:i.root.clientHeight};return l.point.mark=s.marks.at(h,o,i.settings,n),l}};var It=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ct;player;held=new ot(
+varies&&this.program(i,this.isClose(i),!1)),r.painted(l)}get canPick(){return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){
+let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||
+!n||!s)return null;let l=hs(c,s,o,n,[e,t]),h={place:[e,t],position:l.point.position,height:i.root.clientHeight};return l.
+point.mark=s.marks.at(h,o,i.settings,n),l}};var It=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ct;player;held=new ot(
 this.graphics);parts=this.held.all;isClear=!0;isVisible=!0;panel;requests;options;header;settings;painter;camera=null;sharp=!1;ratio=1;host;isNew=!0;constructor(e,{
 header:t,settings:r,player:n,source:s,isComing:i}){this.host=e,this.header=t,this.settings=r,this.player=n,this.options=
 {source:s,isComing:i},this.panel={wait:()=>{},showKinds:()=>{},fail:(o,c)=>e.failed(o,c)},this.requests=new dt(s,this),this.
@@ -928,7 +927,7 @@ void main()
   flowtexPlaceOut = (u_flowMatrix * vec4(place, 0.0, 1.0)).xyw;
   gl_Position = projectTile(place);
 }
-`;var Ws=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,No=88*X,$s='export it with projection="mercator"';
+`;var Ws=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,Fo=88*X,$s='export it with projection="mercator"';
 function ge({lng:a,lat:e}){let t=Math.sin(S(e,-Ct,Ct)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
 let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${$s}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/X,lat:Math.asin(v/Math.hypot(y,b,v))/X}),w=[r[0]+(r[2]-r[0])*g/(s-
@@ -948,8 +947,8 @@ up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:u,view_angle:s},wid
 map(g=>ge({lng:0,lat:g/X})[1]),m=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,u=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[m/Math.PI,l-h];return{state:{position:[r,u,n+1/this.slope[0]],focal_point:[r,u,n],up:[0,1,0],parallel:!0,
 parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function js({width:a,height:e,pitch:t,fov:r}){
-let[n,s]=[t*X,.5*r*X],i=n+s;if(i>No)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
-hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Rr=8192,Io=22,Co=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
+let[n,s]=[t*X,.5*r*X],i=n+s;if(i>Fo)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
+hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Rr=8192,No=22,Io=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
 e!==void 0,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.next=null}painted(e){let{camera:t}=this.view;t&&
 this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,next:t,shown:r}=this;return!this.isUsed||e.
@@ -961,14 +960,14 @@ LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercato
 shaderData,c=r.get(`${o}
 ${i}
 ${Gs}`,zs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(S(e.zoom,0,Io)),m=n.placeOf(l.state.focal_point),u=2**h,
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(S(e.zoom,0,No)),m=n.placeOf(l.state.focal_point),u=2**h,
 p=[Math.floor(m[0]*u),S(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=P=>P.map((R,N)=>(R*u-
-p[N])*Rr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Co:1,A=s?0:Math.
+p[N])*Rr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Io:1,A=s?0:Math.
 round(ge(e.center)[0]-m[0]);for(let P of e.isRepeated&&!s?[-1,0,1]:[0]){let R={wrap:f+A+P,canonical:d},N=e.getProjectionData(
 {tileID:R,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:N.mainMatrix,u_projection_fallback_matrix:N.fallbackMatrix,u_projection_tile_mercator_coords:N.
 tileMercatorCoords,u_projection_clipping_plane:N.clippingPlane,u_projection_transition:N.projectionTransition,u_box:[...w,
-M[0]-w[0],M[1]-w[1]],u_mapCells:_,u_flowMatrix:Uo(this.view.header,l,n,p,1/(u*Rr)),u_flowPicture:0,u_opacity:e.opacity}),
-t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*_+2,_)}return t.bindVertexArray(null),!0}};function Uo({geometry:a},e,t,r,n){
+M[0]-w[0],M[1]-w[1]],u_mapCells:_,u_flowMatrix:Co(this.view.header,l,n,p,1/(u*Rr)),u_flowPicture:0,u_opacity:e.opacity}),
+t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*_+2,_)}return t.bindVertexArray(null),!0}};function Co({geometry:a},e,t,r,n){
 let{center:s,frame:i}=a,{focal_point:o}=e.state,c=O(i,E(o,s)),l=H(a,e,c),h=[0,1].map(f=>O(i,[0,1].map(d=>d===f?n/t.slope[f]:
 0).concat(0))),m=t.placeOf(o),u=[0,1].map(f=>(r[f]*n*Rr-m[f])/t.slope[f]).concat(0);return[...h,[0,0,0],O(i,u)].flatMap(
 (f,d)=>[0,1,2,3].map(g=>f.reduce((y,b,v)=>y+l[4*v+g]*b,d===3?l[12+g]:0)))}var Dt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
@@ -999,11 +998,11 @@ configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r]
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new D(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new D(`Unsupported or unknown dtype: ${a}`);return t===
-"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Vo(a){return(a.id==="fixedscaleoffset"||a.id==="num\
+"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Uo(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
 ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function Js(a,e={}){let t=[],r=Ys(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
-scaleoffset"){if(!Vo(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
+scaleoffset"){if(!Uo(s))throw new D(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
 configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Ys(c).dataType;
 if(!Bt(l,"number")&&!Bt(l,"bigint"))throw new D(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:i,...o}=s;t.
@@ -1022,20 +1021,20 @@ fill_value]}return a.fill_value}function kr(a,...e){if(!e.some(t=>a instanceof t
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
 a.byteLength);r=new Response(n.slice().buffer)}ea(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var ra=Do();function Do(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+ed to decode ${e}`)}}var ra=Vo();function Vo(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
 18}function na(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var je=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=Ht(t.dataType),this.#s=t.shape,this.#e=zt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
 return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ra&&this.#n==="big"&&(t=t.slice(),Lr(t,na(this.#t))),
 t}computeEncodedSize(e){return e}decode(e){return ra&&this.#n==="big"&&(e=e.slice(),Lr(e,na(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Wt=class{};function $t(a){return()=>{throw new ye(`${a} encode`)}}var jt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=$t("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Yt=class{};var Xt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=$t("gzip");async decode(e){let t=await ta(
-e,{format:"gzip"});return new Uint8Array(t)}};var Ye=class{};var Kt=class{};var qt=class{};var Jt=class{};var Xe=class{};var Zt=class{};function Bo(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"gzip"});return new Uint8Array(t)}};var Ye=class{};var Kt=class{};var qt=class{};var Jt=class{};var Xe=class{};var Zt=class{};function Do(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Xt,n=()=>Zt;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Jt).set("bytes",()=>je).set("crc32c",()=>jt).set("vlen-utf8",()=>Xe).set("json2",()=>Ye).set("bit\
 round",()=>De).set("cast_value",()=>Wt).set("scale_offset",()=>Kt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>Xe).set("numcodecs.shuf\
-fle",()=>qt).set("numcodecs.delta",()=>Yt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Ye)}var Ke=Bo();function qe(a){
-let e;function t(){return e||(e=Ho(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new He({direction:n,
+fle",()=>qt).set("numcodecs.delta",()=>Yt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Ye)}var Ke=Do();function qe(a){
+let e;function t(){return e||(e=Bo(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new He({direction:n,
 codec:s,cause:o})}}return{async encode(n){let s=await t();for(let{name:o,codec:c}of s.arrayToArray)n=await r("encode",o,
 ()=>c.encode(n));let i=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:o,codec:c}of s.
 bytesToBytes)i=await r("encode",o,()=>c.encode(i));return i},async decode(n){let s=await t();for(let o=s.bytesToBytes.length-
@@ -1044,12 +1043,12 @@ name,()=>s.arrayToBytes.codec.decode(n));for(let o=s.arrayToArray.length-1;o>=0;
 i=await r("decode",c,()=>l.decode(i))}return i},async computeEncodedSize(n){let s=await t(),i=sa(s.arrayToBytes.name,s.arrayToBytes.
 codec,n);for(let{name:o,codec:c}of s.bytesToBytes)i=sa(o,c,i);return i}}}function sa(a,e,t){if(!e.computeEncodedSize)throw new D(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
-ine`);return e.computeEncodedSize(t)}async function Ho(a){let e=a.codecs.map(async i=>{let o=await Ke.get(i.name)?.();if(!o)
+ine`);return e.computeEncodedSize(t)}async function Bo(a){let e=a.codecs.map(async i=>{let o=await Ke.get(i.name)?.();if(!o)
 throw new Be(i.name);return{Codec:o,meta:i}}),t=[],r,n=[],s={...a};for await(let{Codec:i,meta:o}of e){let c=i.fromConfig(
 o.configuration,s);switch(c.kind){case"array_to_array":t.push({name:o.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
-s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!zo(s))throw new D(
+s));break;case"array_to_bytes":r={name:o.name,codec:c};break;default:n.push({name:o.name,codec:c})}}if(!r){if(!Ho(s))throw new D(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:je.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function zo(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var aa=18446744073709551615n;function ia(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function Ho(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var aa=18446744073709551615n;function ia(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),i=qe({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),o=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let m=l.map((x,w)=>Math.floor(x/s[w])),
 u=a.resolve(t(m)).path;u in c||(c[u]=(async()=>{let x=await i.computeEncodedSize(o),w=await n(u,{suffixLength:x},h);return w?
@@ -1058,56 +1057,56 @@ y=l.map((x,w)=>x%d[w]).reduce((x,w,M)=>x+w*g[M],0),b=f[y],v=f[y+1];if(!(b===aa&&
 v)},h)}}var ne=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function er(a){return new ne(
 a??new Map)}var ve=class extends ne{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function oa(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Go(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function ca(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Go(
-a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function Wo(a,e){let{configuration:t}=e.codecs.find(Qs)??{},r={encodeChunkKey:qs(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
+function oa(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function zo(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function ca(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?zo(
+a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function Go(a,e){let{configuration:t}=e.codecs.find(Qs)??{},r={encodeChunkKey:qs(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
 fillValue:e.fill_value};if(t){let s=oa(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:qe({dataType:e.
 data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:ca(s),getChunkBytes:ia(a,e.chunk_grid.
 configuration.chunk_shape,r.encodeChunkKey,t)}}let n=oa(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:qe({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
 getStrides:ca(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var le=class extends ne{kind="\
-array";#e;[Qt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Gt(r)},this[Qt]=Wo(this,this.#e)}get attrs(){return this.#e.
+array";#e;[Qt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Gt(r)},this[Qt]=Go(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[Qt].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
 Xs();let n=this[Qt],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
  non-buffer-backed data types."),o=new n.TypedArray(i);else{let l=Ks(i*c.BYTES_PER_ELEMENT,!0);o=new n.TypedArray(l,0,i)}}else
 o=new n.TypedArray(i);return o.fill(n.fillValue),{data:o,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Bt(this.dtype,e)}};function la(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function ha(a,...e){return la(a,e)}async function pa(a){let e=a.store.arrayExtensions;return e?.length?await ha(a,...e):a}var tr=$o();function $o(){let a=new WeakMap;
+codec.decode(s)}is(e){return Bt(this.dtype,e)}};function la(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function ha(a,...e){return la(a,e)}async function pa(a){let e=a.store.arrayExtensions;return e?.length?await ha(a,...e):a}var tr=Wo();function Wo(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function jo(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-$e(t):{}}async function Yo(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await jo(t,r)),
+return r.v3>r.v2?"v3":"v2"}}}async function $o(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+$e(t):{}}async function jo(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await $o(t,r)),
 r?.throwIfAborted(),e.kind==="array"?ma(t,n,r):e.kind==="group"?ua(t,n,r):ma(t,n,r).catch(s=>(kr(s,K,D),ua(t,n,r)))}async function ma(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new K("v2 array",{path:r});return tr.increment(
 a.store,"v2"),pa(new le(a.store,a.path,Js($e(n),e)))}async function ua(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
 store.get(r,{signal:t});if(!n)throw new K("v2 group",{path:r});return tr.increment(a.store,"v2"),new ve(a.store,a.path,Zs(
-$e(n),e))}async function Xo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new K(
+$e(n),e))}async function Yo(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new K(
 "v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=Gt(s)),s.node_type==="array"?pa(new le(
-t,a.path,s)):new ve(t,a.path,s)}async function Ko(a,e={}){let t="store"in a?a:new ne(a),r=await Xo(t,e.signal);if(tr.increment(
+t,a.path,s)):new ve(t,a.path,s)}async function Xo(a,e={}){let t="store"in a?a:new ne(a),r=await Yo(t,e.signal);if(tr.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof le||e.kind==="group"&&r instanceof ve)return r;let n=r instanceof
 le?"array":"group";throw new K(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function Q(a,e={}){let t="store"in a?
-a.store:a,r=tr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(i=>(kr(i,K,D),s(a,e)))}Q.v2=Yo;
-Q.v3=Ko;var fa=[300,1e3,3e3],da=2e4,Jo=[401,403,404,410],ba=200,Zo=429,Qo=500,ec=2197175160,Or=4,tc=8,rc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
-super(t),this.fault=e,this.detail=r}},nc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
-8*(e+1);s+=1)n=n>>>1^(n&1?ec:0);return n}));function sc(a){let[e,t,r,n]=nc,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
+a.store:a,r=tr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(i=>(kr(i,K,D),s(a,e)))}Q.v2=jo;
+Q.v3=Xo;var fa=[300,1e3,3e3],da=2e4,qo=[401,403,404,410],ba=200,Jo=429,Zo=500,Qo=2197175160,Or=4,ec=8,tc=1<<28,W=class extends Error{fault;detail;constructor(e,t,r=t){
+super(t),this.fault=e,this.detail=r}},rc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
+8*(e+1);s+=1)n=n>>>1^(n&1?Qo:0);return n}));function nc(a){let[e,t,r,n]=rc,s=a.length-a.length%4,i=4294967295;for(let o=0;o<
 s;o+=4)i^=a[o]|a[o+1]<<8|a[o+2]<<16|a[o+3]<<24,i=n[i&255]^r[i>>>8&255]^t[i>>>16&255]^e[i>>>24];for(let o=s;o<a.length;o+=
 1)i=i>>>8^e[(i^a[o])&255];return~i>>>0}async function ya(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:i=!0,value:o}=await n?.
 read()??{};if(i||!o)break;t.push(o),r+=o.length,e(r)}}catch(i){throw n?.cancel().catch(()=>{}),i}let s=new Uint8Array(r);
 return t.reduce((i,o)=>(s.set(o,i),i+o.length),0),s}var Fr=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Or;if(t<0)throw new Error("the checksum is missing");
-let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Or).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==sc(i))throw new Error(
+let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Or).getUint32(0,!0),i=new Uint8Array(r,n,t);if(s!==nc(i))throw new Error(
 "checksum mismatch");return i}computeEncodedSize(e){return e+Or}},Nr=class a{kind="bytes_to_bytes";most;constructor(e){this.
-most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,tc),rc))}encode(){throw new Error("nothi\
+most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,ec),tc))}encode(){throw new Error("nothi\
 ng is written")}async decode(e){let t=new Blob([e]).stream();return ya(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};Ke.set("gzip",()=>Promise.resolve(
-Nr));Ke.set("crc32c",()=>Promise.resolve(Fr));function ac(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
-reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function ic(a,e){
+Nr));Ke.set("crc32c",()=>Promise.resolve(Fr));function sc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
+reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function ac(a,e){
 let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,da);try{e.throwIfAborted();
 let{status:s,body:i}=await fetch(a,{signal:t.signal}),o=await ya(s===ba?i:null,()=>{clearTimeout(n),n=setTimeout(r,da)});
 return[s,o]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function ga(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await ic(a,e);if(n===ba)return s;if(Jo.includes(n))return;if(r=`the server answer\
-s ${n}`,n<Qo&&n!==Zo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===fa.length)throw new W(
-"unreachable",r);await ac(fa[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+let r="no server answers";try{let[n,s]=await ac(a,e);if(n===ba)return s;if(qo.includes(n))return;if(r=`the server answer\
+s ${n}`,n<Zo&&n!==Jo)throw new W("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof W)throw n}if(t===fa.length)throw new W(
+"unreachable",r);await sc(fa[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
 s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await ga(this.url+e,t);if(!r)
@@ -1116,20 +1115,20 @@ url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>t
 if(a instanceof W)return a;let e=a instanceof K&&!a.found?"missing":"broken";return new W(e,a instanceof Error?a.message:
 String(a))}var nr=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new rr(
 this.url,this.described);return(await Q.v3(er(e),{kind:"group"})).attrs}async array(e){let t=new rr(this.url,this.described),
-r=await Q.v3(er(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new W("broken",`${e} has no numbers`);return r}};var oc=64,cc=32,sr=4096,lc=2**28,hc=["padded","unit","open","nearest","normal","rays"],mc={missing:"it is not in the sto\
+r=await Q.v3(er(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new W("broken",`${e} has no numbers`);return r}};var ic=64,oc=32,sr=4096,cc=2**28,lc=["padded","unit","open","nearest","normal","rays"],hc={missing:"it is not in the sto\
 re, or the store is not public.",broken:"its data in the store are corrupt.",unreachable:"the store does not answer. The\
- server or the network may be down, or the server does not allow this page to read it (CORS)."},uc=["format","fingerprin\
+ server or the network may be down, or the server does not allow this page to read it (CORS)."},mc=["format","fingerprin\
 t","parameter","lines"],xe=(a,e)=>Number.isInteger(a)&&Number(a)>0&&Number(a)<=e,$=(a,e)=>Array.isArray(a)&&a.every(Number.
-isFinite)&&(e??a.length)===a.length,pc=(a,e)=>$(a,e)&&a.every(Number.isInteger);function fc({nodes:a,longest:e=0,poles:t=[]}){
+isFinite)&&(e??a.length)===a.length,uc=(a,e)=>$(a,e)&&a.every(Number.isInteger);function pc({nodes:a,longest:e=0,poles:t=[]}){
 return Number.isFinite(e)&&t.length<=2&&t.every(({component:r,line:n,inward:s,near:i,plane:o})=>[0,1].includes(r)&&r===t[0].
-component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&xe(i,sr)&&$(o,6))}function dc(a,{geometry:e,slices:t}){let{geometry:r,
+component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&xe(i,sr)&&$(o,6))}function fc(a,{geometry:e,slices:t}){let{geometry:r,
 slices:n}=a,{shape:s,rows:i,columns:o}=r,{trace:c}=n;if(!($(s,2)&&s.every(h=>xe(h,sr)&&h>1)&&[i,o].every(({before:h,size:m},u)=>Number.
 isInteger(h)&&xe(m,sr)&&h>=0&&h+s[u]<=m)&&Number.isInteger(r.levels)&&r.levels>=0&&2**r.levels<=Math.max(i.size,o.size)&&
 r.triangles===e.triangles&&r.planar===e.planar&&Number.isFinite(r.extent)&&$(r.periodic.map(Number),2)&&$(r.center,3)&&$(
-r.frame,9)&&xe(n.count,oc)&&[2,4].includes(n.channels)&&$(n.lags)&&xe(n.lags.length,cc)&&n.sides===t.sides&&$(n.extra)&&
-n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&$([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>hc.includes(
-h))&&$(c.nodes,2)&&c.nodes.every((h,m)=>xe(h,sr)&&c.drawn[m]+s[m]<=h)&&pc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
-0)&&$(c.closed.map(Number),2)&&$([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&fc(c)&&(!c.timed||$([c.timed.unit,c.
+r.frame,9)&&xe(n.count,ic)&&[2,4].includes(n.channels)&&$(n.lags)&&xe(n.lags.length,oc)&&n.sides===t.sides&&$(n.extra)&&
+n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&$([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>lc.includes(
+h))&&$(c.nodes,2)&&c.nodes.every((h,m)=>xe(h,sr)&&c.drawn[m]+s[m]<=h)&&uc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
+0)&&$(c.closed.map(Number),2)&&$([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&pc(c)&&(!c.timed||$([c.timed.unit,c.
 timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function wa({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:i,extra:o}=e,c=(p,...f)=>[...p,...f].reduce((d,g)=>d*g,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],m={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
@@ -1139,16 +1138,16 @@ columns.size],h=n?.nodes??[],m={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[In
 i)]],m.extra=[Uint16Array,[c(l,o.length)]];let u=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:m,
 needed:u}}function Ir(a,e,t){let{sizes:r}=wa(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:i,shape:o}of a){
 let c=r[s.split("/")[0]];if(!(c?i instanceof c[0]&&c[1].includes(i.length):s==="mesh"&&i instanceof Float32Array&&o.length===
-3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function gc(a,{
+3&&o[0]===n[0]&&o[1]===n[1]&&i.length===o[0]*o[1]*o[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function dc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[i,{drawn:o,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let m=(Math.floor(h/s)+o[0])*c[1]+h%s+o[1];l[h]=r*Re[Number(a.data[i*(m+1)-1-Number(t.
 trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function xa(a){let e=va(a);return e.
-fault==="other"||e.detail!==e.message?e:new W(e.fault,mc[e.fault],e.message)}var ar=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
+fault==="other"||e.detail!==e.message?e:new W(e.fault,hc[e.fault],e.message)}var ar=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
 r.url,t),this.store=new nr(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=xa(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
-file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(uc.every(n=>t?.[n]===
+file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(mc.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
 ion: export the page again.`;throw new W("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],i=z(s);return this.
 loaded(r,async o=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(i):
@@ -1160,7 +1159,7 @@ e/${i}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEvent
 try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),xa(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),i=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},o=await i(0),[c,l]=hr(o),h=c.reduce((f,{bytes:d})=>f+d,l);if(!xe(
-h,lc))throw new Error(`a file of ${s.path} has a wrong size`);let m=new Uint8Array(Math.ceil(h/o.length)*o.length);m.set(
+h,cc))throw new Error(`a file of ${s.path} has a wrong size`);let m=new Uint8Array(Math.ceil(h/o.length)*o.length);m.set(
 o);for(let f=1;f*o.length<h;f+=1)m.set(await i(f),f*o.length);let u=new Map;for(let f of Xr(m.buffer)){let[d,g]=ue(f.name)??
 ["",f.name];if(d&&d!==z(t))throw new Error(`in place of tile ${z(t)} is ${d}`);u.set(g,{...f,name:g})}if(new TextDecoder().
 decode(u.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} belongs to another flow`);return u.delete(
@@ -1169,21 +1168,21 @@ decode(u.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} 
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),i={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${z(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:i,pace:o}=this.header.
-slices;return dc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
+slices;return fc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(i=>{let[o,c]=i.name.split("\
 /");if(Number(c)!==n)throw new Error(`in place of step ${n} is ${i.name}`);return{...i,name:`${o}/${t}`}})}async values(e,t,r,n,s,i){
 let o=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,u=(l>1?r:[0]).map(d=>h?`scalars/${d}/${h}`:`scala\
 rs/${d}`),p=c===null?[]:u.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.values()];let f=await Promise.all(p.map(async d=>{
-let g=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...gc(x,
+let g=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...dc(x,
 t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await this.file("values",e,[y,e[1],e[2],h],s)).get(
 `scalars/${y}/${h}`);if(!v)throw new Error(`tile ${z(e)} has no values of step ${y}`);return{...v,name:d}}));Ir(f,t,this.
-header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var bc=4096,yc=4,Ma=32,vc=.25,xc=1e4,Ea=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var gc=4096,bc=4,Ma=32,yc=.25,vc=1e4,Ea=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Ae(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
-ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await wc(n):t;if(this.gl!==e)return;let o=Mc(s[0]),c=new Dt(
+ng"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await xc(n):t;if(this.gl!==e)return;let o=wc(s[0]),c=new Dt(
 o,i.flatMap(([f,d,g])=>f?[]:[[d,g]]),new Map,new Map),l=o.store?new ar(o,n):c,h={header:o,settings:{...o.settings,...o.own,
 ...this.own},player:new mt};this.shownOpacity=r??s[0].opacity;let m=async(f,d)=>{let g=!0,y=new It(f,{...h,source:l,isComing:()=>g});
 d(y);for(let b of c.parts){let v=await c.kept(b);if(y.lifetime.isOver)break;y.setPart(v)}return g=!1,Object.keys(this.colours).
@@ -1207,7 +1206,7 @@ l=e.painter.shown;if(!i||!r||!c||!l)return null;let h=c.point.position,m={scene:
 [u,p]=cs(m,n.get("lonlat"))??[NaN,NaN],{path:f}=ns(m,s,r,e.rows);return{eastward:u,northward:p,values:c.point.values,path:f.
 map(d=>i.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:i}=t.mercator,{pyramid:o,geometry:c}=t.
-header,l=vc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,m,u]=e,p={up:[0,1,0],view_angle:30,position:[h,m,u+l],focal_point:e,
+header,l=yc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,m,u]=e,p={up:[0,1,0],view_angle:30,position:[h,m,u+l],focal_point:e,
 parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Ma,Ma,1),await Sa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
@@ -1216,12 +1215,12 @@ shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:u,getP
 opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.mercator,isRepeated:m.length===1});typeof g=="string"&&g?this.failed(
 "The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,
 ratio:o,text:c}=Aa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
-[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(yc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],
-Math.min(o,o*p,bc/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
+[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(bc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],
+Math.min(o,o*p,gc/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
 scene||!t.every(r=>r.isComplete)?!1:this.look===Aa(e,this.globe).text}};function Aa(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
 fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Sa(a){
-let e=performance.now()+xc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function wc(a){
+let e=performance.now()+vc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function xc(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function Mc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
+json()}function wc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
 graticule:!1}}}}export{Ea as FlowtexLayer};
