@@ -153,7 +153,6 @@ def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
 
 
 def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
-    """Read the nodes of a part of level 0 from the source."""
     lines = part.lines(source.shape)
     valid = None
     if part.step and source.travels:  # others have it in memory

@@ -189,7 +189,6 @@ def _longitude(points: Floats) -> Closure | None:
 
 
 def _repeat_first(a: A, axis: int) -> A:
-    """Append the first line of an axis behind its last."""
     return cast("A", np.concatenate([a, np.take(a, [0], axis=axis)], axis=axis))
 
 

@@ -373,7 +373,6 @@ def known_positions(points: Floats, valid: Bools) -> Bools:
 
 
 def _ghosts(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> tuple[Floats, Floats]:
-    """Return the ghost lines before and after the first axis."""
     if periodic:
         return p[-2] - offset, p[1] + offset
     return _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])

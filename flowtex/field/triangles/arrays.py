@@ -321,7 +321,6 @@ def _straightest(
     counts: Indices,
     result: Indices,
 ) -> None:
-    """Write the neighbours across edges that more than two triangles share."""
     for first, count in zip(starts, counts, strict=True):
         sides = order[first : first + count]
         tips = points[triangles.reshape(-1)[sides]]

@@ -417,7 +417,6 @@ def _drawn(
 
 
 def _at_surface(line: AnyArray, coordinate: xr.DataArray | None) -> int:
-    """Return the number of the level nearest to the surface."""
     values = line.astype(float)
     attrs = {} if coordinate is None else coordinate.attrs
     falls = is_pressure(coordinate) or FROM_THE_TOP.search(str(attrs.get("long_name", "")))

@@ -86,7 +86,6 @@ def find_masks(
 
 
 def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:
-    """Return the mask of a variable; ``None`` for other variables."""
     standard = str(array.attrs.get("standard_name", ""))
     meanings = str(array.attrs.get("flag_meanings", "")).split()
     values = np.atleast_1d(array.attrs.get("flag_values", range(len(meanings)))).tolist()

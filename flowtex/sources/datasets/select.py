@@ -183,7 +183,6 @@ def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[st
 
 
 def _preference(pair: Pair) -> tuple[int, int, bool]:
-    """Return a sort key, least for the most likely pair."""
     return pair.rank, -pair.u.ndim, pair.along != "earth"
 
 

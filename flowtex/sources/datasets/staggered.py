@@ -331,7 +331,6 @@ def _own_places(
 
 
 def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Return the dataset that holds a variable."""
     return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
 
 

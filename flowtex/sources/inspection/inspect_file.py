@@ -64,7 +64,9 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
 
 
 def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
-    head, is_hdf5, suffix = data[:HEAD_BYTES], _is_hdf5(data), path.suffix.lower()
+    import h5py
+
+    head, is_hdf5, suffix = data[:HEAD_BYTES], h5py.is_hdf5(path), path.suffix.lower()
     check_other(path, head)
     if is_hdf5:
         netcdf.check_hdf5(path, whole=whole)
@@ -79,16 +81,6 @@ def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
         vtk_legacy.check_vtk_legacy(data)
     is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
     return tuple(vtk_xml.check_vtk_xml(path, data)) if is_xml else ()
-
-
-def _is_hdf5(data: Data) -> bool:
-    """Return whether HDF5 begins somewhere, perhaps after a block of the user."""
-    at = 0
-    while at < len(data):
-        if data[at : at + len(netcdf.HDF5_MAGIC)] == netcdf.HDF5_MAGIC:
-            return True
-        at = 2 * at or 512
-    return False
 
 
 def check_zarr(folder: Path) -> None:

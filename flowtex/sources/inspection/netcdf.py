@@ -23,7 +23,6 @@ MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
 #: Number of records that the writer did not know.
 STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
-HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
 def check_netcdf(data: Data, *, whole: bool) -> None:

@@ -147,7 +147,6 @@ class _Legacy:
         check_memory(self._total, "the file")
 
     def _section(self, keyword: bytes) -> None:
-        """Check the section of a keyword."""
         match keyword:
             case _ if keyword in CELLS:
                 self._cells(keyword)

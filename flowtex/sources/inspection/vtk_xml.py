@@ -318,9 +318,9 @@ class _Block:
             encoded_head = -(-head // 3) * 4
             if self._sizes or b"=" in self._data[begin : begin + encoded_head]:
                 begin, offset = begin + encoded_head, offset - head
-        first, stop = offset // 3 * 4, -(-(offset + count) // 3) * 4
+        stop = begin + -(-(offset + count) // 3) * 4
         try:
-            return base64.b64decode(self._data[begin + first : begin + stop])[offset % 3 :][:count]
+            return base64.b64decode(self._data[begin:stop])[offset : offset + count]
         except binascii.Error:
             return b""
 

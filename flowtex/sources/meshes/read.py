@@ -253,7 +253,6 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
 
 
 def _is_flat(points: Floats) -> bool:
-    """Return whether points lie in a plane."""
     if len(points) < 3:
         return False
     variances = np.linalg.eigvalsh(np.cov(points.T))

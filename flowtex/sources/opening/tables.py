@@ -352,7 +352,6 @@ def split_components(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _axis(array: xr.DataArray) -> str | None:
-    """Return the dimension of the components."""
     if array.dtype.kind != "f" or array.ndim < 2 or BOUNDS.search(str(array.name)):
         return None
     for dim in (str(d) for d in array.dims if array.sizes[d] in (2, 3)):

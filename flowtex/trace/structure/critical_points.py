@@ -259,7 +259,6 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
 
 
 def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
-    """Find the critical points of a formula."""
     found = zeros(rates)
     if found.lines:
         notify(f"{field.name}: the velocity is zero along lines; points there are not marked")
@@ -282,7 +281,6 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
 
 
 def _on_grid(field: FlowField) -> list[CriticalPoint]:
-    """Find the critical points of one step on a structured surface."""
     u, valid = field.index_velocity.components[0], field.valid
     rows, columns = field.shape
     speed = field.index_velocity.speed[0]
@@ -350,7 +348,6 @@ def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
 
 
 def _on_triangles(field: FlowField) -> list[CriticalPoint]:
-    """Find the critical points of one step on a surface of triangles."""
     surface = field.surface
     assert isinstance(surface, TriangleSurface)
     normals, points = surface.normals[0], field.points[0]
@@ -546,7 +543,6 @@ def _ring_index(field: FlowField, point: CriticalPoint) -> int:
 
 
 def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
-    """Return the points of one step with their strengths."""
     columns = field.shape[1]
     nodes = [int(j * columns + i) for j, i in (field.surface.node_near(p.index) for p in points)]
     signs = np.array([point.poincare_index for point in points], dtype=np.intp)

@@ -277,7 +277,6 @@ def _split(lonlat: Floats) -> dict[str, Any]:
 
 
 def _cell(field: FlowField, point: CriticalPoint) -> float:
-    """Return the size of a cell at a point."""
     j, i = field.surface.node_near(point.index)
     return float(field.surface.cell_size[j, i])
 
