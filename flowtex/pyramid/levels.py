@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.arrays import even_runs, norm
+from flowtex._util.arrays import norm
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
@@ -39,6 +39,7 @@ from flowtex.pyramid.layout import (
 )
 from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.rendering.webgl.protocol import file_infos
+from flowtex.sources.datasets.axes import as_slice
 from flowtex.textures.tiles.pyramid import TileKey, level_shape
 from flowtex.textures.tiles.shared import ends_of
 
@@ -54,8 +55,6 @@ FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_
 LOOK_INTERVAL_S = 0.1
 #: Most characters of an error of another library that a message repeats.
 MOST_LETTERS = 300
-#: Blocks that are read one after the other; more of them are read as single lines.
-MOST_RUNS = 9
 #: Bytes of a number at most, of a velocity, and of steps that are held; those of a longer series
 #: are read late.
 NUMBER_BYTES, NODE_BYTES, KEPT_BYTES = 8, 24, 64_000_000
@@ -293,7 +292,8 @@ class Levels:
             array = await self._opened(piece.array, expected)
             if piece.lines is None:
                 return np.asarray(await array.getitem(piece.selection))
-            values = await _lines(array, piece.selection, *piece.lines)
+            lines = map(as_slice, piece.lines)
+            values = np.asarray(await array.oindex.getitem((*piece.selection, *lines)))
             # Fields are float64, as all values computed from them.
             return values.astype(float) if values.dtype == np.float32 else values
         except PyramidError:
@@ -334,19 +334,6 @@ def _size(piece: _Piece, expected: dict[str, Any]) -> int:
         spans = (len(range(n)[index]) for index, n in pairs if isinstance(index, slice))
         shape = (*spans, *shape[len(selection) :])
     return int(math.prod(shape)) * NUMBER_BYTES
-
-
-async def _lines(
-    array: AsyncArray[ArrayV3Metadata], leading: Index, rows: Indices, columns: Indices
-) -> AnyArray:
-    """Read some rows and columns of an array over the nodes, as blocks where these are few."""
-    runs = [list(even_runs(lines)) for lines in (rows, columns)]
-    if len(runs[0]) * len(runs[1]) > MOST_RUNS:
-        return np.asarray(await array.oindex.getitem((*leading, rows, columns)))
-    blocks = [array.getitem((*leading, j, i)) for j in runs[0] for i in runs[1]]
-    read = iter(map(np.asarray, await asyncio.gather(*blocks)))
-    bands = [[next(read) for _ in runs[1]] for _ in runs[0]]
-    return np.concatenate([np.concatenate(band, axis=1) for band in bands])
 
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:

@@ -7,7 +7,6 @@ PyVista's readers open most files; PLOT3D, which does not describe itself, is re
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -303,9 +302,9 @@ def _files(path: Path, depth: int) -> Iterator[Path]:
     yield path
     suffix = path.suffix.lower()
     if path.is_dir():
-        yield from _below(path)
+        yield from sorted(other for other in path.rglob("*") if other.is_file())
     elif suffix == ".foam":
-        yield from _below(path.parent)
+        yield from sorted(other for other in path.parent.rglob("*") if other.is_file())
     elif suffix == ".case":
         yield from sorted(other for other in path.parent.iterdir() if other.is_file())
     elif suffix in WITH_OTHERS and path.parent.is_dir():
@@ -313,12 +312,6 @@ def _files(path: Path, depth: int) -> Iterator[Path]:
     elif depth < LIST_DEPTH:
         for member in members_of(path):
             yield from _files(member, depth + 1)
-
-
-def _below(folder: Path) -> Iterator[Path]:
-    for path, folders, names in os.walk(folder):
-        folders.sort()
-        yield from (Path(path, name) for name in sorted(names))
 
 
 def _state(path: Path) -> tuple[str, int, int, int]:

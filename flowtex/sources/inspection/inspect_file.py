@@ -64,9 +64,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
 
 
 def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
-    import h5py
-
-    head, is_hdf5, suffix = data[:HEAD_BYTES], h5py.is_hdf5(path), path.suffix.lower()
+    head, is_hdf5, suffix = data[:HEAD_BYTES], netcdf.is_hdf5(path), path.suffix.lower()
     check_other(path, head)
     if is_hdf5:
         netcdf.check_hdf5(path, whole=whole)

@@ -130,6 +130,13 @@ class _Header:
         return self._data[self._at - count : self._at]
 
 
+def is_hdf5(path: Path) -> bool:
+    """Return whether HDF5 begins somewhere in a file, perhaps after a block of the user."""
+    import h5py
+
+    return bool(h5py.is_hdf5(path))
+
+
 def check_hdf5(path: Path, *, whole: bool) -> None:
     """Raise a FieldError for a file that links to others, is cut, or does not fit into memory."""
     import h5py
