@@ -13,8 +13,10 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkHardwareSelector
 
 import flowtex.plotting.component  # noqa: F401 plotter.flowtex
+from flowtex import FlowField
 from flowtex._util.array_types import Bytes
 from flowtex.rendering.vtk import layer
+from flowtex.textures.tiles.pyramid import Pyramid
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
@@ -220,3 +222,22 @@ def test_selection_finds_the_surface() -> None:
         selector.SetRenderer(plotter.renderer)
         selector.SetArea(0, 0, SIZE[0] - 1, SIZE[1] - 1)
         assert selector.Select().GetNumberOfNodes() == 1
+
+
+def test_hidden_blocks_are_left_out_but_not_where_the_root_has_no_cells(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
+    x, y = np.meshgrid(np.arange(257.0), np.arange(193.0))
+    velocity = np.stack([1 + 0 * x, 0.5 + 0 * x], axis=-1)
+    velocity[100:120, 200:215] = np.nan
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
+    pyramid = Pyramid(field)
+    assert pyramid.depth >= 1 and pyramid.blocks == (3, 4)
+    expected = np.zeros((3, 4), dtype=bool)
+    expected[1, 3] = True  # of the hole
+    assert (pyramid.visible_blocks(np.empty((0, 4), np.float32)) == expected).all()
+    geometry = pyramid.root_geometry
+    seen = geometry.coordinate[geometry.shape[0] - 3, 2]
+    expected[2, 0] = True
+    assert (pyramid.visible_blocks(np.array([[*seen, 0, 1]], np.float32)) == expected).all()

@@ -148,11 +148,17 @@ class Pyramid:
         and one more.
         """
         geometry = self.root_geometry
+        assert isinstance(geometry, SurfaceGeometry)
         size, before = np.array(geometry.size[::-1]), geometry.padding[::-1]
         cell = (places[:, :2] * size - 0.5 - before) * (1 << self.depth) // BLOCK_CELLS
         column, row = np.clip(cell.astype(int), 0, np.array(self.blocks[::-1]) - 1).T
         visible = np.zeros(self.blocks, dtype=bool)
         visible[row, column] = True
+        # Where the root has no cells, as along a coast, finer levels may have some.
+        ends = [((np.argwhere(~geometry.cells) + n << self.depth) - n) for n in (0, 1)]
+        first, last = (np.minimum(end // BLOCK_CELLS, np.array(self.blocks) - 1) for end in ends)
+        for j, i in np.ndindex(*(np.max(last - first, axis=0, initial=0) + 1)):
+            visible[tuple(np.minimum(first + np.array([j, i]), last).T)] = True
         return visible
 
     def places(self, level: int) -> Floats:

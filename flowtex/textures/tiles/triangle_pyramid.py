@@ -93,9 +93,13 @@ class TrianglePyramid(Pyramid):
         triangles = geometry.triangles[np.unique(places[:, 2].astype(np.intp))]
         corners = geometry.points[0][triangles]
         points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
-        parts = self._boxes.members(points, points, self._steps(0))
+        seen = self._boxes.members(points, points, self._steps(0))
+        ends = corner_ends(geometry.points[0], geometry.triangles)
+        whole = self._boxes.members(*ends, self._steps(0))
+        # Where the root has no triangles, finer levels may have some.
+        parts = [len(part) > 0 or not len(all_) for part, all_ in zip(seen, whole, strict=True)]
         visible = np.zeros(self.blocks, dtype=bool)
-        visible[self._boxes.places(self._steps(0))] = [len(part) > 0 for part in parts]
+        visible[self._boxes.places(self._steps(0))] = parts
         return visible
 
     def children(self, key: TileKey | None) -> list[TileKey]:
