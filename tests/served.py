@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -173,7 +172,7 @@ class Link:
     async def _acknowledge(self, message: dict[str, Any]) -> None:
         if "trame.rca.topic.stream" in message["id"] and not self.socket.closed:
             frame = message["result"]
-            shown = {"number": frame["meta"]["number"], "seconds": time.perf_counter()}
+            shown = {"number": frame["meta"]["number"], "seconds": 0.0}
             await self._send("trame.rca.event", [frame["name"], "link", shown])
 
     def _take(self, message: dict[str, Any]) -> None:

@@ -126,16 +126,20 @@ def picture(mesh: Any, change: Callable[[Any, Any], None] | None, **options: Any
         return np.asarray(plotter.screenshot(return_img=True))
 
 
-def in_fragments(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keep the sum in the fragments of the mesh."""
-    monkeypatch.setattr(layer, "is_deferred", lambda *_: False)
-
-
 def assert_alike(one: Bytes, other: Bytes, least: int = 2) -> None:
     """Fail unless only some pixels at outlines differ, by more than rounding or at ``least``."""
     change = np.abs(one.astype(int) - other).max(axis=-1)
     assert (change > least).mean() < MOST_OTHERS
     assert one.std() > 20, "nothing is drawn"
+
+
+def assert_same_in_fragments(
+    draw: Callable[[], Bytes], monkeypatch: pytest.MonkeyPatch, least: int = 2
+) -> None:
+    """Fail unless sums in the fragments of the mesh give the picture that passes give."""
+    drawn = draw()
+    monkeypatch.setattr(layer, "is_deferred", lambda *_: False)
+    assert_alike(drawn, draw(), least)
 
 
 @pytest.mark.parametrize("make", [saddle, ball])
@@ -154,11 +158,15 @@ def test_passes_draw_what_fragments_do(
         return deferred[-1]
 
     monkeypatch.setattr(layer, "is_deferred", decided)
-    drawn = picture(mesh, change)
-    assert deferred[-1] == (change not in FORWARD)
-    in_fragments(monkeypatch)
+
+    def draw() -> Bytes:
+        drawn = picture(mesh, change)
+        assert not deferred or deferred[-1] == (change not in FORWARD)
+        return drawn
+
     # Samples beside the middle of a pixel belong to triangles that do not cover it.
-    assert_alike(drawn, picture(mesh, change), 16 if change is sample else 2)
+    assert_same_in_fragments(draw, monkeypatch, 16 if change is sample else 2)
+    assert deferred
 
 
 def test_renderers_of_a_window_and_linked_views_have_their_own(
@@ -176,9 +184,7 @@ def test_renderers_of_a_window_and_linked_views_have_their_own(
             plotter.camera.zoom(4)
             return np.asarray(plotter.screenshot(return_img=True))
 
-    drawn = draw()
-    in_fragments(monkeypatch)
-    assert_alike(drawn, draw())
+    assert_same_in_fragments(draw, monkeypatch)
 
 
 def test_flows_of_one_renderer_hide_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,9 +200,7 @@ def test_flows_of_one_renderer_hide_each_other(monkeypatch: pytest.MonkeyPatch) 
             handle.remove()
             return np.asarray(plotter.screenshot(return_img=True))
 
-    drawn = draw()
-    in_fragments(monkeypatch)
-    assert_alike(drawn, draw())
+    assert_same_in_fragments(draw, monkeypatch)
 
 
 def test_large_picture_is_drawn_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,9 +212,7 @@ def test_large_picture_is_drawn_part_by_part(monkeypatch: pytest.MonkeyPatch) ->
             plotter.camera_position = "iso"
             return np.asarray(plotter.screenshot(return_img=True, scale=2))
 
-    drawn = draw()
-    in_fragments(monkeypatch)
-    assert_alike(drawn, draw())
+    assert_same_in_fragments(draw, monkeypatch)
 
 
 def test_selection_finds_the_surface() -> None:
