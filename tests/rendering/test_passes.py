@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkHardwareSelector
 import flowtex.plotting.component  # noqa: F401 plotter.flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
-from flowtex.rendering.vtk import layer
+from flowtex.rendering.vtk import layer, passes
 from flowtex.textures.tiles.pyramid import Pyramid
 
 pytestmark = [
@@ -201,6 +201,34 @@ def test_flows_of_one_renderer_hide_each_other(monkeypatch: pytest.MonkeyPatch) 
             return np.asarray(plotter.screenshot(return_img=True))
 
     assert_same_in_fragments(draw, monkeypatch)
+
+
+def test_flow_that_is_hidden_for_a_while_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+    begin = passes._Rectangle.__init__
+
+    def count(rectangle: Any, name: str, variant: frozenset[str]) -> None:
+        made.append(name)
+        begin(rectangle, name, variant)
+
+    monkeypatch.setattr(passes._Rectangle, "__init__", count)
+    plotter: Any = pv.Plotter(off_screen=True, window_size=SIZE)
+    with closing(plotter):
+        plotter.disable_anti_aliasing()
+        handles = [
+            plotter.flowtex.add(mesh, show_scalar_bar=False, samples=5)
+            for mesh in (saddle(), ball())
+        ]
+        pictures = []
+        for hidden in (None, 0, 1, 0, None):
+            for number, handle in enumerate(handles):
+                handle.actor.SetVisibility(number != hidden)
+            pictures.append(np.asarray(plotter.screenshot(return_img=True)))
+        assert made.count("sum") == 2
+        np.testing.assert_array_equal(pictures[0], pictures[4])
+        np.testing.assert_array_equal(pictures[1], pictures[3])
+        handles[0].remove()
+        assert len(passes.DeferredPasses.of(plotter.renderer)._parts) == 1
 
 
 def test_large_picture_is_drawn_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:

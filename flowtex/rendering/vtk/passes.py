@@ -57,8 +57,12 @@ class DeferredPasses:
 
     def __init__(self, renderer: pv.Renderer) -> None:
         self._renderer = weakref.ref(renderer)
-        self._shown: dict[int, list[FlowLayer]] = {}
-        self._parts: weakref.WeakKeyDictionary[FlowLayer, _Part] = weakref.WeakKeyDictionary()
+        #: Layers by their owners, of which some are hidden.
+        self._shown: weakref.WeakKeyDictionary[object, list[FlowLayer]] = (
+            weakref.WeakKeyDictionary()
+        )
+        self._hidden: weakref.WeakSet[object] = weakref.WeakSet()
+        self._parts: dict[FlowLayer, _Part] = {}
         self._places = vtkRenderer()
         self._places.AutomaticLightCreationOff()
         self._alone: tuple[weakref.ref[FlowLayer], _Part, vtkRenderer] | None = None
@@ -73,16 +77,22 @@ class DeferredPasses:
 
     def show(self, owner: object, layers: list[FlowLayer]) -> None:
         """Draw these layers of an owner in the next frames, of those that are deferred."""
-        self._shown[id(owner)] = layers
+        self._hidden.discard(owner)
+        self._shown[owner] = layers
+
+    def hide(self, owner: object) -> None:
+        """Draw nothing of an owner in the next frames."""
+        self._hidden.add(owner)
 
     def remove(self, owner: object) -> None:
-        """Draw nothing of an owner any more."""
-        self._shown.pop(id(owner), None)
+        """Draw nothing of an owner any more, and free what was needed for it."""
+        self._shown.pop(owner, None)
         self._follow([])
 
     def _draw(self) -> None:
         renderer = self._renderer()
-        layers = [layer for shown in self._shown.values() for layer in shown if layer.deferred]
+        owners = [owner for owner in self._shown if owner not in self._hidden]
+        layers = [layer for owner in owners for layer in self._shown[owner] if layer.deferred]
         if renderer is None or not layers:
             return
         self._follow(layers)
@@ -153,8 +163,10 @@ class DeferredPasses:
         return buffers
 
     def _follow(self, layers: list[FlowLayer]) -> None:
-        for layer in [*self._parts]:
-            if layer not in layers:
+        known = {layer for shown in self._shown.values() for layer in shown}
+        for layer, part in [*self._parts.items()]:
+            part.actor.SetVisibility(layer in layers)
+            if layer not in known:
                 self._places.RemoveActor(self._parts.pop(layer).actor)
         for number, layer in enumerate(layers):
             if layer not in self._parts:

@@ -190,7 +190,7 @@ class FlowSurface:
         renderer = self._renderer()
         if renderer is None or not self._actor.GetVisibility():
             self._show([])
-            self._passes.remove(self)
+            self._passes.hide(self)
             return
         self._base.look()
         view = self._tile_view(renderer)
