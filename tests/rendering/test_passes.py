@@ -198,6 +198,7 @@ def test_flows_of_one_renderer_hide_each_other(monkeypatch: pytest.MonkeyPatch) 
             plotter.camera_position = "iso"
             plotter.screenshot(return_img=True)
             handle.remove()
+            plotter.render()
             return np.asarray(plotter.screenshot(return_img=True))
 
     assert_same_in_fragments(draw, monkeypatch)
@@ -223,10 +224,12 @@ def test_flow_that_is_hidden_for_a_while_is_prepared_once(monkeypatch: pytest.Mo
         for hidden in (None, 0, 1, 0, None):
             for number, handle in enumerate(handles):
                 handle.actor.SetVisibility(number != hidden)
+            plotter.render()
             pictures.append(np.asarray(plotter.screenshot(return_img=True)))
         assert made.count("sum") == 2
         np.testing.assert_array_equal(pictures[0], pictures[4])
         np.testing.assert_array_equal(pictures[1], pictures[3])
+        assert (pictures[1] != pictures[0]).mean() > 0.02
         handles[0].remove()
         assert len(passes.DeferredPasses.of(plotter.renderer)._parts) == 1
 
