@@ -20,15 +20,32 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import waiting
-from test_layers import PACKAGE, VTK, is_in, module_name
 
 OWN = Path(__file__)
 TESTS = OWN.parent
+PACKAGE = TESTS.parent / "flowtex"
 WANTED = bool(os.environ.get("FLOWTEX_BARRED"))
-ROOMS = (*VTK.on_load, *(set(VTK.in_functions) - {"_util.colours"}), "cli", "pyramid")
-NAMES = (*VTK.names, "zarr")
+VTK = ("vtk", "vtkmodules", "pyvista")
+NAMES = (*VTK, "zarr")
+#: Modules that import VTK or PyVista when they load, and all that use what is barred.
+LOAD_VTK = ("rendering.vtk", "plotting", "app")
+ROOMS = (
+    *(*LOAD_VTK, "cli", "examples", "pyramid", "rendering.diagnostics", "sources"),
+    "trace.structure",
+)
 #: What asks for them for these rooms.
 HELPERS = ("", "_util.child", "_util.extras")
+
+
+def module_name(path: Path) -> str:
+    """Return ``rendering.vtk.actor`` for ``flowtex/rendering/vtk/actor.py``, "" for the package."""
+    parts = path.relative_to(PACKAGE).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def is_in(name: str, rooms: tuple[str, ...]) -> bool:
+    """Return whether a module is one of the rooms, or inside one."""
+    return any(name == room or name.startswith(f"{room}.") for room in rooms)
 
 
 class BarredThreadError(RuntimeError):
@@ -85,7 +102,7 @@ def asker_of(error: BaseException | None) -> str:
         if missing or isinstance(error, BarredThreadError | BarredProcessError):
             files = (Path(frame.filename) for frame in reversed(frames))
             asking = next((file for file in files if _asks(file)), OWN)
-            allowed = PACKAGE not in asking.parents or is_in(module_name(asking, PACKAGE), ROOMS)
+            allowed = PACKAGE not in asking.parents or is_in(module_name(asking), ROOMS)
             return asking.name if allowed else ""
         error = error.__cause__ or error.__context__
     return ""
@@ -94,5 +111,5 @@ def asker_of(error: BaseException | None) -> str:
 def _asks(file: Path) -> bool:
     """Whether a file is one of the package or of the tests, and no helper."""
     if PACKAGE in file.parents:
-        return not is_in(module_name(file, PACKAGE), HELPERS)
+        return not is_in(module_name(file), HELPERS)
     return TESTS in file.parents and file != OWN
