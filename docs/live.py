@@ -37,10 +37,11 @@ from sphinx.util.docutils import SphinxDirective
 
 import flowtex
 from flowtex.field import FlowField
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
 from flowtex.plotting.vtk_camera import point_camera
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
-from flowtex.scene.signatures import accepts_options
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.web.export import page_text
 from flowtex.web.view import WebView, asset, client_script, web_views
 
@@ -72,7 +73,7 @@ class View:
 
     def __init__(self, mesh: Any, options: dict[str, Any], steps: int | None) -> None:
         arguments = Options.split(**options)
-        self.mesh: FlowField = arguments.field.field(mesh)
+        self.mesh: FlowField = read_field(mesh, arguments.field)
         self.look = {k: v for k, v in options.items() if k not in vars(arguments.field)}
         self.views = _fitting(self.mesh, Options.split(**self.look), steps)
         view = arguments.view

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.arguments import checked_size, sized
 from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
-from flowtex.scene.signatures import accepts_options
+from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget
@@ -119,7 +120,7 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
         raise FieldError(
             "two views need a window, but there is no display; use flowtex.render to draw both"
         )
-    field = Options.split(mesh=mesh, **options).field.field(mesh)
+    field = read_field(mesh, Options.split(mesh=mesh, **options).field)
     from flowtex.app import serve
 
     serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})

@@ -17,7 +17,9 @@ from flowtex._util.notices import Notice
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import terminal
 from flowtex.cli.options import UsageError, arguments, flag_names
-from flowtex.scene.options import FieldOptions, Options
+from flowtex.field.options import FieldOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Options
 from flowtex.textures.images import load_image
 
 if TYPE_CHECKING:
@@ -97,7 +99,7 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     options, mesh = dict(choice), files[0] if len(files) == 1 else files
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"), notices():
-        return FieldOptions(**options).field(mesh, time)
+        return read_field(mesh, FieldOptions(**options), time)
 
 
 @contextmanager

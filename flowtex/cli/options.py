@@ -1,6 +1,6 @@
 """Flags of the command line: of the file, the picture, the page, and the settings.
 
-Most are made from the option classes of :mod:`flowtex.scene.options` and from
+Most are made from option classes such as :class:`flowtex.scene.options.Appearance` and from
 :data:`flowtex.settings.TABLE`; this module adds those of the shell only.
 """
 
@@ -17,7 +17,9 @@ from cyclopts.validators import Number
 
 from flowtex._util.written import Form, UnreadableError, number_or_text
 from flowtex.errors import FieldError
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
+from flowtex.field.options import FieldOptions
+from flowtex.scene.forms import FORMS
+from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.settings import TABLE, Setting
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
@@ -43,8 +45,7 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
     """Return a flag for each field of an option class that can be written as text."""
     flags = {}
     for option in fields(kind):
-        form: Form | None = option.metadata["form"]
-        if form is None:
+        if (form := FORMS.get(option.name)) is None:
             continue
         of_python = {"bool": bool, "bool | None": bool, "float": float}.get(str(option.type), str)
         value: Any = tuple[str, ...] if form.repeated else of_python
@@ -192,9 +193,7 @@ class ServeFlags(AddressFlags):
 
 def arguments(*groups: object) -> dict[str, Any]:
     """Return the flags that were set, as arguments of Python functions."""
-    options = (f for kind in (FieldOptions, Appearance, ViewOptions) for f in fields(kind))
-    forms = {option.name: option.metadata["form"] for option in options}
-    forms["time"] = Form(read=number_or_text)
+    forms = {**FORMS, "time": Form(read=number_or_text)}
     forms |= {row.name: Form(read=row.parse) for row in TABLE.values() if row.switch is not None}
     values = {name: value for group in groups if group for name, value in vars(group).items()}
     values = {name: value for name, value in values.items() if value not in (None, ())}

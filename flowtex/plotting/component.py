@@ -18,13 +18,13 @@ from flowtex._util.array_types import Bytes, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import point_camera
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
-from flowtex.scene.options import Appearance, FieldOptions, Options
+from flowtex.scene.options import Appearance, Options
 from flowtex.scene.scene import Scene
-from flowtex.scene.signatures import accepts_options
 from flowtex.textures.images import as_image
 
 #: Name of the colours among the arrays of a mesh.

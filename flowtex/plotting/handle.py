@@ -12,15 +12,16 @@ import pyvista as pv
 from flowtex._util.arguments import checked_number
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import Ends
-from flowtex.scene.options import Appearance, FieldOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, AppearanceAttributes
 from flowtex.scene.scene import Change, Scene, share_field
-from flowtex.scene.signatures import AppearanceAttributes
 from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
@@ -224,7 +225,7 @@ class FlowHandle(AppearanceAttributes):
             nothing is changed then.
         """
         reading = FieldOptions(**options)
-        self.show_scene(self.scene.showing(share_field(reading.field(mesh))))
+        self.show_scene(self.scene.showing(share_field(read_field(mesh, reading))))
         self.follow_mesh(mesh, reading)
 
     def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
@@ -237,7 +238,7 @@ class FlowHandle(AppearanceAttributes):
             return
         (mesh, reading), self._state = self._source, state
         try:
-            field = share_field(reading.field(mesh))
+            field = share_field(read_field(mesh, reading))
             if field is not self.scene.field:
                 self.show_scene(self.scene.showing(field), render=False)
         except FieldError as error:

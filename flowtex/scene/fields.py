@@ -1,16 +1,27 @@
-"""Fields that scenes share: equal ones, and those with a further scalar."""
+"""Fields of scenes: read from what is drawn, with a further scalar, and shared by equal ones."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from flowtex._util.cache import WeakCache, digest
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import DERIVED, with_vector_scalar
+from flowtex.field.options import OF_EARTH, OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
+from flowtex.field.uncertainty import nodal_steps, with_uncertainty
+from flowtex.sources.datasets import is_dataset
+from flowtex.sources.datasets.select import two_names
+from flowtex.sources.meshes.vectors import with_array
 from flowtex.textures.tiles.shared import has_pyramid
+
+#: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
+DATA, ARRAY = "Data", "_array"
 
 _fields: WeakCache[FlowField] = WeakCache()
 #: Attributes that are compared as texts, or not at all.
@@ -46,3 +57,65 @@ def share_field(field: FlowField) -> FlowField:
             # Lazy steps are identified by their object, which a field keeps alive.
             words += [name, key, id(part) if isinstance(part, LazySteps) else is_array or part]
     return _fields.get(digest(*arrays, words=words), lambda: field)
+
+
+def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None) -> FlowField:
+    """Return the field of a mesh or of a file (at one time), or a field unchanged."""
+    array, uncertainty = getattr(options, ARRAY, None), options.uncertainty
+    if array is not None and hasattr(mesh, "point_data"):
+        mesh, array = with_array(mesh, DATA, array), None
+    field = _read(mesh, options, time)
+    if array is not None:
+        steps = nodal_steps(field, array, "scalars", "the name of an array, or ")
+        field = field.same_flow(scalars={**field.scalars, DATA: steps})
+    # Datasets and files are averaged where they are read.
+    is_done = uncertainty is None or bool(field.uncertainty and field is not mesh)
+    return field if is_done else with_uncertainty(field, uncertainty)
+
+
+def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowField:
+    if (stored := _stored(mesh, options, time)) is not None:
+        return stored
+    choices = options.given
+    if is_dataset(mesh):
+        return FlowField.from_xarray(mesh, **_of_dataset(options))
+    meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
+    if all(isinstance(item, (str, Path)) for item in meshes):
+        if "times" in choices:
+            raise FieldError(f"times is given, but {str(mesh)!r} already has times; omit it")
+        return FlowField.from_file(mesh, time=time, **choices)
+    choices.pop("uncertainty", None)
+    if not isinstance(mesh, FlowField):
+        options.refuse(OF_EARTH, "datasets, but this is a mesh")
+        return FlowField.from_pyvista(mesh, **choices)
+    if choices:
+        raise FieldError(
+            f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
+            "set it when you make the field"
+        )
+    return mesh
+
+
+def _stored(place: Any, options: FieldOptions, time: float | str | None) -> FlowField | None:
+    """Return the field of a pyramid in a store, where there is one."""
+    if not isinstance(place, (str, Path)) or Path(place).is_file():
+        return None  # before anything is loaded
+    from flowtex.pyramid import is_store, open_store
+    from flowtex.pyramid.source import has_parts
+
+    if not has_parts(place):
+        return None
+    if is_store(place):
+        names = [name for name in options.given if name != "uncertainty"]
+        if names := names if time is None else [*names, "time"]:
+            raise FieldError(f"{', '.join(names)} applies to the source of a pyramid; omit it")
+    choices = _of_dataset(options)
+    if time is not None:
+        choices["sel"] = {**choices.get("sel", {}), "time": time}
+    return open_store(place, **choices)
+
+
+def _of_dataset(options: FieldOptions) -> dict[str, Any]:
+    options.refuse(OF_MESHES, "meshes, but this is a dataset")
+    choices = options.given
+    return {**two_names(choices.pop("vectors", None)), **choices}

@@ -2,24 +2,29 @@
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
 :func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
-three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view.
-Others are settings. :mod:`flowtex.scene.signatures` puts the names, defaults and texts of the
-fields into signatures and docstrings.
+three frozen classes: the part of a mesh to draw (:class:`~flowtex.field.options.FieldOptions`), the
+appearance of the surface, and the view. Others are settings.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import brief, checked_count, closest, elsewhere, is_number
+from flowtex._util.arguments import (
+    brief,
+    checked_count,
+    closest,
+    elsewhere,
+    is_number,
+    near_names,
+)
 from flowtex._util.colours import (
     DEFAULT_CMAP,
     NORM_ENTRIES,
@@ -29,27 +34,15 @@ from flowtex._util.colours import (
     rgb,
 )
 from flowtex._util.notices import notify
-from flowtex._util.written import (
-    NUMBER,
-    PLAIN,
-    SWITCH,
-    Form,
-    UnreadableError,
-    named_texts,
-    number_or_text,
-    numbers,
-    or_none,
-)
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived import COMPONENTS, SIGNED, component_name
-from flowtex.field.uncertainty import nodal_steps, with_uncertainty
+from flowtex.field.options import FieldOptions, option
 from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
-from flowtex.settings import TABLE, Settings, SettingsError, setting
+from flowtex.scene.fields import ARRAY, DATA
+from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.datasets.select import two_names
-from flowtex.sources.meshes.vectors import with_array
 
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies
@@ -63,203 +56,12 @@ LAND_COLOR = "#8f8b82"
 #: Axes of a view in a browser: coordinates, a scale bar, or none.
 AXES = ("ticks", "scale", "none")
 
-#: Arguments for data of the Earth only, and for meshes only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
-OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-#: Values of ``n_colors``, and the form of a whole number or a name.
+#: Values of ``n_colors``.
 COUNT = f"a whole number from 1 to {NORM_ENTRIES:,}"
-WHOLE = Form(read=lambda text: int(text) if text.isdecimal() else text)
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
-#: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
-DATA, ARRAY = "Data", "_array"
-
-
-def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
-    """Return a field with its explanation; ``form`` writes it in a shell or a link."""
-    return field(default=default, metadata={"text": text, "form": form})
-
-
-def _read_ends(text: str) -> str | tuple[float, ...]:
-    if text == ROBUST:
-        return ROBUST
-    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
-    if not low < high:
-        raise UnreadableError("two numbers, the lower one first")
-    return low, high
-
-
-def _read_differences(words: Sequence[str]) -> dict[str, Any]:
-    """Read words such as ``lod=false`` as settings and as fields of :class:`Appearance`."""
-    expected = "name=value, such as --beside lod=false"
-    texts = named_texts(str, expected)(words)
-    values: dict[str, Any] = {}
-    for name, text in texts.items():
-        key = name.strip().replace("-", "_")
-        if (row := Appearance.__dataclass_fields__.get(key)) is not None:
-            values[key] = row.metadata["form"].read(text)
-        else:
-            values[key] = setting(key).parse(text)
-    return values
-
-
-@dataclass(frozen=True, kw_only=True)
-class FieldOptions:
-    """The part of a mesh to draw; the names are those of :meth:`FlowField.from_pyvista`."""
-
-    vectors: str | None = _option(
-        None,
-        "Name of the velocity, or of its two or three components separated by commas, such as "
-        "``u,v,w``; not needed if there is only one candidate.",
-    )
-    u: str | None = _option(None, "Name of the first component; use it instead of ``vectors``.")
-    v: str | None = _option(None, "Name of the second component.")
-    w: str | None = _option(None, "Name of the third component; for meshes only.")
-    plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
-    slice: Any | None = _option(
-        None,
-        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through '
-        '0,0,2"``; by default the point is the middle.',
-    )
-    contour: Any | None = _option(
-        None, 'Isosurface of a volume, where an array has the given value: ``"pressure=101325"``.'
-    )
-    block: int | str | None = _option(
-        None,
-        "Number or path of the block to draw, if there are several.",
-        WHOLE,
-    )
-    times: Sequence[float] | None = _option(
-        None, "Times of a list of meshes; 0, 1, 2, ... by default.", form=None
-    )
-    periodic: str | None = _option(
-        None,
-        'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
-        Form(read=or_none("")),
-    )
-    sign_free: bool | None = _option(None, "Whether v and -v mean the same, as in a field of axes.")
-    preference: str | None = _option(None, 'Of two arrays of a name, ``"point"`` or ``"cell"``.')
-    projection: str | None = _option(
-        None,
-        "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
-        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or a PROJ string; by default one "
-        "that suits the region.",
-    )
-    globe: bool | None = _option(None, "Whether data of the Earth are drawn on a globe.")
-    level: float | str | None = _option(
-        None,
-        "Level of a dataset, such as ``500``; by default the one nearest to the surface.",
-        Form(read=number_or_text),
-    )
-    sel: Mapping[str, Any] | None = _option(
-        None,
-        'Selection along other axes of a dataset, by value: ``{"number": 3}``.',
-        Form(
-            read=named_texts(number_or_text, "an axis and a value, such as number=3"), repeated=True
-        ),
-    )
-    isel: Mapping[str, Any] | None = _option(
-        None,
-        'Like ``sel``, but by zero-based index: ``{"number": 2}``.',
-        Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
-    )
-    mask: str | bool | None = _option(
-        None,
-        "Variable of a dataset that marks where there is data; by default masks of common names, "
-        "quality flags and undeclared fill values count. ``False`` draws all values.",
-        Form(read=lambda text: text if text.lower() not in ("none", "false") else False),
-    )
-    components: str | None = _option(
-        None,
-        'Directions of the components of a dataset: ``"earth"`` (eastward, northward), ``"grid"`` '
-        '(along rows and columns) or ``"plane"`` (along x and y); by default the names decide.',
-    )
-    uncertainty: ArrayLike | None = _option(
-        None,
-        "Directional uncertainty, which shortens and fades streaks: a scalar name or array "
-        "(standard deviation ÷ speed), or an ensemble dimension to average over, such as "
-        '``"number"``.',
-    )
-
-    def __post_init__(self) -> None:
-        """Join the names of components to ``vectors``."""
-        names = [name for name in (self.u, self.v, self.w) if name is not None]
-        if not names:
-            return
-        if self.vectors is not None or self.u is None or self.v is None:
-            given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
-            words = ", ".join(f"{name}={value!r}" for name, value in given.items())
-            raise FieldError(
-                f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
-            )
-        object.__setattr__(self, "vectors", ",".join(names))
-        for name in "uvw":
-            object.__setattr__(self, name, None)
-
-    def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
-        """Return the field of a mesh or of a file (at one time), or a field unchanged."""
-        choices = {name: value for name, value in vars(self).items() if value is not None}
-        uncertainty, array = choices.pop("uncertainty", None), choices.pop(ARRAY, None)
-        if array is not None and hasattr(mesh, "point_data"):
-            mesh, array = with_array(mesh, DATA, array), None
-        field = self._read(mesh, choices, time, uncertainty)
-        if array is not None:
-            steps = nodal_steps(field, array, "scalars", "the name of an array, or ")
-            field = field.same_flow(scalars={**field.scalars, DATA: steps})
-        # Datasets and files are averaged where they are read.
-        is_done = uncertainty is None or bool(field.uncertainty and field is not mesh)
-        return field if is_done else with_uncertainty(field, uncertainty)
-
-    def _read(
-        self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
-    ) -> FlowField:
-        if (stored := self._of_store(mesh, choices, time, uncertainty)) is not None:
-            return stored
-        if is_dataset(mesh):
-            return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
-        meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
-        if all(isinstance(item, (str, Path)) for item in meshes):
-            if "times" in choices:
-                raise FieldError(f"times is given, but {str(mesh)!r} already has times; omit it")
-            return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
-        if not isinstance(mesh, FlowField):
-            self._refuse(choices, OF_EARTH, "datasets, but this is a mesh")
-            return FlowField.from_pyvista(mesh, **choices)
-        if choices:
-            raise FieldError(
-                f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
-                "set it when you make the field"
-            )
-        return mesh
-
-    def _of_store(
-        self, place: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
-    ) -> FlowField | None:
-        """Return the field of a pyramid in a store, where there is one."""
-        if not isinstance(place, (str, Path)) or Path(place).is_file():
-            return None  # before anything is loaded
-        from flowtex.pyramid import is_store, open_store
-        from flowtex.pyramid.source import has_parts
-
-        if not has_parts(place):
-            return None
-        if is_store(place):
-            arguments = choices if time is None else {**choices, "time": time}
-            self._refuse(arguments, tuple(arguments), "the source of a pyramid")
-        if time is not None:
-            choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
-        return open_store(place, uncertainty=uncertainty, **self._of_dataset(choices))
-
-    def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
-        self._refuse(choices, OF_MESHES, "meshes, but this is a dataset")
-        return {**two_names(choices.pop("vectors", None)), **choices}
-
-    @staticmethod
-    def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], scope: str) -> None:
-        if given := [name for name in names if name in choices]:
-            raise FieldError(f"{', '.join(given)} applies to {scope}; omit it")
-
-
+#: Arguments that are true or false.
+SWITCHES = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
 #: Lines of the Earth that are drawn or not.
 EARTH_LINES = ("coastlines", "graticule")
 
@@ -273,29 +75,23 @@ def default_cmap(scalars: Any) -> str:
 class Appearance:
     """How the surface looks under the texture."""
 
-    scalars: str | bool | None = _option(
+    scalars: str | bool | None = option(
         None,
         "Values for the colours: the name of an array, also of vectors for their magnitude, "
         '``"speed"`` (the default: that of the flow along the surface), an array for the points or '
         "cells of a mesh or the nodes of a field, or ``False`` for a plain surface.",
-        Form(read=or_none(value=False)),
     )
-    component: int | str | None = _option(
+    component: int | str | None = option(
         None,
         "Component of the vectors that ``scalars`` names, 0 to 2 or ``x`` to ``z``.",
-        WHOLE,
     )
-    cmap: Any | None = _option(
+    cmap: Any | None = option(
         None,
         "Colour map: a name, a matplotlib map, a PyVista lookup table, or an array (N, 3 or 4), "
         "uint8 or from 0 to 1. By default it is RdBu_r for vorticity, divergence and okubo_weiss, "
         "and viridis for other values.",
-        Form(
-            "Colour map, a matplotlib name; by default RdBu_r for vorticity, divergence and "
-            "okubo_weiss, otherwise viridis."
-        ),
     )
-    clim: Any = _option(
+    clim: Any = option(
         None,
         "Values at the ends of the colour map, low and high, or ``5`` for -5 and 5; by default the "
         "range over all times, and in a slice that of its whole volume. "
@@ -303,65 +99,55 @@ class Appearance:
         '``"robust"`` always leaves them out. If values lie beyond an end, the legend is pointed '
         "there. If the map diverges, such as coolwarm, and the values have both signs, zero is in "
         "the middle.",
-        Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
-    log_scale: bool = _option(
-        default=False, text="Whether colours follow the logarithm, for values above 0.", form=SWITCH
+    log_scale: bool = option(
+        default=False, text="Whether colours follow the logarithm, for values above 0."
     )
-    norm: Any | None = _option(
+    norm: Any | None = option(
         None,
         "Norm from values to colours, in place of ``clim`` and ``log_scale``: a matplotlib "
         '``Normalize``, such as ``PowerNorm(0.5)``, or the name of a scale, such as ``"symlog"``. '
         "Limits that it lacks are those of the values.",
-        Form("Norm from values to colours: the name of a matplotlib scale, such as symlog."),
     )
-    n_colors: int | None = _option(None, "Number of colours of the map; by default 256.", WHOLE)
-    flip_scalars: bool = _option(
-        default=False, text="Whether the colour map is reversed.", form=SWITCH
-    )
-    nan_color: Any = _option(NO_VALUE_COLOR, "Colour where there is flow but no value.")
-    below_color: Any | None = _option(
+    n_colors: int | None = option(None, "Number of colours of the map; by default 256.")
+    flip_scalars: bool = option(default=False, text="Whether the colour map is reversed.")
+    nan_color: Any = option(NO_VALUE_COLOR, "Colour where there is flow but no value.")
+    below_color: Any | None = option(
         None, "Colour of values below the range; by default the first colour of the map."
     )
-    above_color: Any | None = _option(
+    above_color: Any | None = option(
         None, "Colour of values above the range; by default the last colour of the map."
     )
-    color: Any = _option(
-        PLAIN_COLOR, "Colour of a plain surface, in any form that PyVista accepts."
+    color: Any = option(PLAIN_COLOR, "Colour of a plain surface, in any form that PyVista accepts.")
+    opacity: float = option(1.0, "Opacity: 1 is opaque, 0 invisible.")
+    visible: bool = option(default=True, text="Whether the surface is drawn.")
+    lighting: bool | None = option(
+        None, "Whether the surface is lit; by default only curved ones are."
     )
-    opacity: float = _option(1.0, "Opacity: 1 is opaque, 0 invisible.", NUMBER)
-    visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
-    lighting: bool | None = _option(
-        None, "Whether the surface is lit; by default only curved ones are.", SWITCH
-    )
-    show_scalar_bar: bool | None = _option(
+    show_scalar_bar: bool | None = option(
         None,
         "Whether a legend of the colours is shown; by default it is, unless an image covers the "
         "colours.",
-        SWITCH,
     )
-    image: Any | None = _option(
+    image: Any | None = option(
         None,
         "A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or (H, "
         "W, 4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It covers the "
         "surface once, with its left at the first i and its top, row 0, at the last j; ``tiles`` "
         "repeats it. Where it is transparent the surface's colour is visible. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
-        Form("PNG or JPEG that the flow smears, instead of the noise.", Path),
     )
-    coastlines: bool | None = _option(
-        None, "Whether coasts are drawn; by default if the field has a projection.", SWITCH
+    coastlines: bool | None = option(
+        None, "Whether coasts are drawn; by default if the field has a projection."
     )
-    graticule: bool | None = _option(
+    graticule: bool | None = option(
         None,
         "Whether meridians and parallels are drawn; by default if the field has a projection.",
-        SWITCH,
     )
-    land: Any = _option(
+    land: Any = option(
         LAND_COLOR,
         "Colour of the Earth where a field with a projection has no data, such as land in an "
         "ocean model; ``None`` draws nothing there.",
-        Form(read=or_none()),
     )
 
     def __post_init__(self) -> None:
@@ -397,8 +183,7 @@ class Appearance:
                 f"norm is {brief(self.norm)}, and {'clim' if self.clim else 'log_scale'} is given "
                 "too; omit it, and give the norm its limits, as in PowerNorm(0.5, 0, 10)"
             )
-        switches = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
-        for name in (*switches, *EARTH_LINES):
+        for name in (*SWITCHES, *EARTH_LINES):
             if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
                 faults.append(f"{name} is {brief(value)}; expected True or False")
         if self.land is False or (isinstance(self.land, str) and self.land == "none"):
@@ -450,38 +235,92 @@ class Appearance:
         return shown and self.visible
 
 
+#: Fields of the appearance that are attributes; a method changes the image.
+LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
+
+
+def _attribute(name: str) -> property:
+    def get(self: AppearanceAttributes) -> Any:
+        return getattr(self.scene.appearance, name)
+
+    def change(self: AppearanceAttributes, value: Any) -> None:
+        if name == "clim":
+            self.scene.fit_range()
+        self.scene.appearance = self.scene.appearance.changed(**{name: value})
+
+    return property(get, change, doc=Appearance.__dataclass_fields__[name].metadata["text"])
+
+
+class AppearanceAttributes:
+    """Base of objects that show a scene: its field, settings and appearance as attributes.
+
+    Those of the appearance can be set at any time; ``{appearance}`` in the docstring of a class
+    becomes their names. An object that is made takes no other attributes, so that a misspelt name
+    raises an error.
+    """
+
+    scene: Any  #: A Scene; an attribute or a property of the class.
+    _is_made = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.__doc__ = (cls.__doc__ or "").replace("{appearance}", ", ".join(LIVE))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        field: FlowField = self.scene.field
+        return field
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting, live."""
+        settings: Settings = self.scene.settings
+        return settings
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an existing attribute; the error for another one names similar ones."""
+        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
+        if self._is_made and not is_known:
+            names = [n for n in dir(type(self)) if not n.startswith("_")]
+            setting_hint = f"it is a setting: use settings.{name}"
+            hint = setting_hint if name in TABLE else near_names(name, names)
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}; {hint}")
+        super().__setattr__(name, value)
+
+
+for _name in LIVE:
+    setattr(AppearanceAttributes, _name, _attribute(_name))
+
+
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:
     """The view of a flow, a second view beside it, and the background."""
 
-    zoom: float = _option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
-    focus: tuple[float, ...] | None = _option(
+    zoom: float = option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
+    focus: tuple[float, ...] | None = option(
         None,
         "Point of the mesh to look at, two or three coordinates; the middle by default.",
-        Form(read=numbers(2, 3, expected="two or three coordinates, such as 1.5,0")),
     )
-    camera: Any | None = _option(
+    camera: Any | None = option(
         None,
         "Camera: a :class:`flowtex.rendering.camera.Camera`, its values by name, that of a plotter "
         "(``plotter.camera``), or position, focal point and up direction as three points.",
-        Form(
-            "Position, focal point and up direction, nine numbers separated by commas; or the "
-            "camera from a page's link.",
-            Camera.from_text,
-        ),
     )
-    background: Any = _option(
+    background: Any = option(
         None,
         "Background colour; by default white, and in a browser that of the surrounding page.",
-        Form("Background colour; by default white, or that of the surrounding page."),
     )
-    beside: Mapping[str, Any] | None = _option(
+    beside: Mapping[str, Any] | None = option(
         None,
         "Settings of a second view to the right of the first, where they differ, such as "
         '``{"lod": False}``; both views move together.',
-        Form(read=_read_differences, repeated=True),
     )
-    axes: str | None = _option(
+    axes: str | None = option(
         None,
         'Axes of a view in a browser: ``"ticks"`` with coordinates, a ``"scale"`` bar, or '
         '``"none"``; by default ticks if the surface is flat or a map.',

@@ -30,9 +30,10 @@ from flowtex.field import FlowField
 from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
+from flowtex.field.options import FieldOptions
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.scene.fields import share_field, with_scalars
-from flowtex.scene.options import ROBUST, SPEED, Appearance, FieldOptions, Options
+from flowtex.scene.fields import read_field, share_field, with_scalars
+from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures.images import as_picture, load_image
 from flowtex.textures.texture_set import TextureSet, check_noise
@@ -120,7 +121,7 @@ class Scene:
     @classmethod
     def from_options(cls, mesh: Any, options: Options) -> Scene:
         """Return the scene of a mesh or a field; :meth:`of` has the errors."""
-        field = options.field.field(mesh)
+        field = read_field(mesh, options.field)
         return cls(field, options.make_settings(field), options.appearance)
 
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:

@@ -33,11 +33,11 @@ from flowtex._util.notices import notify
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
-from flowtex.scene.signatures import accepts_options
+from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
 from flowtex.web import still
 from flowtex.web.view import TileSource, WebView, asset, browser_options, client_script, web_views

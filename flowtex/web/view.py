@@ -22,6 +22,7 @@ from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.rendering.webgl.velocity import Packing, packing_of
+from flowtex.scene.fields import read_field
 from flowtex.scene.options import Options, default_cmap
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
@@ -196,7 +197,7 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
     """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it."""
-    field = share_field(options.field.field(mesh))
+    field = share_field(read_field(mesh, options.field))
     notify_section(field.section)
     background, changes = options.view.background, options.view.beside
     first = Scene(field, options.make_settings(field), options.appearance)

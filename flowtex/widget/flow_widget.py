@@ -22,12 +22,13 @@ from flowtex._util.colours import rgb
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, share_field
-from flowtex.scene.signatures import AppearanceAttributes, accepts_options
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey
@@ -266,7 +267,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     @field.setter
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
-        before, field = self.field.surface, share_field(reading.field(mesh))
+        before, field = self.field.surface, share_field(read_field(mesh, reading))
         self._views.show(field)
         self._frame = self._still = None
         if not can_share_camera(before, field.surface):

@@ -17,8 +17,9 @@ from PIL import Image
 from flowtex import examples
 from flowtex.cli import commands, main
 from flowtex.cli.console import in_flags
+from flowtex.field.options import FieldOptions
 from flowtex.rendering import diagnostics
-from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
+from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.settings import TABLE
 
 Run = Callable[..., tuple[int, str, str]]

@@ -14,10 +14,11 @@ from small_tiles import shrink
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions
 from flowtex.field.uncertainty import UNCERTAINTY, unknown_share, with_uncertainty
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
-from flowtex.scene.options import FieldOptions
+from flowtex.scene.fields import read_field
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import Settings
 from flowtex.textures.tiles.pyramid import Pyramid
@@ -70,8 +71,8 @@ def test_a_scalar_is_named_and_an_array_becomes_one() -> None:
     sigma = np.linspace(0, 2, 41 * 61).reshape(41, 61)
     named = FlowField.from_arrays(field.points, field.velocity[0], scalars={"sigma": sigma})
     options = FieldOptions(uncertainty="sigma")
-    assert options.field(named).uncertainty == "sigma"
-    given = FieldOptions(uncertainty=sigma).field(field)
+    assert read_field(named, options).uncertainty == "sigma"
+    given = read_field(field, FieldOptions(uncertainty=sigma))
     assert given.uncertainty == UNCERTAINTY and list(given.scalars) == [UNCERTAINTY]
     assert given.surface is field.surface
     assert np.array_equal(unknown_share(given, 0), np.minimum(sigma, 1))
@@ -110,7 +111,7 @@ def test_what_does_not_fit_is_refused(value: Any, words: str) -> None:
     scalars = {"sigma": np.ones(field.shape)}
     field = FlowField.from_arrays(field.points, field.velocity[0], scalars=scalars)
     with pytest.raises(FieldError, match=words):
-        FieldOptions(uncertainty=value).field(field)
+        read_field(field, FieldOptions(uncertainty=value))
 
 
 def test_tiles_have_the_uncertainty_of_their_nodes(monkeypatch: pytest.MonkeyPatch) -> None:

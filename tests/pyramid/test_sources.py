@@ -16,6 +16,7 @@ from store_contents import contents
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Nodes
 from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.layout import FILE_CHUNK, sealed
@@ -24,7 +25,7 @@ from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.tasks import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.scene.options import FieldOptions
+from flowtex.scene.fields import read_field
 from flowtex.scene.scene import Scene
 from flowtex.sources.datasets.values import Regions
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
@@ -114,7 +115,7 @@ def test_a_store_has_the_uncertainty_of_its_source(tmp_path: Path) -> None:
     store, data = tmp_path / "a.zarr", around()
     build(data, store, progress=False, uncertainty="error")
     field = FlowField.from_xarray(data, uncertainty="error")
-    opened = FieldOptions(uncertainty="error").field(store)
+    opened = read_field(store, FieldOptions(uncertainty="error"))
     assert opened.uncertainty == field.uncertainty == "error"
     layers = []
     for one in (field, opened):

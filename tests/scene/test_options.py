@@ -17,9 +17,10 @@ from strategies import junk, property_test
 
 import flowtex
 from flowtex.errors import FieldError
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, follow, lay_image
-from flowtex.scene.signatures import accepts_options
 from flowtex.settings import SettingsError
 
 
@@ -152,13 +153,13 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
     path = tmp_path / "gyre.vts"
     flowtex.examples.double_gyre(2.5).save(path)
     for file in (path, str(path)):
-        field = FieldOptions().field(file)
+        field = read_field(file, FieldOptions())
         assert field.name == "gyre"
         assert field.shape == (101, 201)
     with pytest.raises(FieldError, match=r"^times is given, but '.*gyre.vts' already has times"):
-        FieldOptions(times=[1.0]).field(path)
+        read_field(path, FieldOptions(times=[1.0]))
     with pytest.raises(FieldError, match=r"none\.vts: the file does not exist"):
-        FieldOptions().field(str(tmp_path / "none.vts"))
+        read_field(str(tmp_path / "none.vts"), FieldOptions())
 
 
 @pytest.mark.usefixtures("quick_export")

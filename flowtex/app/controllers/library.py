@@ -21,9 +21,10 @@ from flowtex.app.server.page import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, line_field, line_python
+from flowtex.field.options import FieldOptions
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
-from flowtex.scene.options import FieldOptions
+from flowtex.scene.fields import read_field
 from flowtex.scene.scene import TracedFlow
 from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
@@ -317,7 +318,7 @@ def _source_of(flow: Any, options: dict[str, Any]) -> Source:
         return DatasetSource(flow)
     if isinstance(flow, FlowField) or not options:
         return FlowSource(flow)
-    return FlowSource(FieldOptions(**options).field(flow))
+    return FlowSource(read_field(flow, FieldOptions(**options)))
 
 
 def _constant(source: Source) -> Opener:

@@ -43,6 +43,7 @@ from flowtex.app.server.page import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
+from flowtex.scene.forms import FORMS
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import TABLE, SettingsError
 from flowtex.sources.open_source import OUTER
@@ -155,7 +156,7 @@ _FORMS: dict[str, Form] = {
     "time": NUMBER,
     "clock": NUMBER,
     "colour": NAME,
-    **{name: Look.__dataclass_fields__[name].metadata["form"] for name in LOOK},
+    **{name: FORMS[name] for name in LOOK},
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),

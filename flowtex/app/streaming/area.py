@@ -28,9 +28,10 @@ from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
-from flowtex.scene.options import FieldOptions, ViewOptions
+from flowtex.field.options import FieldOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import Change, Scene
-from flowtex.scene.signatures import AppearanceAttributes
 
 
 class FlowArea(AppearanceAttributes):
@@ -82,7 +83,7 @@ class FlowArea(AppearanceAttributes):
         names = FieldOptions.__dataclass_fields__
         self._reading = FieldOptions(**{k: options.pop(k, None) for k in names})
         axes = ViewOptions(axes=options.pop("axes", None)).axes
-        self.viewport = Viewport(self._reading.field(flow), **options)
+        self.viewport = Viewport(read_field(flow, self._reading), **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
         self.element = Element(self.state, self.viewport, self.stream, self.player, axes)
@@ -110,7 +111,7 @@ class FlowArea(AppearanceAttributes):
     @field.setter
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
-        self.show(reading.field(mesh), keep_view=True, keep_range=True)
+        self.show(read_field(mesh, reading), keep_view=True, keep_range=True)
 
     def ui(self, **attributes: Any) -> Any:
         """Add the view to the open layout; ``attributes`` are those of the element."""

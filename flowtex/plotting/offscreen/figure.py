@@ -22,6 +22,7 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (
     AxesScales,
     AxesUnit,
@@ -35,9 +36,9 @@ from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.annotations import time_text
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene
-from flowtex.scene.signatures import accepts_options
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.opening.dataset_files import dataset_paths
 
@@ -274,7 +275,7 @@ class FlowImage(AxesImage):
             name, self._unit = projection_of_axes(ax)
             options = _in_projection(mesh, options, name)
         if _kind(ax)[0] == "polar":
-            mesh, options = options.field.field(mesh), replace(options, field=FieldOptions())
+            mesh, options = read_field(mesh, options.field), replace(options, field=FieldOptions())
             scalar = options.appearance.scalar_name
             mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
         self._scene = scene = Scene.from_options(mesh, options)

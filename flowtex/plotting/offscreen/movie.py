@@ -22,6 +22,7 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.notices import notify
 from flowtex._util.progress import track
 from flowtex.field import FlowField
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
@@ -31,8 +32,8 @@ from flowtex.plotting.offscreen.encoders import (
 )
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.uniforms import WAVE_PIXELS
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
-from flowtex.scene.signatures import accepts_options
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.settings import TABLE, Settings
 
 #: Seconds for one run through the times of a field: so many for each step, within limits.
@@ -291,7 +292,7 @@ def _prepare(
     mesh: Any, words: dict[str, Any], fps: float, seconds: float | None, **drawing: Any
 ) -> tuple[FrameTimes, Generator[Bytes, None, None]]:
     options = Options.split(mesh=mesh, **words)
-    field = options.field.field(mesh)
+    field = read_field(mesh, options.field)
     settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     values = dict(options.settings)

@@ -14,6 +14,7 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.cache import ByteCache
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
@@ -21,9 +22,9 @@ from flowtex.plotting.vtk_camera import point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.annotations import Layout, annotate, difference_text
-from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions
+from flowtex.scene.fields import read_field
+from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, TracedFlow, share_field
-from flowtex.scene.signatures import accepts_options
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 from flowtex.textures.tiles.shared import has_pyramid
@@ -66,7 +67,7 @@ class OffscreenPlotter:
         begin_trial()
         _check_size(size, supersampling)
         # Equal fields share their traces.
-        field = share_field(options.field.field(mesh))
+        field = share_field(read_field(mesh, options.field))
         notify_section(field.section)
         # The trial has run while the field was read.
         require_opengl()

@@ -13,7 +13,8 @@ from known_flow import Truth, check
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.scene.options import FieldOptions
+from flowtex.field.options import FieldOptions
+from flowtex.scene.fields import read_field
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def read(data: Any, **options: Any) -> FlowField:
     """Read data as ``flowtex.render`` does, without its notices."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        return FieldOptions(**options).field(data)
+        return read_field(data, FieldOptions(**options))
 
 
 def data_of(one: Form, folder: Path) -> tuple[Any, Truth | None]:

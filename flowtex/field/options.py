@@ -1,0 +1,175 @@
+"""Arguments of functions as fields of frozen classes, each described once.
+
+:func:`accepts_options` puts the names, defaults and texts of the fields into signatures and
+docstrings. :class:`FieldOptions` has the arguments that select the flow in a mesh, a file or a
+dataset; those of pictures are in :mod:`flowtex.scene.options`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import Field, dataclass, field, fields
+from typing import Any, TypeVar
+
+from numpy.typing import ArrayLike
+
+from flowtex.errors import FieldError
+
+#: Description of all other arguments in docstrings.
+SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
+#: Arguments for data of the Earth only, and for meshes only.
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
+OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def option(default: Any, text: str) -> Any:
+    """Return a field of an option class with its explanation."""
+    return field(default=default, metadata={"text": text})
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldOptions:
+    """The part of a mesh, a file or a dataset to draw."""
+
+    vectors: str | None = option(
+        None,
+        "Name of the velocity, or of its two or three components separated by commas, such as "
+        "``u,v,w``; not needed if there is only one candidate.",
+    )
+    u: str | None = option(None, "Name of the first component; use it instead of ``vectors``.")
+    v: str | None = option(None, "Name of the second component.")
+    w: str | None = option(None, "Name of the third component; for meshes only.")
+    plane: str | None = option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
+    slice: Any | None = option(
+        None,
+        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through '
+        '0,0,2"``; by default the point is the middle.',
+    )
+    contour: Any | None = option(
+        None, 'Isosurface of a volume, where an array has the given value: ``"pressure=101325"``.'
+    )
+    block: int | str | None = option(
+        None, "Number or path of the block to draw, if there are several."
+    )
+    times: Sequence[float] | None = option(
+        None, "Times of a list of meshes; 0, 1, 2, ... by default."
+    )
+    periodic: str | None = option(
+        None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'
+    )
+    sign_free: bool | None = option(None, "Whether v and -v mean the same, as in a field of axes.")
+    preference: str | None = option(None, 'Of two arrays of a name, ``"point"`` or ``"cell"``.')
+    projection: str | None = option(
+        None,
+        "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
+        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or a PROJ string; by default one "
+        "that suits the region.",
+    )
+    globe: bool | None = option(None, "Whether data of the Earth are drawn on a globe.")
+    level: float | str | None = option(
+        None,
+        "Level of a dataset, such as ``500``; by default the one nearest to the surface.",
+    )
+    sel: Mapping[str, Any] | None = option(
+        None, 'Selection along other axes of a dataset, by value: ``{"number": 3}``.'
+    )
+    isel: Mapping[str, Any] | None = option(
+        None, 'Like ``sel``, but by zero-based index: ``{"number": 2}``.'
+    )
+    mask: str | bool | None = option(
+        None,
+        "Variable of a dataset that marks where there is data; by default masks of common names, "
+        "quality flags and undeclared fill values count. ``False`` draws all values.",
+    )
+    components: str | None = option(
+        None,
+        'Directions of the components of a dataset: ``"earth"`` (eastward, northward), ``"grid"`` '
+        '(along rows and columns) or ``"plane"`` (along x and y); by default the names decide.',
+    )
+    uncertainty: ArrayLike | None = option(
+        None,
+        "Directional uncertainty, which shortens and fades streaks: a scalar name or array "
+        "(standard deviation ÷ speed), or an ensemble dimension to average over, such as "
+        '``"number"``.',
+    )
+
+    def __post_init__(self) -> None:
+        """Join the names of components to ``vectors``."""
+        names = [name for name in (self.u, self.v, self.w) if name is not None]
+        if not names:
+            return
+        if self.vectors is not None or self.u is None or self.v is None:
+            given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
+            words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+            raise FieldError(
+                f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
+            )
+        object.__setattr__(self, "vectors", ",".join(names))
+        for name in "uvw":
+            object.__setattr__(self, name, None)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Values by name, without those that are ``None``."""
+        return {
+            name: value
+            for name in self.__dataclass_fields__
+            if (value := getattr(self, name)) is not None
+        }
+
+    def refuse(self, names: Iterable[str], scope: str) -> None:
+        """Raise a FieldError if any of these is given, which apply to another kind of data."""
+        if names := [name for name in self.given if name in names]:
+            raise FieldError(f"{', '.join(names)} applies to {scope}; omit it")
+
+
+def accepts_options(
+    *kinds: type, names: Collection[str] = (), settings: bool = True
+) -> Callable[[Function], Function]:
+    """Show the fields of option classes as arguments of a function that takes ``**options``.
+
+    The line ``{options}`` of its docstring becomes their description. Of the fields only those with
+    ``names`` are shown, if these are given; ``settings`` are shown as further arguments.
+    """
+
+    def complete(function: Function) -> Function:
+        options = [f for kind in kinds for f in fields(kind) if not names or f.name in names]
+        signature = inspect.signature(function)
+        parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        parameters += [
+            inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
+            for f in options
+            if f.name not in signature.parameters
+        ]
+        if settings:
+            rest = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
+            parameters.append(rest)
+        changed = signature.replace(parameters=parameters)
+        function.__signature__ = changed  # type: ignore[attr-defined]
+        if function.__doc__:
+            function.__doc__ = _described(function.__doc__, options, settings=settings)
+        return function
+
+    return complete
+
+
+def _described(text: str, options: Iterable[Field[Any]], *, settings: bool) -> str:
+    """Put the description of options into a docstring."""
+    lines = []
+    for line in text.splitlines():
+        if line.strip() != "{options}":
+            lines.append(line)
+            continue
+        indent = line[: line.index("{")]
+        described = {option.name: option.metadata["text"] for option in options}
+        if settings and "**settings" not in text:
+            described["**settings"] = SETTINGS_TEXT
+        for name, words in described.items():
+            lines.append(f"{indent}{name}")
+            filled = textwrap.fill(words, 96 - len(indent), break_on_hyphens=False)
+            lines.append(textwrap.indent(filled, indent + "    "))
+    return "\n".join(lines)

@@ -1,0 +1,88 @@
+"""Arguments as texts, in a shell or in a link: how each is read and written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from flowtex._util.written import (
+    NUMBER,
+    PLAIN,
+    SWITCH,
+    Form,
+    UnreadableError,
+    named_texts,
+    number_or_text,
+    numbers,
+    or_none,
+)
+from flowtex.field.options import FieldOptions
+from flowtex.rendering.camera import Camera
+from flowtex.scene.options import EARTH_LINES, ROBUST, SWITCHES, Appearance, ViewOptions
+from flowtex.settings import setting
+
+
+def _read_ends(text: str) -> str | tuple[float, ...]:
+    if text == ROBUST:
+        return ROBUST
+    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
+    if not low < high:
+        raise UnreadableError("two numbers, the lower one first")
+    return low, high
+
+
+def _read_differences(words: Sequence[str]) -> dict[str, Any]:
+    """Read words such as ``lod=false`` as settings and as fields of :class:`Appearance`."""
+    texts = named_texts(str, "name=value, such as --beside lod=false")(words)
+    values: dict[str, Any] = {}
+    for name, text in texts.items():
+        key = name.strip().replace("-", "_")
+        is_look = key in Appearance.__dataclass_fields__
+        values[key] = FORMS[key].read(text) if is_look else setting(key).parse(text)
+    return values
+
+
+#: Forms of a whole number or a name, and of a switch, by default none.
+WHOLE = Form(read=lambda text: int(text) if text.isdecimal() else text)
+_SPECIAL = {
+    "block": WHOLE,
+    "periodic": Form(read=or_none("")),
+    "level": Form(read=number_or_text),
+    "sel": Form(
+        read=named_texts(number_or_text, "an axis and a value, such as number=3"), repeated=True
+    ),
+    "isel": Form(
+        read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True
+    ),
+    "mask": Form(read=lambda text: text if text.lower() not in ("none", "false") else False),
+    "scalars": Form(read=or_none(value=False)),
+    "component": WHOLE,
+    "cmap": Form(
+        "Colour map, a matplotlib name; by default RdBu_r for vorticity, divergence and "
+        "okubo_weiss, otherwise viridis."
+    ),
+    "clim": Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
+    "norm": Form("Norm from values to colours: the name of a matplotlib scale, such as symlog."),
+    "n_colors": WHOLE,
+    "opacity": NUMBER,
+    "image": Form("PNG or JPEG that the flow smears, instead of the noise.", Path),
+    "land": Form(read=or_none()),
+    "focus": Form(read=numbers(2, 3, expected="two or three coordinates, such as 1.5,0")),
+    "camera": Form(
+        "Position, focal point and up direction, nine numbers separated by commas; or the "
+        "camera from a page's link.",
+        Camera.from_text,
+    ),
+    "background": Form("Background colour; by default white, or that of the surrounding page."),
+    "beside": Form(read=_read_differences, repeated=True),
+}
+_SWITCHES = (*SWITCHES, *EARTH_LINES)
+
+#: Form of each argument that can be written as text.
+FORMS: dict[str, Form] = {
+    name: SWITCH if name in _SWITCHES else _SPECIAL.get(name, PLAIN)
+    for kind in (FieldOptions, Appearance, ViewOptions)
+    for name in kind.__dataclass_fields__
+    if name != "times"
+}
