@@ -89,7 +89,7 @@ def __getattr__(name: str) -> Any:
     if name in _DRAWS:
         importlib.import_module("flowtex.rendering.diagnostics").begin_trial()
         if name != "show":  # in notebooks the browser draws
-            importlib.import_module("flowtex._util.extras").require_pyvista(f"flowtex.{name}")
+            importlib.import_module("flowtex.errors").require_pyvista(f"flowtex.{name}")
     if name in _LAZY:
         return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'flowtex' has no attribute {name!r}")

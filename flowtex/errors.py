@@ -1,4 +1,4 @@
-"""Faults of one call, raised together.
+"""What users are told: faults of one call, raised together, notices, and missing extras.
 
 Checks return each fault as one sentence that names the value, what was expected and the remedy.
 :func:`raise_faults` turns them into a single error, so that a user corrects a call once and not
@@ -7,7 +7,14 @@ once for every argument.
 
 from __future__ import annotations
 
+import sys
+import warnings
 from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+_PACKAGE = Path(__file__).resolve().parent
 
 
 class FieldError(ValueError):
@@ -35,3 +42,46 @@ def raise_faults(faults: Sequence[str]) -> None:
         raise FieldError(faults[0])
     listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
     raise FieldError(f"{len(faults)} things are wrong:\n{listed}")
+
+
+class Notice(UserWarning):
+    """Something of the data was chosen automatically, or is not drawn."""
+
+
+def notify(text: str, kind: type[Warning] = Notice) -> None:
+    """Warn at the line that called the package, however deep the call stack is."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(str(_PACKAGE)):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, kind, stacklevel=level)
+
+
+def import_extra(module: str, extra: str) -> Any:
+    """Import an optional library; the error names the command that installs it."""
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            f"{module} is missing; install it with {install_extra(extra)}", name=module
+        ) from error
+
+
+def require_pyvista(what: str) -> None:
+    """Import PyVista, or raise an error that names the functions that work without it."""
+    try:
+        import_module("pyvista")
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            f"{what} needs PyVista and VTK, but {error.name} is missing; install it with "
+            "python -m pip install pyvista. Python in a browser has neither: make a field there "
+            "with FlowField.from_arrays or from_xarray, and draw it with flowtex.FlowWidget or "
+            "flowtex.export",
+            name=error.name,
+        ) from error
+
+
+def install_extra(extra: str) -> str:
+    """Return the command that installs an extra, in a checkout an editable one."""
+    if (_PACKAGE.parent / "pyproject.toml").is_file():
+        return f'python -m pip install -e ".[{extra}]"'
+    return f'python -m pip install "flowtex[{extra}]"'

@@ -34,7 +34,7 @@ ROOMS = (
     "trace.structure",
 )
 #: What asks for them for these rooms.
-HELPERS = ("", "_util.child", "_util.extras")
+HELPERS = ("", "_util.child", "errors")
 
 
 def module_name(path: Path) -> str:

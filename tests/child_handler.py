@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.child.worker import Answer
-from flowtex._util.notices import notify
 from flowtex._util.progress import check
-from flowtex._util.temporary import TemporaryFolder
+from flowtex._util.whole_file import TemporaryFolder
+from flowtex.errors import notify
 from flowtex.sources.remote import Reader
 
 

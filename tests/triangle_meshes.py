@@ -7,7 +7,7 @@ from scipy.spatial import Delaunay
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 Mesh = tuple[Floats, Indices]
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from flowtex._util.extras import require_pyvista
+from flowtex.errors import require_pyvista
 
 if TYPE_CHECKING:
     from flowtex.app.controllers.library import Choice, Library

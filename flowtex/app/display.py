@@ -6,8 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import checked_size, sized
-from flowtex._util.extras import require_pyvista
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import checked_target
-from flowtex._util.extras import install_extra
-from flowtex._util.notices import Notice
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import terminal
 from flowtex.cli.options import UsageError, arguments, flag_names
+from flowtex.errors import Notice, install_extra
 from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Options

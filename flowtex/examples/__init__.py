@@ -43,8 +43,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Floats
-from flowtex._util.extras import require_pyvista
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, require_pyvista
 from flowtex.examples import _shipped
 from flowtex.examples._shipped import ocean, weather
 from flowtex.field import FlowField

@@ -15,7 +15,7 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex._util.extras import import_extra
+from flowtex.errors import import_extra
 from flowtex.field.earth import EARTH_RADIUS
 
 if TYPE_CHECKING:

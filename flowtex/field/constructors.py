@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from numpy.typing import ArrayLike
 
-from flowtex._util.extras import require_pyvista
-from flowtex.field.arrays import FieldArrays
+from flowtex.errors import require_pyvista
+from flowtex.field.field_arrays import FieldArrays
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import is_number
-from flowtex._util.extras import import_extra
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra, notify
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -16,15 +16,14 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
-from flowtex.field.arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
+from flowtex.errors import FieldError, notify
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived import magnitude_label
 from flowtex.field.earth import Projection
+from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.formula import Formula
-from flowtex.field.grids.arrays import grid_nodes
-from flowtex.field.grids.surface import GridSurface
+from flowtex.field.grids.grid_nodes import grid_nodes
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.interpolation import every_line
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.steps import (
@@ -36,8 +35,8 @@ from flowtex.field.steps import (
     typical_steps,
 )
 from flowtex.field.surface import IndexVelocity, Surface
-from flowtex.field.triangles.arrays import triangle_nodes
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_nodes import triangle_nodes
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.field.units import factor, speed_unit
 from flowtex.field.validation import ALL_AT_REST, prepared
 
@@ -153,7 +152,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         Examples
         --------
         >>> import flowtex
-        >>> from flowtex.field.arrays import GridArrays
+        >>> from flowtex.field.field_arrays import GridArrays
         >>> arrays = GridArrays(points=([0, 1, 2], [0, 1]), velocity=[[(1, 0)] * 3] * 2)
         >>> flowtex.FlowField.of(arrays).shape
         (2, 3)

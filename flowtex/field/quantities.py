@@ -17,7 +17,7 @@ from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
 from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
 from flowtex.field.earth import Projection
-from flowtex.field.grids.arrays import weighted_axis
+from flowtex.field.grids.grid_nodes import weighted_axis
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import (
     CURVED_TOLERANCE,

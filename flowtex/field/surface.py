@@ -1,8 +1,8 @@
 """The common interface of surfaces: positions of nodes and cells, and vectors in index space.
 
 A position on a surface is two numbers, (i, j) in index space; what they mean is up to the surface.
-The kinds are :class:`~flowtex.field.grids.surface.GridSurface` and
-:class:`~flowtex.field.triangles.surface.TriangleSurface`.
+The kinds are :class:`~flowtex.field.grids.grid_surface.GridSurface` and
+:class:`~flowtex.field.triangles.triangle_surface.TriangleSurface`.
 """
 
 from __future__ import annotations

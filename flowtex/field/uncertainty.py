@@ -16,7 +16,7 @@ from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import fill_blanked
 from flowtex.field.steps import LazySteps, Steps, map_steps
-from flowtex.field.triangles.arrays import nodal_means
+from flowtex.field.triangles.triangle_nodes import nodal_means
 
 #: A :class:`flowtex.FlowField`.
 Field = TypeVar("Field")

@@ -6,8 +6,7 @@ import re
 from functools import cache
 from typing import Any
 
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 
 #: Texts of data without a unit.
 NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")

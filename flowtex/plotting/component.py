@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike
 from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty
 
 from flowtex._util.array_types import Bytes, Indices
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle

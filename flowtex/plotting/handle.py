@@ -10,8 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.cache import digest
-from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.pyramid.layout import (
     DIGESTS,
     FLOW,

@@ -42,7 +42,7 @@ import numpy as np
 from flowtex._util import __version__
 from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex._util.cache import digest
-from flowtex._util.extras import import_extra
+from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection

@@ -13,9 +13,9 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import norm
-from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
+from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps, Nodes, typical_steps
 from flowtex.pyramid.layout import (

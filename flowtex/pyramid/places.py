@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 
 from flowtex._util.arguments import checked_path
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
     from obstore.store import ObjectStore

@@ -15,10 +15,9 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import digest
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
-from flowtex.field.arrays import FieldArrays
+from flowtex.field.field_arrays import FieldArrays
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.pyramid.places import (

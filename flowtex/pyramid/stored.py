@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.notices import Notice, notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice, notify
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import LazySteps, Nodes, Steps

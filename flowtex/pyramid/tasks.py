@@ -22,9 +22,8 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.colours import NO_COLOURS, ColourScale
-from flowtex._util.extras import import_extra
 from flowtex._util.progress import pool
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.steps import Nodes, typical_steps

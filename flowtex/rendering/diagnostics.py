@@ -274,7 +274,7 @@ def _shaders() -> Check:
 
 
 def _packages() -> list[Check]:
-    from flowtex._util.extras import install_extra
+    from flowtex.errors import install_extra
 
     checks = []
     for name in (*REQUIRED, *OPTIONAL, *OF_PYVISTA):

@@ -33,8 +33,7 @@ from flowtex._util.colours import (
     matplotlib_norm,
     rgb,
 )
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError, raise_faults
+from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived import COMPONENTS, SIGNED, component_name
 from flowtex.field.options import FieldOptions, option

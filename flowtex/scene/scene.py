@@ -24,8 +24,7 @@ from flowtex._util.colours import (
     scale_of,
     with_limits,
 )
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from flowtex._util.extras import require_pyvista
-from flowtex.errors import FieldError
-from flowtex.field.arrays import GridArrays, TriangleArrays
+from flowtex.errors import FieldError, require_pyvista
+from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.select import two_names
 from flowtex.sources.datasets.values import Regions

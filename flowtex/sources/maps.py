@@ -11,7 +11,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.earth import GLOBE, NAMES, Projection, between, tears
-from flowtex.field.grids.arrays import find_closure
+from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.models.mesh import Mesh
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from flowtex._util import notices
-from flowtex.errors import FieldError
-from flowtex.field.arrays import STEPS, Reading, ReadingStep
+from flowtex import errors
+from flowtex.errors import FieldError, Notice
+from flowtex.field.field_arrays import STEPS, Reading, ReadingStep
 
 
-class DatasetNotice(notices.Notice):
+class DatasetNotice(Notice):
     """flowtex chose something in a dataset, such as a level.
 
     Examples
@@ -27,7 +27,7 @@ class DatasetNotice(notices.Notice):
 
 def notify(text: str) -> None:
     """Warn at the line that called the package."""
-    notices.notify(text, DatasetNotice)
+    errors.notify(text, DatasetNotice)
 
 
 def notify_section(section: Any) -> None:
@@ -40,7 +40,7 @@ def notify_section(section: Any) -> None:
 
 
 class Record:
-    """Sentences about a reading, in the order of :data:`flowtex.field.arrays.STEPS`.
+    """Sentences about a reading, in the order of :data:`flowtex.field.field_arrays.STEPS`.
 
     Each step of a pipeline gets the record, and adds what it did:
     ``record("align", "v: latitude reversed to match u")``.

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
 from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose

@@ -19,8 +19,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.memory import available_bytes
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 
 if TYPE_CHECKING:
     import pyvista as pv

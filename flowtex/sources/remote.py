@@ -13,8 +13,7 @@ from typing import Any
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.child import FORKS, Child, ChildError, fork_server
 from flowtex._util.child.worker import Answer
-from flowtex._util.notices import Notice, notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice, notify
 from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import norm
 from flowtex.field import FlowField
-from flowtex.field.grids.surface import CubicMap, GridSurface, faces_of
+from flowtex.field.grids.grid_surface import CubicMap, GridSurface, faces_of
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.grids.arrays import corner_signs
+from flowtex.field.grids.grid_nodes import corner_signs
 from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.interpolation import bracket, fill_blanked
 

@@ -18,9 +18,8 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import brief, check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex._util.notices import notify
 from flowtex._util.progress import pool, track
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.derived import FOLLOWED
 from flowtex.field.derived.gradient import node_gradient, true_positions
@@ -205,12 +204,11 @@ def paths(
 ) -> Paths:
     """Follow particles from chosen positions in index space.
 
-    They start at (N, 2) as (i, j), or on triangles at places as of
-    :class:`~flowtex.field.triangles.surface.TriangleSurface`, at destination time ``step``, and
-    are followed to lags (M,) in units of length or time. ``within`` returns whether paths are
-    followed at positions (2, N): one that leaves these is interrupted. On triangles all are
-    followed, and one that has ended stays there. The other parameters, and the errors, are those of
-    :func:`trace`.
+    They start at (N, 2) as (i, j), or at places of a ``TriangleSurface``, at destination time
+    ``step``, and are followed to lags (M,) in units of length or time. ``within`` returns whether
+    paths are followed at positions (2, N): one that leaves these is interrupted. On triangles all
+    are followed, and one that has ended stays there. The other parameters, and the errors, are
+    those of :func:`trace`.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)

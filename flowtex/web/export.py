@@ -29,10 +29,9 @@ from urllib.parse import urlsplit
 
 from flowtex._util import __version__
 from flowtex._util.arguments import checked_target
-from flowtex._util.notices import notify
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData

@@ -13,7 +13,7 @@ Nothing is drawn in the kernel but a small picture for where widgets cannot be s
 
 from __future__ import annotations
 
-from flowtex._util.extras import install_extra
+from flowtex.errors import install_extra
 
 try:
     from flowtex.widget.flow_widget import FlowWidget

@@ -24,7 +24,7 @@ mat3 flowtexCorners(int layer)
               texelFetch(u_nodes, ivec3(flowtexNodes[2], layer), 0).xyz - near, near);
 }
 
-// Normal between the corners; at sharp edges that of the triangle, as in flowtex/field/triangles/arrays.py.
+// Normal between the corners; at sharp edges that of the triangle, as in flowtex/field/triangles/triangle_nodes.py.
 vec3 flowtexNormalAt(vec3 across, vec2 coordinate)
 {
   vec3 shares = flowtexShares(coordinate);

@@ -9,7 +9,7 @@ from flows import gyre
 
 import flowtex
 from flowtex import FieldError
-from flowtex._util.notices import Notice
+from flowtex.errors import Notice
 
 
 def host(monkeypatch: pytest.MonkeyPatch, *, display: bool) -> list[Any]:

@@ -9,8 +9,7 @@ import pytest
 from earth_data import winds
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.field.dates import date_text
 from flowtex.scene.scene import Scene
 

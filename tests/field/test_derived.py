@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, Delaunay
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
-from flowtex._util.notices import Notice
+from flowtex.errors import Notice
 from flowtex.field.derived import DERIVED
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps

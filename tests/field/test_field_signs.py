@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.grids.arrays import axes, corner_signs, oriented, products
+from flowtex.field.grids.grid_nodes import axes, corner_signs, oriented, products
 
 Floats = NDArray[np.float64]
 

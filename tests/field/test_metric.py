@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.grids.surface import GridSurface
+from flowtex.field.grids.grid_surface import GridSurface
 
 Floats = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.grids.poles import Pole
-from flowtex.field.grids.surface import GridSurface
 
 Floats = NDArray[np.float64]
 

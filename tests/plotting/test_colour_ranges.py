@@ -21,7 +21,7 @@ from flowtex.web.view import WebView
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
-    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+    pytest.mark.filterwarnings("ignore::flowtex.errors.Notice"),
 ]
 #: Colours that are the scalar's alone.
 PLAIN: dict[str, Any] = {"strength": 0.0, "lighting": False, "samples": 1}

@@ -15,7 +15,7 @@ from flowtex.scene.scene import Scene
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
-    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+    pytest.mark.filterwarnings("ignore::flowtex.errors.Notice"),
 ]
 QUICK: dict[str, Any] = {"size": (160, 120), "samples": 1, "strength": 0.0}
 

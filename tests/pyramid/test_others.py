@@ -12,9 +12,8 @@ from range_server import range_server
 
 import flowtex
 from flowtex import FlowField
-from flowtex._util.notices import Notice
 from flowtex.cli import main
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.pyramid import is_store, open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.textures.tiles.pyramid import TileKey

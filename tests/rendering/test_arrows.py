@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.field.grids.surface import GridSurface
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.tile_choice import TileView

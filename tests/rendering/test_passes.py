@@ -20,7 +20,7 @@ from flowtex.textures.tiles.pyramid import Pyramid
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
-    pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"),
+    pytest.mark.filterwarnings("ignore::flowtex.errors.Notice"),
 ]
 SIZE = [240, 180]
 #: Greatest share of pixels that may differ by more than rounding: some at outlines.

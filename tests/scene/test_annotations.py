@@ -20,8 +20,8 @@ from strategies import property_test
 import flowtex
 from flowtex import FlowField
 from flowtex._util.colours import colour_table, rgb
-from flowtex._util.notices import Notice
 from flowtex.cli import main
+from flowtex.errors import Notice
 from flowtex.plotting.offscreen import plotter
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.camera import Camera

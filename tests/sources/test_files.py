@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+    "ignore:.*of the flow is normal to the surface:flowtex.errors.Notice"
 )
 
 KNOWN = (

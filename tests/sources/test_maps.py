@@ -12,7 +12,7 @@ from earth_data import DEGREES, components, on_sphere
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bools, Floats
-from flowtex.field.grids.surface import GridSurface
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.textures.geometry import NodeDisplacements
 
 #: Maps, as flowtex names them or as cartopy's axes have them; their middle, and the degrees from

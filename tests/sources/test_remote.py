@@ -22,9 +22,8 @@ from waiting import wait_until
 
 from flowtex import FlowField, examples
 from flowtex._util.child import Child
-from flowtex._util.notices import Notice
 from flowtex._util.progress import Stopped, stoppable
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.field.steps import LazySteps
 from flowtex.sources.open_source import open_source
 from flowtex.sources.remote import (

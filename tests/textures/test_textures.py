@@ -8,7 +8,7 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
-from flowtex.field.grids.surface import GridSurface
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.settings import Settings
 from flowtex.textures.geometry import NodeDisplacements, SurfaceGeometry
 from flowtex.textures.paper import PaperTextures

@@ -17,7 +17,7 @@ from scipy.optimize import fsolve
 
 import flowtex
 from flowtex import FlowField
-from flowtex._util.notices import Notice
+from flowtex.errors import Notice
 from flowtex.field.formula import derivative
 from flowtex.field.formula.grammar import OPERATIONS, evaluate, parse
 

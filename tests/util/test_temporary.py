@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from flowtex._util.temporary import TemporaryFolder
+from flowtex._util.whole_file import TemporaryFolder
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")
 
 HOLD = """
 import os, signal, sys, tempfile
-from flowtex._util.temporary import TemporaryFolder
+from flowtex._util.whole_file import TemporaryFolder
 folder = TemporaryFolder()
 (folder.new_folder() / "file").write_text("x")
 print(folder.path, flush=True)

@@ -141,7 +141,7 @@ CASES = {
     ),
     "speed in a slice": Case(volume, (3, 12), "speed in the surface", lambda x: 4.5 * (1 + x), CUT),
 }
-pytestmark.append(pytest.mark.filterwarnings("ignore::flowtex._util.notices.Notice"))
+pytestmark.append(pytest.mark.filterwarnings("ignore::flowtex.errors.Notice"))
 
 
 def check_colours(case: Case, row: Any, middles: Any = None) -> None:

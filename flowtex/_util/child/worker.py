@@ -21,7 +21,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import stoppable
-from flowtex._util.temporary import remove_folders
+from flowtex._util.whole_file import remove_folders
 
 #: A value of JSON, and arrays.
 Answer = tuple[Any, Sequence[AnyArray]]

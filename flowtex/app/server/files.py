@@ -21,7 +21,7 @@ from urllib.parse import quote
 
 from aiohttp import web
 
-from flowtex._util.temporary import TemporaryFolder
+from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.security import new_secret
 from flowtex.errors import FieldError
 from flowtex.sources.remote import prepare_readers

@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 from aiohttp import web
 
-from flowtex._util.extras import import_extra
 from flowtex.app.server.security import LOCAL, guard, is_same
+from flowtex.errors import import_extra
 from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import DOCUMENT, ReadFault, fault_words, is_refused, objects_at

@@ -19,7 +19,7 @@ from flowtex._util.arrays import norm
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.grids.poles import SAME_POINT_SHARE
 from flowtex.field.surface import Surface
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10

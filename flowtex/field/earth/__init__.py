@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
     from pyproj import CRS, Transformer

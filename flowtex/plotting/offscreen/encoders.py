@@ -19,10 +19,9 @@ import numpy as np
 
 from flowtex._util.arguments import checked_path, checked_size, checked_target, is_number
 from flowtex._util.array_types import Bytes
-from flowtex._util.extras import install_extra
 from flowtex._util.progress import Stopped
 from flowtex._util.whole_file import WholeFile
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, install_extra
 
 if TYPE_CHECKING:
     from PIL import Image

@@ -19,8 +19,8 @@ import numpy as np
 
 from flowtex._util.arguments import checked_number, sized
 from flowtex._util.array_types import Bytes
-from flowtex._util.notices import notify
 from flowtex._util.progress import track
+from flowtex.errors import notify
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.encoders import (

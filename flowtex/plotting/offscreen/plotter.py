@@ -12,8 +12,7 @@ import numpy as np
 from flowtex._util.arguments import checked_size, sized
 from flowtex._util.array_types import Bytes
 from flowtex._util.cache import ByteCache
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent

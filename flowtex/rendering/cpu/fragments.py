@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex.field.triangles.arrays import normals_at_corners
+from flowtex.field.triangles.triangle_nodes import normals_at_corners
 from flowtex.rendering.constants import (
     HUE_SHIFT,
     LEAST_FACING,

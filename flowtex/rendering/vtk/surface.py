@@ -19,7 +19,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 from vtkmodules.vtkRenderingOpenGL2 import vtkShaderProgram
 
 from flowtex._util.array_types import Floats, Ints
-from flowtex._util.notices import notify
+from flowtex.errors import notify
 from flowtex.field import FlowField
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
 from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_levels_of

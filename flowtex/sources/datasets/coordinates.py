@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels

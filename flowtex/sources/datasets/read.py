@@ -19,9 +19,9 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.field.arrays import GridArrays, TriangleArrays
 from flowtex.field.dates import as_seconds
 from flowtex.field.earth import GLOBE
+from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels

@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
-from flowtex.field.grids.arrays import find_closure
+from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range

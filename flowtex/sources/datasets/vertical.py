@@ -16,8 +16,8 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.field.arrays import GridArrays, SectionAxes
 from flowtex.field.earth import DEGREE
+from flowtex.field.field_arrays import GridArrays, SectionAxes
 from flowtex.field.steps import LazySteps
 from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.axes import (

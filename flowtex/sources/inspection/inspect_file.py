@@ -8,8 +8,7 @@ from functools import lru_cache
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import netcdf, vtk_legacy, vtk_xml
 from flowtex.sources.inspection.vtk_legacy import Data
 from flowtex.sources.reader_errors import check_count, check_memory, check_other

@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.arguments import brief
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.triangles.arrays import (
+from flowtex.field.triangles.triangle_nodes import (
     needle_edges,
     nodal_means,
     solid_triangles,

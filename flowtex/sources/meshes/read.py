@@ -1,4 +1,4 @@
-"""From PyVista meshes to the arrays of a field, in the steps of :data:`flowtex.field.arrays.STEPS`.
+"""From PyVista meshes to the arrays of a field, in the steps of ``field_arrays.STEPS``.
 
 The velocity and the surface are selected in the first step of a series. Every step is aligned with
 the first one, masked, and drawn as a :class:`Sheet`: a plane of a structured mesh, or a surface of
@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.derived import component_name
+from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.parts import (
     TimeStep,

@@ -17,7 +17,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.arrays import dot, norm, row_blocks
 from flowtex._util.cache import ByteCache
-from flowtex.field.grids.arrays import axes, find_closure, products
+from flowtex.field.grids.grid_nodes import axes, find_closure, products
 from flowtex.field.validation import MAGNITUDES
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
 from flowtex.sources.meshes.vectors import (

@@ -13,7 +13,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
-from flowtex.field.triangles.arrays import nodal_means, triangle_normals
+from flowtex.field.triangles.triangle_nodes import nodal_means, triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
 from flowtex.sources.reader_errors import values_in
 

@@ -17,8 +17,7 @@ import numpy as np
 
 from flowtex._util.arguments import brief
 from flowtex._util.array_types import AnyArray
-from flowtex._util.extras import import_extra
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates

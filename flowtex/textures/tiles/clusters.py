@@ -18,8 +18,8 @@ from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
-from flowtex.field.triangles.arrays import known_means, sums_at, triangle_normals
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_nodes import known_means, sums_at, triangle_normals
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0

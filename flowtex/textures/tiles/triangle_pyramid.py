@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
-from flowtex.field.triangles.arrays import corner_ends
+from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import Clusters, levels_of
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey

@@ -13,17 +13,15 @@ import scipy
 
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex._util.extras import import_extra
-from flowtex._util.notices import notify
 from flowtex._util.progress import track
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, import_extra, notify
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
 from flowtex.field.formula import Rates
 from flowtex.field.grids.poles import Pole
 from flowtex.field.interpolation import between_nodes
 from flowtex.field.locate import surface_point
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.structure.cells import (
     bilinear_zeros,
     folded,

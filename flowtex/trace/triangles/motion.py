@@ -17,7 +17,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.integrate import Columns
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 

@@ -11,7 +11,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import check, track
 from flowtex.field import FlowField
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.slices import TraceSlices, small_cell

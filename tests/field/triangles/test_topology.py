@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from triangle_meshes import cube, random_plane, soup, sphere
 
-from flowtex.field.triangles.arrays import flipped, merged_nodes, neighbours, triangle_normals
+from flowtex.field.triangles.triangle_nodes import (
+    flipped,
+    merged_nodes,
+    neighbours,
+    triangle_normals,
+)
 
 
 def test_neighbours_share_the_edge_opposite_to_a_corner(rng: np.random.Generator) -> None:

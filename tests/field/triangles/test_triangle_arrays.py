@@ -13,7 +13,7 @@ from triangle_meshes import random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.triangles.arrays import nodal_means
+from flowtex.field.triangles.triangle_nodes import nodal_means
 from flowtex.scene.scene import share_field
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])

@@ -17,9 +17,9 @@ from PIL import Image, ImageSequence
 
 import flowtex
 from flowtex import FlowField
-from flowtex._util.notices import Notice
 from flowtex._util.progress import Stopped
 from flowtex.cli import main
+from flowtex.errors import Notice
 from flowtex.plotting.offscreen.encoders import MovieError, check_movie, write_movie
 from flowtex.plotting.offscreen.movie import Movie, frame_times, frames
 from flowtex.settings import Settings

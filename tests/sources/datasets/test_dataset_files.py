@@ -15,8 +15,7 @@ from earth_data import components, east_and_north, winds
 from lying_files import grib2
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.sources.opening import dataset_files as files
 

@@ -19,7 +19,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.field.steps import LazySteps
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.open_source import DatasetSource

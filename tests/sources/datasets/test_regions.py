@@ -11,7 +11,7 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex._util.arrays import even_runs
-from flowtex.field.arrays import GridArrays
+from flowtex.field.field_arrays import GridArrays
 from flowtex.field.validation import NO_DATA
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.values import Regions

@@ -11,15 +11,14 @@ import pytest
 import pyvista as pv
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.sources.files import describe
 from flowtex.sources.meshes.vectors import find_vectors
 from flowtex.sources.open_source import FlowSource
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+    "ignore:.*of the flow is normal to the surface:flowtex.errors.Notice"
 )
 
 

@@ -11,8 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.scene.scene import Scene
 from flowtex.sources.meshes.volume import nodes_to_keep
 
@@ -20,7 +19,7 @@ pv = pytest.importorskip("pyvista")
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+    "ignore:.*of the flow is normal to the surface:flowtex.errors.Notice"
 )
 
 Floats = NDArray[np.float64]

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from strategies import property_test
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 
 pv = pytest.importorskip("pyvista")
 

@@ -12,14 +12,13 @@ import pyvista as pv
 from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, write_foam
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.sources.files import BlockSummary, describe
 from flowtex.sources.open_source import FlowSource
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+    "ignore:.*of the flow is normal to the surface:flowtex.errors.Notice"
 )
 
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)

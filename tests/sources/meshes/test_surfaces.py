@@ -14,14 +14,13 @@ from hypothesis import strategies as st
 from strategies import property_test
 
 from flowtex import FlowField
-from flowtex._util.notices import Notice
-from flowtex.errors import FieldError
-from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.errors import FieldError, Notice
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.sources.open_source import FlowSource
 
 pv = pytest.importorskip("pyvista")
 
-ACROSS = "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
+ACROSS = "ignore:.*of the flow is normal to the surface:flowtex.errors.Notice"
 WAY = np.array([1.0, -2.0, 0.5])
 
 

@@ -25,7 +25,7 @@ from aiohttp import WSCloseCode, web
 from wslink.protocol import MAX_MSG_SIZE
 
 from flowtex._util.memory import available_bytes, give_back
-from flowtex._util.temporary import remove_stale_folders
+from flowtex._util.whole_file import remove_stale_folders
 from flowtex.app.server.files import Handler
 from flowtex.app.server.security import new_secret
 

@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError, raise_faults
+from flowtex.field.grids.grid_surface import GridSurface, known_positions
 from flowtex.field.grids.poles import Poles
-from flowtex.field.grids.surface import GridSurface, known_positions
 from flowtex.field.steps import LazySteps, Steps, first_step
 from flowtex.field.validation import (
     LENGTHS,

@@ -12,8 +12,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError, raise_faults
+from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.validation import (
     as_numbers,

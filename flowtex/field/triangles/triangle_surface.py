@@ -22,7 +22,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field.surface import IndexVelocity, Surface
-from flowtex.field.triangles.arrays import SHARP, flipped, neighbours, triangle_normals
+from flowtex.field.triangles.triangle_nodes import SHARP, flipped, neighbours, triangle_normals
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
 MOST_SHARE = 1 - 1e-7
