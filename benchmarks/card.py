@@ -140,8 +140,8 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
 
 def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Iterator[Any]:
     """Give the key, data and parts of the root and of tiles, and the tiles that cover some."""
+    from flowtex.host.view import TileSource
     from flowtex.rendering import tile_choice as choice
-    from flowtex.web.view import TileSource
 
     shown: dict[Any, Any] = {None: []}
     if whole.pyramid is not None:
@@ -181,9 +181,9 @@ def drawings(meshes: list[str], samples: list[int]) -> Iterator[Drawing]:
     """Make what is drawn of each mesh with each number of samples, coloured by speed."""
     from scenes import gyre_field
 
+    from flowtex.host.view import web_views
     from flowtex.rendering.camera import Camera
     from flowtex.scene.options import Options
-    from flowtex.web.view import web_views
 
     for mesh in meshes:
         rows, columns = (int(n) for n in mesh.removesuffix("c").split("x"))

@@ -39,9 +39,9 @@ def main() -> None:
     arguments = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
+    from flowtex.host.export import page_text
+    from flowtex.host.view import web_views
     from flowtex.rendering.webgl import velocity
-    from flowtex.web.export import page_text
-    from flowtex.web.view import web_views
 
     can_trace = velocity.can_trace
     names = ("page, MB", "bytes a node", "written in, s of processor", "drawn after, s")

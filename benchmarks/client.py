@@ -21,12 +21,12 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
+from flowtex.host.view import TileSource, web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.scene.options import Options
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web.view import TileSource, web_views
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from webgl_page import ClientPage, packed

@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
 
 const minified = !process.argv.includes("--plain");
-const WEB = "../flowtex/web";
+const HOST = "../flowtex/host/static";
 const STATIC = "../flowtex/app/ui/static";
 
 const COMMON = {
@@ -63,10 +63,10 @@ async function noticeOf(name, file) {
 }
 
 export const BUILDS = [
-  ["src/core.ts", `${WEB}/core.js`, "flowtex", NOTICE],
-  ["src/store.ts", `${WEB}/store.js`, "flowtexStore", STORE_NOTICE],
+  ["src/core.ts", `${HOST}/core.js`, "flowtex", NOTICE],
+  ["src/store.ts", `${HOST}/store.js`, "flowtexStore", STORE_NOTICE],
   ["src/app/app.ts", `${STATIC}/flowtex.js`, undefined, ""],
-  ["src/maplibre.ts", `${WEB}/maplibre.js`, undefined, `${NOTICE}\n${STORE_NOTICE}`, MODULE],
+  ["src/maplibre.ts", `${HOST}/maplibre.js`, undefined, `${NOTICE}\n${STORE_NOTICE}`, MODULE],
 ].map(([entry, outfile, globalName, notice, own = {}]) => ({
   ...COMMON,
   entryPoints: [entry],

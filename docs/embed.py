@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from flowtex._util.whole_file import whole_file
+from flowtex.host.export import headers_text, json_text, page_data
+from flowtex.host.view import WebView
 from flowtex.rendering.webgl.protocol import part_info, part_text
-from flowtex.web.export import headers_text, json_text, page_data
-from flowtex.web.view import WebView
 
 #: Letters from which on a part has a script of its own, which scenes of the same flow share.
 LETTERS_APART = 50_000

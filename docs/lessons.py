@@ -57,7 +57,7 @@ def in_kernel() -> None:
     from IPython.display import display
 
     from flowtex import FlowWidget
-    from flowtex.widget import display as widgets
+    from flowtex.host import cell as widgets
 
     make = FlowWidget.__init__
     given: dict[int, Any] = {}

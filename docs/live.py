@@ -38,12 +38,12 @@ from sphinx.util.docutils import SphinxDirective
 import flowtex
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.host.export import page_text
+from flowtex.host.view import WebView, asset, client_script, web_views
 from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
 from flowtex.plotting.vtk_camera import point_camera
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
-from flowtex.web.export import page_text
-from flowtex.web.view import WebView, asset, client_script, web_views
 
 #: Folder of the site's own files, told to the kernels of notebooks as well.
 FOLDER = "FLOWTEX_SITE_STATIC"

@@ -459,7 +459,7 @@ def webmap() -> Picture:
     """Take pictures of a page with a web map: currents on the flat map, winds on the globe."""
     from playwright.sync_api import Route, sync_playwright
 
-    from flowtex.web.export import MAPLIBRE
+    from flowtex.host.export import MAPLIBRE
 
     modules = FOLDER.parents[1] / "client" / "node_modules" / "maplibre-gl" / "dist"
     kinds = {".css": "text/css", ".html": "text/html", ".mjs": "text/javascript"}

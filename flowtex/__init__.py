@@ -19,8 +19,10 @@ from flowtex.trace.trace import trace
 
 if TYPE_CHECKING:
     from flowtex import examples, pyramid
-    from flowtex.app.display import show
     from flowtex.field.formula.make import formula
+    from flowtex.host.export import export
+    from flowtex.host.flow_widget import FlowWidget
+    from flowtex.host.show import show
     from flowtex.plotting.offscreen.figure import axes, dynamic_map, extent
     from flowtex.plotting.offscreen.movie import movie
     from flowtex.plotting.offscreen.plotter import render
@@ -28,8 +30,6 @@ if TYPE_CHECKING:
     from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
     from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits
     from flowtex.trace.structure.separatrices import Separatrices, separatrices
-    from flowtex.web.export import export
-    from flowtex.widget import FlowWidget
 
 __all__ = [
     "Camera",
@@ -62,19 +62,19 @@ _LAZY = {
     "Camera": "rendering.camera",
     "ClosedOrbit": "trace.structure.orbits",
     "CriticalPoints": "trace.structure.critical_points",
-    "FlowWidget": "widget",
+    "FlowWidget": "host.flow_widget",
     "Separatrices": "trace.structure.separatrices",
     "axes": "plotting.offscreen.figure",
     "closed_orbits": "trace.structure.orbits",
     "critical_points": "trace.structure.critical_points",
     "dynamic_map": "plotting.offscreen.figure",
-    "export": "web.export",
+    "export": "host.export",
     "extent": "plotting.offscreen.figure",
     "formula": "field.formula.make",
     "movie": "plotting.offscreen.movie",
     "render": "plotting.offscreen.plotter",
     "separatrices": "trace.structure.separatrices",
-    "show": "app.display",
+    "show": "host.show",
 }
 #: Those that need OpenGL: it is tried while they are imported.
 _DRAWS = ("axes", "dynamic_map", "movie", "render", "show")

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from flowtex._util.array_types import Bytes
+    from flowtex.host.export import Page
+    from flowtex.host.flow_widget import FlowWidget
     from flowtex.plotting.offscreen.figure import FlowImage
     from flowtex.plotting.offscreen.movie import Movie
     from flowtex.pyramid import Built
-    from flowtex.web.export import Page
-    from flowtex.widget import FlowWidget
 
 __all__ = ["FlowtexAccessor"]
 

@@ -30,7 +30,7 @@ NAMES = (*VTK, "zarr")
 #: Modules that import VTK or PyVista when they load, and all that use what is barred.
 LOAD_VTK = ("rendering.vtk", "plotting", "app")
 ROOMS = (
-    *(*LOAD_VTK, "cli", "examples", "pyramid", "rendering.diagnostics", "sources"),
+    *(*LOAD_VTK, "cli", "examples", "host.show", "pyramid", "rendering.diagnostics", "sources"),
     "trace.structure",
 )
 #: What asks for them for these rooms.

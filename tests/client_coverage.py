@@ -19,7 +19,7 @@ from playwright import sync_api
 
 BUNDLES = {
     path.name: path.read_text(encoding="utf-8")
-    for folder in ("web", "app/ui/static")
+    for folder in ("host/static", "app/ui/static")
     for path in (Path(__file__).parents[1] / "flowtex" / folder).glob("*.js")
 }
 SHORTEST = min(map(len, BUNDLES.values()))

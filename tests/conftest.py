@@ -295,7 +295,7 @@ def jupyter(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
 @pytest.fixture
 def quick_export(monkeypatch: pytest.MonkeyPatch) -> None:
     """Export pages with a small preview, which the processor draws, and larger files."""
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
     monkeypatch.setattr("flowtex.rendering.webgl.protocol.COMPRESSION_LEVEL", 1)
 
 

@@ -267,7 +267,7 @@ def test_a_converted_notebook_shows_pictures(page: Page, tmp_path: Path) -> None
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     exporters = pytest.importorskip("nbconvert.exporters")
     # A busy machine takes its time for the pictures.
-    patience = f"from flowtex.widget import display\ndisplay.MAX_WAIT_S = {PATIENCE_S}"
+    patience = f"from flowtex.host import cell\ncell.MAX_WAIT_S = {PATIENCE_S}"
     cells = [nbformat.v4.new_code_cell(text) for text in (patience, BOXES, MARKED, PLOTTER)]
     notebook = nbformat.v4.new_notebook(cells=cells)
     nbclient.NotebookClient(notebook, kernel_name="python3").execute()

@@ -23,7 +23,15 @@ SLOW = {
     *("av", "cyclopts"),
 }
 #: Modules that may import some of these when they load; all others do so in functions.
-LOAD_SLOW = (*LOAD_VTK, "widget", "cli", "__main__", "xarray", "pyramid.objects")
+LOAD_SLOW = (
+    *LOAD_VTK,
+    "host.flow_widget",
+    "host.cell",
+    "cli",
+    "__main__",
+    "xarray",
+    "pyramid.objects",
+)
 MAX_ENTRIES, MAX_MODULES, MAX_LINES = 20, 15, 600
 
 
@@ -71,8 +79,8 @@ def loaded() -> dict[str, set[str]]:
     """
     names = [module_name(path) for path in PACKAGE.rglob("*.py")]
     below = sorted(f"flowtex.{name}" for name in names if name and not is_in(name, LOAD_SLOW))
-    assert "flowtex.rendering.diagnostics" in below and "flowtex.web.export" in below
-    stages = {"flowtex": ["flowtex"], "below VTK": below, "flowtex.widget": ["flowtex.widget"]}
+    assert "flowtex.rendering.diagnostics" in below and "flowtex.host.export" in below
+    stages = {"flowtex": ["flowtex"], "below VTK": below, "widget": ["flowtex.host.flow_widget"]}
     code = (
         f"import json, sys\nfound = {{}}\nfor stage, modules in {stages!r}.items():\n"
         "    for name in modules:\n        __import__(name)\n"
@@ -97,5 +105,5 @@ def test_slow_libraries_are_imported_in_functions(loaded: dict[str, set[str]]) -
 
 
 def test_widget_needs_no_vtk(loaded: dict[str, set[str]]) -> None:
-    assert "anywidget" in loaded["flowtex.widget"]
-    assert not loaded["flowtex.widget"] & set(VTK)
+    assert "anywidget" in loaded["widget"]
+    assert not loaded["widget"] & set(VTK)

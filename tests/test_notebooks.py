@@ -27,9 +27,9 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"), key=lambda path: (path.stem in CHANGE
 #: formulas, few samples, and every third point and time of the examples.
 LESS = """import inspect
 import flowtex
-import flowtex.web.export
-import flowtex.widget.flow_widget
-for module in (flowtex.web.export, flowtex.widget.flow_widget):
+import flowtex.host.export
+import flowtex.host.flow_widget
+for module in (flowtex.host.export, flowtex.host.flow_widget):
     module.PREVIEW = (48, 30)
 flowtex.formula.__kwdefaults__["resolution"] = 97
 for draws in (flowtex.render, flowtex.movie):

@@ -47,7 +47,7 @@ def _texts_of_checkout() -> dict[str, str]:
 
 
 def _client_of_checkout() -> list[Path]:
-    folder = ROOT / "flowtex" / "web"
+    folder = ROOT / "flowtex" / "host" / "static"
     found = [path for path in folder.iterdir() if path.suffix in (".js", ".mjs", ".css", ".html")]
     assert {"core.js", "store.js", "exports.mjs", "scene.mjs", "page.css", "page.html"} <= {
         path.name for path in found
@@ -105,7 +105,7 @@ def test_wheel_holds_every_shader_and_every_module(wheel: Path) -> None:
 HELD = re.compile(
     r"flowtex/(?:[\w/]+\.pyi?|py\.typed"
     r"|_shaders/(?:common|vtk|webgl2)/\w+\.glsl"
-    r"|web/\w+\.(?:m?js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
+    r"|host/static/\w+\.(?:m?js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
     r"|examples/data/\w+\.(?:npz|nc\.gz)|field/earth/coastlines\.(?:npz|md))"
     r"|flowtex-[\d.]+\.dist-info/(?:METADATA|RECORD|WHEEL|entry_points\.txt|licenses/LICENSE)"
 )
@@ -163,7 +163,7 @@ def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
     # PyVista hands the value to import_module, so it must name a module and nothing in it.
     assert "flowtex = flowtex.plotting.component\n" in f"{declared}\n"
     # Here PyVista loads the value itself, so it must name a function.
-    assert "flowtex = flowtex.app.jupyter_backend:show_plotter" in declared
+    assert "flowtex = flowtex.host.show:show_plotter" in declared
 
 
 def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:
@@ -184,7 +184,7 @@ def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> N
 WIDGET = """
 import json, shutil, sys, threading
 import flowtex
-from flowtex.widget import FlowWidget
+from flowtex.host.flow_widget import FlowWidget
 
 came, parts, done = [], {}, threading.Event()
 def send(self, content, buffers=None):
@@ -249,7 +249,7 @@ def test_installed_wheel_shows_the_widget_without_node(
     assert told["node"] is None
     assert Path(told["package"]).is_relative_to(empty_environment.parents[1])
     page.goto("about:blank")
-    web = Path(told["package"]).parent / "web"
+    web = Path(told["package"]).parent / "host" / "static"
     told_parts = [web.joinpath(name).read_text("utf-8") for name in ("core.js", "exports.mjs")]
     assert "".join(told_parts) == told["client"]
     page.evaluate(SHOWN, [told["client"], told["header"], told["parts"]])

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from flowtex.host.view import TileSource, client_module
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web.view import TileSource, client_module
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route

@@ -14,6 +14,8 @@ from pathlib import Path
 
 #: Test files, and the folders and files outside their own package that they judge.
 JUDGED = {
+    "tests/client": ("client/src/", "flowtex/host/"),
+    "tests/host": ("flowtex/host/",),
     "tests/paper": ("paper/",),
     "tests/rendering/test_shaders.py": ("shaders/",),
     "tests/test_docs.py": ("docs/", "CONTRIBUTING.md", "README.md"),

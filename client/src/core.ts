@@ -1,5 +1,5 @@
-// All that draws, built into flowtex/web/core.js, which defines `flowtex`. A host adds its line: an
-// exported page `flowtex.openPage()`, a module its exports (flowtex/web/exports.mjs). Elements of the class
+// All that draws, built into flowtex/host/static/core.js, which defines `flowtex`. A host adds its line: an
+// exported page `flowtex.openPage()`, a module its exports (flowtex/host/static/exports.mjs). Elements of the class
 // "flowtex-live" are shown without one.
 
 import { showLiveViews } from "./live.ts";

@@ -1,4 +1,4 @@
-// A flow as a layer of a MapLibre map, built into flowtex/web/maplibre.js: the package flowtex-maplibre.
+// A flow as a layer of a MapLibre map, built into flowtex/host/static/maplibre.js: the package flowtex-maplibre.
 //
 //   scene (JSON of flowtex.export) --> BareView --> canvas --> MapPicture, a texture of the map
 //   the map's camera --> Mercator.look --^

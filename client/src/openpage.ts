@@ -1,4 +1,4 @@
-// What an exported page does: flowtex/web/export.py writes the page around it.
+// What an exported page does: flowtex/host/export.py writes the page around it.
 
 import { forwardKeys } from "./keyboard.ts";
 import { showPacked, type OpenStore } from "./packed.ts";

@@ -206,7 +206,7 @@ export interface PyramidHeader {
 /** What of the header of a tile differs from that of the root. */
 export type TileHeader = Pick<Header, "geometry" | "slices">;
 
-/** The store in which the rest of a page lies: flowtex/web/linked.py. */
+/** The store in which the rest of a page lies: flowtex/host/export.py. */
 export interface StoreHeader {
   /** Whole, or from the page on. */
   url: string;

@@ -1,4 +1,4 @@
-// Built into flowtex/web/store.js, for scenes that have only the coarsest level of a store with them.
+// Built into flowtex/host/static/store.js, for scenes that have only the coarsest level of a store with them.
 
 import type { Header } from "./protocol.ts";
 import { Stream } from "./sources/stream.ts";

@@ -1,4 +1,4 @@
-// The notebook widget: what anywidget calls. flowtex/widget is the other side; traits hold the state of
+// The notebook widget: what anywidget calls. flowtex/host/flow_widget.py is the other side; traits hold the state of
 // the view, messages carry arrays.
 
 import type { CameraState } from "./camera.ts";
@@ -196,7 +196,7 @@ class WidgetView {
     const { root } = this.first;
     if (root.dataset.live || root.dataset.failed) return;
     root.dataset.live = "true";
-    // Made by flowtex/widget/display.py, in its own output.
+    // Made by flowtex/host/cell.py, in its own output.
     const still = `[data-flowtex~="${String(this.model.get("_key"))}"]`;
     const output = ":is(.jp-OutputArea-child, .output_area)";
     this.sheet.insertRule(`${still}, ${output}:has(> * > ${still}) { display: none !important }`);

@@ -131,7 +131,7 @@ def check_picture_file(output: Path) -> None:
 
 def check_page_file(output: Path) -> None:
     """Raise an error if the page could not be written, before anything is traced."""
-    from flowtex.web.export import SUFFIXES
+    from flowtex.host.export import SUFFIXES
 
     if output.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{output}: expected a name that ends in {', '.join(SUFFIXES)}")

@@ -101,9 +101,9 @@ def serve(
 
 
 def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:
+    from flowtex.host.export import page_text
+    from flowtex.host.view import web_views
     from flowtex.scene.options import Options
-    from flowtex.web.export import page_text
-    from flowtex.web.view import web_views
 
     arguments = Options.split(**options)
     views = web_views(field, arguments)

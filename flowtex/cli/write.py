@@ -181,7 +181,7 @@ def export(
         raise UsageError(
             f"--steps is {steps}; expected 1 to {len(field.times)}, the number of steps in the file"
         )
-    from flowtex.web.export import export as write_page
+    from flowtex.host.export import export as write_page
 
     with writing(output):
         options |= {"steps": steps, "title": title, "store": store, "basemap": basemap}

@@ -1,7 +1,7 @@
 """Arguments of all functions that draw a flow, each described once.
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
-:func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
+:func:`flowtex.host.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
 three frozen classes: the part of a mesh to draw (:class:`~flowtex.field.options.FieldOptions`), the
 appearance of the surface, and the view. Others are settings.
 """

@@ -14,9 +14,9 @@ from page_reader import Reader
 from webgl_page import packed
 
 import flowtex
+from flowtex.host.view import browser_options, web_views
 from flowtex.plotting import component as reading
 from flowtex.rendering.webgl.bodies import Body
-from flowtex.web.view import browser_options, web_views
 
 if TYPE_CHECKING:
     from webgl_page import ClientPage

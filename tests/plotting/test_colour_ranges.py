@@ -15,9 +15,9 @@ from scipy.spatial import KDTree
 
 import flowtex
 from flowtex._util.colours import colour_table
+from flowtex.host.export import page_text
+from flowtex.host.view import WebView
 from flowtex.scene.scene import Scene
-from flowtex.web.export import page_text
-from flowtex.web.view import WebView
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),

@@ -16,12 +16,12 @@ from packed import parts_of
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
 from flowtex.field.derived import steps_of
+from flowtex.host.view import web_views
 from flowtex.pyramid import build
 from flowtex.pyramid.layout import FILE_CHUNK
 from flowtex.rendering.webgl.client_data import tile_parts
 from flowtex.scene.options import Options
 from flowtex.textures.tiles.pyramid import Pyramid
-from flowtex.web.view import web_views
 
 zarr = pytest.importorskip("zarr")
 

@@ -17,13 +17,13 @@ from webgl_page import ClientPage, packed, state, tile_maker
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bools, Bytes
+from flowtex.host.still import _colour
+from flowtex.host.view import web_views
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Options
-from flowtex.web.still import _colour
-from flowtex.web.view import web_views
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*normal to the surface")
 

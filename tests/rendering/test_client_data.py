@@ -12,13 +12,13 @@ from triangle_meshes import sphere, surface_of
 import flowtex
 from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
+from flowtex.host.view import TileSource, WebView, even_steps, web_views
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import part_info
 from flowtex.scene.options import Options
 from flowtex.settings import TABLE, Settings
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import coarsened_field
-from flowtex.web.view import TileSource, WebView, even_steps, web_views
 
 
 def plane(times: int = 1, shape: tuple[int, int] = (9, 12)) -> flowtex.FlowField:

@@ -12,11 +12,11 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.earth import Projection
+from flowtex.host.view import WebView, web_views
 from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.earth import LINE_STEPS, dates_of
 from flowtex.scene.options import Options
-from flowtex.web.view import WebView, web_views
 
 
 def earth(name: str, *, hole: bool = False, **options: Any) -> FlowField:

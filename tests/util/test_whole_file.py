@@ -17,8 +17,8 @@ from PIL import Image
 
 import flowtex
 from flowtex._util.whole_file import WholeFile, whole_file
+from flowtex.host.view import web_views
 from flowtex.plotting.offscreen.encoders import write_movie
-from flowtex.web.view import web_views
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes, links and limits of POSIX")
 OLD = b"the old file"

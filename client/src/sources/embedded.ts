@@ -1,4 +1,4 @@
-// A source of parts that lie in a page or module as text: flowtex/web/export.py writes them.
+// A source of parts that lie in a page or module as text: flowtex/host/export.py writes them.
 
 import { isOfStep, partOfText, stepOf, tilePart, type Header, type NamedPart, type PartInfo } from "../protocol.ts";
 import type { LoadTile, Source } from "./source.ts";

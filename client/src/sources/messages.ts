@@ -1,4 +1,4 @@
-// A source that a kernel answers by messages: flowtex/widget/feed.py is the other side. Parts come to all
+// A source that a kernel answers by messages: flowtex/host/feed.py is the other side. Parts come to all
 // views of a widget as ever, before the message that ends their request.
 
 import type { NamedPart } from "../protocol.ts";

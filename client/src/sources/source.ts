@@ -4,7 +4,7 @@
 //   messages.ts   a kernel answers         embedded.ts   text in an exported page
 //   files.ts      a server makes them      stream.ts     objects of a Zarr store
 //
-// flowtex/web/view.py is the other side of the first three.
+// flowtex/host/view.py is the other side of the first three.
 
 import { FormulaSource } from "../formula.ts";
 import type { Header, MarkKind, NamedPart, Settings } from "../protocol.ts";

@@ -1,7 +1,7 @@
 """The Python side of ``<flowtex-view>``: the data sent to the page, and the user's actions there.
 
 The page asks for files of parts: of the whole surface, and of tiles, at some times;
-:mod:`flowtex.web.view` says what is in them. The page says which of two painters draws: the
+:mod:`flowtex.host.view` says what is in them. The page says which of two painters draws: the
 browser with WebGL2, or VTK here, whose pictures a stream sends. With VTK it has only the parts for
 controls and legend.
 """
@@ -33,6 +33,7 @@ from flowtex.app.server.page import (
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
+from flowtex.host.view import TileSource, WebView, client_module
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl.client_data import ClientData
@@ -42,7 +43,6 @@ from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web.view import TileSource, WebView, client_module
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)

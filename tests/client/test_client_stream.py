@@ -19,8 +19,8 @@ from range_server import Answer, RangeServer, range_server
 from waiting import PATIENCE_S, wait_until
 
 from flowtex import FlowField
+from flowtex.host.export import export
 from flowtex.pyramid import build
-from flowtex.web.export import export
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -211,7 +211,7 @@ def test_pictures_are_those_of_a_page_that_holds_all(
 ) -> None:
     shown.open(linked(server, name, **LOOK, **options).as_uri())
     shown.wait()
-    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 10**9)
+    monkeypatch.setattr("flowtex.host.export.TILE_BYTES", 10**9)
     export(str(server.folder / f"{name}.zarr"), tmp_path / "whole.html", **LOOK, **options)
     # Triangles may be chosen by a share more exactly, which moves a colour by less than is seen.
     streamed = shown.pixels()

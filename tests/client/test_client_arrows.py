@@ -15,13 +15,13 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
+from flowtex.host.view import web_views
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.web.view import web_views
 
 pytestmark = pytest.mark.browser
 

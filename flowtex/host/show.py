@@ -1,8 +1,9 @@
-"""Display of a flow in a notebook, in a window or on a page: :func:`show`."""
+"""Display of a flow or a plotter in a notebook, in a window or on a page."""
 
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import checked_size, sized
@@ -12,12 +13,14 @@ from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 
 if TYPE_CHECKING:
-    from flowtex.widget import FlowWidget
+    from flowtex.host.flow_widget import FlowWidget
 
 #: Width and height of a window, in pixels.
 WINDOW_SIZE = (1024, 768)
 #: Arguments that apply only to VTK.
 VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
+#: Name of PyVista's Jupyter backend that draws in the browser.
+BACKEND = "flowtex"
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
@@ -61,7 +64,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     """
     if in_notebook():
         _refuse_vtk(options)
-        from flowtex.widget import FlowWidget
+        from flowtex.host.flow_widget import FlowWidget
 
         options |= {} if size is None else {"size": size}
         return FlowWidget(mesh, **options).show()
@@ -123,3 +126,46 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
     from flowtex.app import serve
 
     serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})
+
+
+def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any:
+    """Show a plotter with a flow texture in the notebook, from the plotter's own camera.
+
+    PyVista finds this function through its entry point, and calls it in ``plotter.show``; the
+    options, its ``jupyter_kwargs``, are further arguments of the :class:`flowtex.FlowWidget` that
+    is returned. A warning lists what the browser does not draw. PyVista may use a backend found
+    this way as the default if no other is installed: then it does what PyVista does without it.
+    """
+    from flowtex.rendering.diagnostics import OpenGLMissingError, begin_trial, require_opengl
+
+    if not _is_requested():
+        import pyvista as pv
+        from pyvista.jupyter.notebook import show_static_image
+
+        for backend in pv.registered_jupyter_backends():
+            if backend.name != BACKEND:
+                return backend.handler(plotter, screenshot=screenshot, **options)
+        return show_static_image(plotter, screenshot)
+    if screenshot:
+        plotter.screenshot(screenshot)
+    begin_trial()
+    from flowtex.host.flow_widget import FlowWidget
+
+    width, height = plotter.window_size
+    widget = FlowWidget(plotter, **{"size": (int(width), int(height)), **options})
+    with suppress(OpenGLMissingError):
+        require_opengl()
+        plotter.render()
+        widget.set_still(plotter.screenshot(return_img=True))
+    return widget
+
+
+def _is_requested() -> bool:
+    """Return whether the user has named this backend, which only frames of the caller tell."""
+    frame = sys._getframe(1)
+    while (caller := frame.f_back) is not None:
+        frame = caller
+        if frame.f_code.co_name == "show" and "jupyter_backend" in frame.f_locals:
+            named = frame.f_locals["jupyter_backend"]
+            return named is not None and str(named).lower() == BACKEND
+    return True

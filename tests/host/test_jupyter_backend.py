@@ -16,7 +16,7 @@ from PIL import Image
 
 from flowtex import examples
 from flowtex._util.colours import colour_table
-from flowtex.widget import FlowWidget
+from flowtex.host.flow_widget import FlowWidget
 
 
 @pytest.fixture

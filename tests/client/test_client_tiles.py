@@ -17,13 +17,13 @@ from webgl_page import ClientPage, TileMaker, packed, state, tile_maker
 
 import flowtex
 from flowtex._util.array_types import Bytes
+from flowtex.host.export import export, page_text
+from flowtex.host.view import WebView, web_views
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web.export import export, page_text
-from flowtex.web.view import WebView, web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -37,8 +37,8 @@ CAMERAS = {"near": straight(10, (0.6, 0.2)), "tilted": TILTED}
 def small_root(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     """Let a small field have four levels: tiles are made while the browser waits for them."""
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 625)
-    monkeypatch.setattr("flowtex.web.still.NODES", 600)
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.host.still.NODES", 600)
+    monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
 
 
 def place(s: Any, t: Any) -> Any:
@@ -198,7 +198,7 @@ def test_coarse_first_and_finer_where_the_view_goes(client: ClientPage) -> None:
 def test_a_page_holds_the_tiles_that_fit(
     page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 60_000)
+    monkeypatch.setattr("flowtex.host.export.TILE_BYTES", 60_000)
     made = export(field(), tmp_path / "page.html", zoom=10, focus=(0.6, 0.2), **LOOK)
     page.set_viewport_size({"width": 300, "height": 200})
     asked: list[str] = []
@@ -212,7 +212,7 @@ def test_a_page_holds_the_tiles_that_fit(
 
 
 def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 0)
+    monkeypatch.setattr("flowtex.host.export.TILE_BYTES", 0)
     text = page_text([viewed()[0]])
     assert "tile/2/0/0" not in text
     assert Reader(text).header()["pyramid"] is None

@@ -23,11 +23,11 @@ import flowtex
 from flowtex import examples
 from flowtex.errors import FieldError
 from flowtex.examples import gyre_nodes as nodes_of
+from flowtex.host.export import export
+from flowtex.host.still import preview_png
+from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
-from flowtex.web.export import export
-from flowtex.web.still import preview_png
-from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -45,7 +45,7 @@ def gyre(times: int = 1, nodes: int = 24) -> flowtex.FlowField:
 @pytest.fixture(autouse=True)
 def _small_preview(monkeypatch: pytest.MonkeyPatch) -> None:
     """The processor draws it."""
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
 
 
 def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None:
@@ -108,7 +108,7 @@ def test_a_file_is_there_whole_or_as_it_was(
 
     with monkeypatch.context() as patch:
         patch.setattr("flowtex.rendering.webgl.client_data.ClientData.step", fail)
-        patch.setattr("flowtex.web.still.preview_png", lambda *a, **k: b"")
+        patch.setattr("flowtex.host.still.preview_png", lambda *a, **k: b"")
         with pytest.raises(OSError, match="disk full"):
             export(gyre(), path)
     assert path.read_text() == "before"

@@ -326,7 +326,7 @@ class TileSource:
 
 def asset(name: str) -> Path:
     """Return the path of one of the client's files, such as ``"core.js"``."""
-    return Path(__file__).resolve().parent / name
+    return Path(__file__).resolve().parent / "static" / name
 
 
 def client_module() -> str:

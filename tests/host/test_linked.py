@@ -12,11 +12,11 @@ from page_reader import Reader
 from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.field import FieldError
+from flowtex.host.export import StoreLink, export, page_text
+from flowtex.host.view import web_views
 from flowtex.pyramid import build, open_store
 from flowtex.pyramid.layout import sealed
 from flowtex.scene.options import Options
-from flowtex.web.export import StoreLink, export, page_text
-from flowtex.web.view import web_views
 
 pytest.importorskip("zarr")
 
@@ -26,7 +26,7 @@ BUCKET = "https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
 
 
 def flow(steps: int = 1) -> FlowField:

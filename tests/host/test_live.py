@@ -10,8 +10,8 @@ import pytest
 from embed import write_scene
 from flows import gyre
 
+from flowtex.host.view import asset, web_views
 from flowtex.scene.options import Options
-from flowtex.web.view import asset, web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

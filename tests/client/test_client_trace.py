@@ -18,6 +18,8 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
+from flowtex.host.export import contents_of, export, page_pieces
+from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
@@ -28,8 +30,6 @@ from flowtex.settings import Settings
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.trace.store import SliceStore
-from flowtex.web.export import contents_of, export, page_pieces
-from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -13,9 +13,9 @@ from webgl_page import ClientPage, packed, state
 import flowtex
 from flowtex import FlowField
 from flowtex.field.earth import Projection
+from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
-from flowtex.web.view import web_views
 
 pytestmark = pytest.mark.browser
 

@@ -20,6 +20,7 @@ from PIL import Image, ImageDraw
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.colours import rgb
 from flowtex.field.interpolation import steps_around
+from flowtex.host.view import WebView
 from flowtex.rendering.arrow_seeds import ArrowSeeds
 from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.rendering.cpu.render import Picture, render
@@ -43,7 +44,6 @@ from flowtex.rendering.webgl.marks import (
 )
 from flowtex.scene.annotations import annotate, difference_text, layout, write_ticks
 from flowtex.settings import Settings
-from flowtex.web.view import WebView
 
 #: Returns the camera for a ratio of width to height.
 MakeCamera = Callable[[float], Camera]

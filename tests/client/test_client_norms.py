@@ -10,9 +10,9 @@ from matplotlib.colors import Normalize
 from normed import HEIGHT, HIGH, LOW, NORMS, PLAIN, differences, ramp
 from webgl_page import ClientPage, packed
 
+from flowtex.host.view import WebView
 from flowtex.rendering.camera import Camera
 from flowtex.scene.scene import Scene
-from flowtex.web.view import WebView
 
 pytestmark = pytest.mark.browser
 

@@ -20,6 +20,8 @@ from webgl_page import ClientPage, packed, state, tile_maker
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
 from flowtex.field.locate import locate
+from flowtex.host.export import export
+from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
@@ -28,8 +30,6 @@ from flowtex.scene.options import Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.web.export import export
-from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

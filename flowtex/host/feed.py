@@ -21,13 +21,13 @@ from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped, has_threads, start
+from flowtex.host import still
+from flowtex.host.still import MakeCamera
+from flowtex.host.view import TileSource, WebView
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene.scene import Change
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web import still
-from flowtex.web.still import MakeCamera
-from flowtex.web.view import TileSource, WebView
 
 #: A field of more nodes, at all times together, is shown coarse first.
 LARGE_NODES = 60_000

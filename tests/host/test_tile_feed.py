@@ -13,13 +13,13 @@ import pytest
 from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.progress import check
+from flowtex.host.feed import Worker
+from flowtex.host.flow_widget import Views
+from flowtex.host.view import web_views
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import Options
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid
-from flowtex.web.view import web_views
-from flowtex.widget.feed import Worker
-from flowtex.widget.flow_widget import Views
 
 
 def swirl(times: int = 1) -> Any:
@@ -85,7 +85,7 @@ class Client:
 def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Client]]:
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
     for name in ("COARSE_STEADY", "COARSE_VARYING"):
-        monkeypatch.setattr(f"flowtex.widget.feed.{name}", 400)
+        monkeypatch.setattr(f"flowtex.host.feed.{name}", 400)
     made: list[Client] = []
 
     def call(*arguments: Any, **options: Any) -> Client:

@@ -33,13 +33,13 @@ from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.host import still
+from flowtex.host.view import TileSource, WebView, asset, browser_options, client_script, web_views
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
-from flowtex.web import still
-from flowtex.web.view import TileSource, WebView, asset, browser_options, client_script, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75

@@ -12,10 +12,10 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import flowtex
+from flowtex.host.still import preview_png
+from flowtex.host.view import WebView, client_module
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene.scene import Scene
-from flowtex.web.still import preview_png
-from flowtex.web.view import WebView, client_module
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route

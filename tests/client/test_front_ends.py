@@ -18,10 +18,10 @@ from webgl_page import ClientPage, packed
 
 import flowtex
 from flowtex import FlowField, FlowWidget
+from flowtex.host.view import WebView
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.rendering.camera import Camera
 from flowtex.scene.scene import Scene
-from flowtex.web.view import WebView
 
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 

@@ -1,4 +1,15 @@
-"""The widget itself: traits that the browser and Python share, and messages between them."""
+"""The notebook widget: a flow drawn by the browser itself, in a cell.
+
+::
+
+    browser    client.js  <--- traits: header, settings, camera, time, clock
+                   |      <--- messages with arrays: surface, slices, scalars
+                   +---------> "ready", "need" a step, clicks, its first sharp frame
+    kernel     FlowWidget ---> Scene, settings
+                   +---------> Feed: one thread that traces, packs and sends
+
+Nothing is drawn in the kernel but a small picture for where widgets cannot be shown.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +25,18 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 import numpy as np
-import traitlets
 from PIL import Image
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, install_extra
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.host.export import PREVIEW, page_text, write_page
+from flowtex.host.feed import Feed, Send
+from flowtex.host.still import MakeCamera, still_png
+from flowtex.host.view import WebView, browser_options, client_module, web_views
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
@@ -32,11 +46,19 @@ from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, shar
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey
-from flowtex.web.export import PREVIEW, page_text, write_page
-from flowtex.web.still import MakeCamera, still_png
-from flowtex.web.view import WebView, browser_options, client_module, web_views
-from flowtex.widget.display import Displayed
-from flowtex.widget.feed import Feed, Send
+
+try:
+    import traitlets
+
+    from flowtex.host.cell import Displayed
+except ModuleNotFoundError as error:
+    if (error.name or "").split(".")[0] not in ("anywidget", "ipywidgets", "traitlets"):
+        raise
+    missing = (
+        f"the notebook widget needs {error.name}, which is not installed. To install it:\n  "
+        f"{install_extra('notebook')}"
+    )
+    raise ModuleNotFoundError(missing, name=error.name) from error
 
 
 class TraitValueError(SettingsError, traitlets.TraitError):

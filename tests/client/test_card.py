@@ -12,8 +12,8 @@ from flows import gyre
 from matrix import GROUND, ROOT, SHARE, SIZE, difference, straight
 from webgl_page import ClientPage, packed, state, tile_maker
 
+from flowtex.host.view import web_views
 from flowtex.scene.options import Options
-from flowtex.web.view import web_views
 
 pytest.importorskip("moderngl")
 

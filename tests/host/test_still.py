@@ -13,11 +13,11 @@ from PIL import Image
 import flowtex
 from flowtex import FlowField
 from flowtex._util.colours import rgb
+from flowtex.host.still import still_png
+from flowtex.host.view import WebView, web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.marks import KIND_MARKS
 from flowtex.scene.options import Options
-from flowtex.web.still import still_png
-from flowtex.web.view import WebView, web_views
 
 Pixels = NDArray[np.int64]
 

@@ -23,17 +23,16 @@ from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
 from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.field.earth import Projection
+from flowtex.host import feed, still
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE
-from flowtex.web import still
-from flowtex.widget import feed
 
 pytest.importorskip("anywidget")
 
 import traitlets
 from IPython.core.formatters import DisplayFormatter
 
-from flowtex.widget import FlowWidget
+from flowtex.host.flow_widget import FlowWidget
 
 #: Pixels by pixels of noise: a picture to lay on the surface.
 SQUARES = np.indices((8, 8)).sum(axis=0) % 2 * 255
@@ -452,7 +451,7 @@ def test_boxes_have_the_pictures_of_what_is_in_them(
 def test_it_is_written_as_a_page_from_where_it_is(
     make: Make, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
     widget = make(gyre(nodes=12))
     widget.camera = {"parallel_scale": 0.123}
     text = widget.to_html()

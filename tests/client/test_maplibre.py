@@ -21,8 +21,8 @@ from scipy.ndimage import map_coordinates
 
 import flowtex
 from flowtex.field.earth import EARTH_RADIUS
+from flowtex.host.view import asset
 from flowtex.pyramid import build
-from flowtex.web.view import asset
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -447,7 +447,7 @@ def test_colours_are_those_of_pictures_that_come_later(shown: Shown) -> None:
 def test_a_page_with_a_map_is_written_whole(
     browser: Browser, server: RangeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.web.export.MAPLIBRE", "./maplibre")
+    monkeypatch.setattr("flowtex.host.export.MAPLIBRE", "./maplibre")
     page, own = server.folder / "own.html", str(server.folder / "flow.zarr")
     made = flowtex.export(own, page, store="./flow.zarr", basemap=STYLE, title="<Eddies>", **LOOK)
     assert made.nbytes == page.stat().st_size

@@ -14,13 +14,13 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
 from flowtex.field.earth import Projection
+from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -1,1 +1,0 @@
-"""Pages and pictures for a browser, and its client."""
