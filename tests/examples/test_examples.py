@@ -190,12 +190,6 @@ def test_points_of_a_wrong_shape_are_refused() -> None:
         examples.double_gyre_velocity(np.zeros((7, 4)))
 
 
-@pytest.mark.parametrize("time", [float("nan"), float("inf")])
-def test_a_time_that_is_no_number_is_refused(time: float) -> None:
-    with pytest.raises(ValueError, match=r"time is (nan|inf); expected a finite number"):
-        examples.double_gyre(time)
-
-
 def test_the_flow_slides_along_the_airfoil_and_leaves_its_edge_smoothly() -> None:
     field = examples.airfoil_field(shape=(65, 1025))
     wall, velocity = field.points[0], field.velocity[0, 0]

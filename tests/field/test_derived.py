@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
 import flowtex
-from flowtex import FieldError, FlowField
+from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import Notice
 from flowtex.field.derived import DERIVED
@@ -304,20 +304,3 @@ def test_a_picture_is_coloured_by_what_is_derived() -> None:
     timed = FlowField.from_arrays(field.points, field.velocity, time_unit="s")
     for name, unit in {"vorticity": "1/s", "okubo_weiss": "1/s²"}.items():
         assert timed.with_derived(name).unit_of(name) == unit
-
-
-def test_what_cannot_be_derived_is_refused() -> None:
-    field, _ = crooked(4)
-    with pytest.raises(FieldError, match="'vortcity' cannot be derived; expected one of vorticity"):
-        field.derive("vortcity")
-    with pytest.raises(FieldError, match="horizon is None for 'ftle'; expected a time other than"):
-        field.derive("ftle")
-    with pytest.raises(FieldError, match=r"'ftle' needs a horizon; .*with_derived"):
-        flowtex.render(field, scalars="ftle")
-    with pytest.raises(FieldError, match="horizon is 0 for 'ftle'"):
-        field.derive("ftle", horizon=0)
-    with pytest.raises(FieldError, match=r"horizon=1\.0 is given for 'shear'; only ftle"):
-        field.derive("shear", horizon=1.0)
-    free = FlowField.from_arrays(field.points, field.velocity, sign_free=True)
-    with pytest.raises(FieldError, match="this field is sign-free"):
-        free.derive("vorticity")

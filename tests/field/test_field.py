@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -285,115 +284,6 @@ def test_a_collapsed_row_is_a_field() -> None:
 # --- faults ---------------------------------------------------------------------------------
 
 
-PERIODIC = 'expected "", "i", "j" or "ij", or None to detect it'
-UNUSABLE = (
-    "none of the 35 nodes is usable: all are blanked, masked or NaN; check the selected vectors "
-    "and the mask"
-)
-ORDER = "expected strictly increasing times: sort the steps, and drop repeated ones"
-
-
-@pytest.mark.parametrize(
-    ("given", "text"),
-    [
-        (
-            {"points": flat().reshape(-1, 3)},
-            "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Reshape a flat list of "
-            "points with reshape(J, I, 3)",
-        ),
-        (
-            {"points": flat()[:1], "velocity": ones(flat()[:1])},
-            "points has 1 x 7 nodes (J x I); a surface needs at least 2 along each axis. A single "
-            "row is a curve: choose another plane",
-        ),
-        (
-            {"points": (np.ones((4, 5)), np.ones((5, 4)))},
-            "points are arrays of shapes (4, 5), (5, 4); expected one shape (J, I)",
-        ),
-        (
-            {"points": np.ones((5, 7, 3))},
-            "all usable nodes lie at one point; expected a surface: check the coordinates",
-        ),
-        *(
-            (
-                {"points": np.arange(35.0).reshape(5, 7, 1) * [1, 2, -0.5] + offset},
-                "all usable nodes lie on one line; expected a surface: check the coordinates",
-            )
-            for offset in (0.0, 1e6)
-        ),
-        *(
-            (
-                {"velocity": np.ones(shape)},
-                f"velocity has shape {shape}; expected (5, 7, 2 or 3) for a steady field "
-                f"or (T, 5, 7, 2 or 3) for a time-varying one, as points has (5, 7) nodes{hint}",
-            )
-            for shape, hint in [
-                (
-                    (7, 5, 3),
-                    ". The two axes seem to be swapped: arrays are (j, i), try np.swapaxes",
-                ),
-                (
-                    (3, 5, 7),
-                    ". The components seem to come first: try np.moveaxis(velocity, 0, -1)",
-                ),
-                ((5, 7), ""),
-                ((5, 7, 4), ""),
-                ((0, 5, 7, 3), ""),
-            ]
-        ),
-        (
-            {"velocity": ones(flat()) * 1j},
-            "velocity has type complex128; expected real numbers: convert it with astype(float), "
-            "or take its real part",
-        ),
-        ({"velocity": np.full((5, 7, 3), np.nan)}, UNUSABLE),
-        *(
-            ({"velocity": ones(flat(), 3), "times": times}, text)
-            for times, text in [
-                ([0, 1], "times has shape (2,); expected (3,), one for each step of velocity"),
-                ([0, np.nan, 2], "times[1] is nan; expected a finite number"),
-                ([0, 2, 1], f"times[2] = 1 is not greater than times[1] = 2; {ORDER}"),
-                ([0, 0, 1], f"times[1] = 0 is not greater than times[0] = 0; {ORDER}"),
-            ]
-        ),
-        ({"valid": np.ones((7, 5), bool)}, "valid has shape (7, 5); expected (5, 7), as points"),
-        (
-            {"valid": np.indices((5, 7)).sum(axis=0) % 2 == 0},
-            "18 of 35 nodes are usable, but no four of them form a cell; check the mask",
-        ),
-        (
-            {"velocity": ones(flat(), 3), "scalars": {"p": np.ones((2, 5, 7))}},
-            "scalars['p'] has shape (2, 5, 7); expected (5, 7) or (3, 5, 7), as points and "
-            "velocity have",
-        ),
-        (
-            {"scalars": {"p": np.ones((7, 5))}},
-            "scalars['p'] has shape (7, 5); expected (5, 7) or (1, 5, 7), as points and velocity "
-            "have",
-        ),
-        ({"periodic": "x"}, f"periodic is 'x'; {PERIODIC}"),
-        (
-            {
-                "velocity": ones(flat(), 3),
-                "times": [0, 1],
-                "valid": np.ones(5, bool),
-                "scalars": {"p": np.ones(1)},
-                "periodic": "k",
-            },
-            "4 things are wrong:\n"
-            "  1. times has shape (2,); expected (3,), one for each step of velocity\n"
-            "  2. valid has shape (5,); expected (5, 7), as points\n"
-            "  3. scalars['p'] has shape (1,); expected (5, 7) or (3, 5, 7), as points and "
-            "velocity have\n"
-            f"  4. periodic is 'k'; {PERIODIC}",
-        ),
-    ],
-)
-def test_all_that_is_wrong_is_told(given: dict[str, Any], text: str) -> None:
-    with pytest.raises(FieldError, match=f"^{re.escape(text)}$"):
-        FlowField.from_arrays(**{"points": flat(), "velocity": ones(flat()), **given})
-
-
 def test_a_narrow_ribbon_is_a_surface() -> None:
     points = flat() * [1e3, 1e-2, 0]
     assert FlowField.from_arrays(points, ones(points)).shape == (5, 7)
@@ -420,30 +310,6 @@ def test_downsampling_keeps_the_closing_line() -> None:
     field = FlowField.from_arrays(points, ones(points)).downsample(2)
     assert field.shape == (7, 2)
     np.testing.assert_allclose(field.points[-1], field.points[0])
-
-
-@pytest.mark.parametrize(
-    ("points", "factor", "text"),
-    [
-        (flat(), 0, "factor is 0; expected 1 or more"),
-        (
-            flat(),
-            5,
-            "factor is 5, which keeps 1 of 5 lines; expected a smaller factor that keeps at "
-            "least 2",
-        ),
-        (
-            ring(9, last=True),
-            6,
-            "factor is 6, which keeps 3 of 9 lines; expected a smaller factor that keeps at "
-            "least 4",
-        ),
-    ],
-)
-def test_downsampling_too_far(points: Floats, factor: int, text: str) -> None:
-    field = FlowField.from_arrays(points, ones(points))
-    with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
-        field.downsample(factor)
 
 
 def test_the_words_for_a_field() -> None:

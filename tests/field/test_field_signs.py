@@ -7,7 +7,6 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.errors import FieldError
 from flowtex.field.grids.grid_nodes import axes, corner_signs, oriented, products
 
 Floats = NDArray[np.float64]
@@ -133,11 +132,3 @@ def test_it_is_said() -> None:
     assert "sign-free" in repr(field)
     assert field.downsample(2).sign_free
     assert "sign-free" not in repr(FlowField.from_arrays(grid(), half(grid())))
-
-
-def test_time_steps_are_refused() -> None:
-    velocity = np.stack([half(grid())] * 3)
-    with pytest.raises(
-        FieldError, match=r"sign_free is True, but velocity has 3 time steps.*velocity\[-1\]"
-    ):
-        FlowField.from_arrays(grid(), velocity, sign_free=True)

@@ -9,7 +9,6 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
 from flowtex.field.validation import NO_DATA
 from flowtex.scene.scene import Scene
@@ -75,12 +74,6 @@ def test_what_is_given_goes_first() -> None:
 def test_a_field_without_them_stays_as_it_is(velocity: Any) -> None:
     field = FlowField.from_arrays((X, Y), velocity)
     assert not field.scalars and not field.uncertainty
-
-
-def test_what_cannot_be_a_velocity_is_refused_as_ever() -> None:
-    for wrong in (gappy().astype(str), gappy()[..., :1], np.full((2, *X.shape, 2), np.nan)):
-        with pytest.raises(FieldError):
-            FlowField.from_arrays((X, Y), wrong)
 
 
 def test_a_value_beside_a_step_without_is_that_of_the_nearer_step() -> None:

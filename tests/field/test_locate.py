@@ -8,13 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.field.locate import locate, locator, surface_point
 from flowtex.field.quantities import values_at
-
-Floats = NDArray[np.float64]
 
 
 def flat(rows: int = 9, columns: int = 13) -> FlowField:
@@ -120,24 +117,3 @@ def test_the_tree_lives_as_long_as_its_field() -> None:
     del field
     gc.collect()
     assert kept() is None
-
-
-@pytest.mark.parametrize("point", [(1.0,), (np.nan, 0.0), ((1.0, 2.0),), "here"])
-def test_what_is_no_point_is_refused(point: object) -> None:
-    with pytest.raises(ValueError, match=r"point is|could not convert"):
-        locate(flat(), point)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("at", "fault"),
-    [
-        ((9.5, 1), r"\(9\.5, 1\), outside the surface; expected j from 0 to 8"),
-        ((-0.1, 1), "outside the surface"),
-        ((1, 12.5), "i from 0 to 12"),
-        ((1, np.nan), "two finite numbers"),
-        ((1, 2, 3), "two finite numbers"),
-    ],
-)
-def test_an_index_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
-    with pytest.raises(ValueError, match=fault):
-        values_at(flat(), at)

@@ -97,23 +97,6 @@ def test_a_scalar_on_cells_is_averaged_to_the_nodes() -> None:
     assert triangles.scalars["sigma"].max() <= 0.5
 
 
-@pytest.mark.parametrize(
-    ("value", "words"),
-    [
-        ("sigm", "not a scalar; did you mean 'sigma'"),
-        (np.ones((3, 4)), r"uncertainty is \(3, 4\); expected .* shape \(41, 61\)"),
-        (True, "uncertainty is True; expected the name"),
-        (-np.ones((41, 61)), "uncertainty is -1 at a node; expected 0 where"),
-    ],
-)
-def test_what_does_not_fit_is_refused(value: Any, words: str) -> None:
-    field = straight()
-    scalars = {"sigma": np.ones(field.shape)}
-    field = FlowField.from_arrays(field.points, field.velocity[0], scalars=scalars)
-    with pytest.raises(FieldError, match=words):
-        read_field(field, FieldOptions(uncertainty=value))
-
-
 def test_tiles_have_the_uncertainty_of_their_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
     shrink(monkeypatch.setattr)
     field = with_uncertainty(gyre(201, 101), gyre(201, 101).points[..., 0].clip(0) / 2)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flowtex import FieldError, FlowField
+from flowtex import FlowField
 from flowtex.field import units
 from flowtex.field.steps import LazySteps
 from flowtex.scene.scene import Scene
@@ -85,15 +85,6 @@ def test_lazy_steps_stay_lazy() -> None:
     assert isinstance(field.speed, LazySteps)
     assert field.speed[4].max() == pytest.approx(5 * 0.15 * np.hypot(20, 10))
     assert set(read) == {0, 4}
-
-
-@pytest.mark.parametrize(
-    ("length", "time", "velocity"),
-    [("m", "", "pixel/frame"), ("mm", "s", "Pa/s"), ("m", "s", "body lengths/s")],
-)
-def test_a_unit_of_another_kind_is_rejected(length: str, time: str, velocity: str) -> None:
-    with pytest.raises(FieldError, match=f"velocity_unit is '{velocity}', .* to '{length}/"):
-        rotation(length, velocity, time_unit=time)
 
 
 def test_units_that_agree_need_no_pint(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,6 @@ from PIL import Image
 
 import flowtex
 from flowtex import examples
-from flowtex.errors import FieldError
 from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.host.export import export
 from flowtex.host.still import preview_png
@@ -77,13 +76,6 @@ def test_a_page_of_the_post_is_small(
     monkeypatch.undo()  # with the preview that others get
     field = flowtex.FlowField.from_file(data_dir / "postxyz.bin", plane="k=20")
     assert export(field, tmp_path / "post.html").nbytes < 1_000_000
-
-
-def test_a_page_has_the_name_of_one(tmp_path: Path) -> None:
-    with pytest.raises(
-        FieldError, match=r"a\.pdf'; expected a name that ends in .html, .htm, .mjs"
-    ):
-        flowtex.export(flowtex.examples.double_gyre(), tmp_path / "a.pdf")
 
 
 def test_fewer_steps_make_a_smaller_page(tmp_path: Path) -> None:

@@ -58,13 +58,6 @@ def test_array_of_a_field_has_its_nodes() -> None:
     assert scene.scalar_limits == (0, steps[-1])
 
 
-def test_array_of_another_size_raises() -> None:
-    with pytest.raises(FieldError, match=r"an array of the shape \(3,\); .* \(130,\) for"):
-        flowtex.render(plane(), scalars=np.ones(3), **QUICK)
-    with pytest.raises(FieldError, match=r"scalars is \(3,\); expected the name of an array, or"):
-        flowtex.render(flowtex.examples.vortex_field(), scalars=np.ones(3), **QUICK)
-
-
 def test_camera_of_a_plotter_shows_the_same_view() -> None:
     plotter: Any = pv.Plotter(off_screen=True, window_size=[160, 120], lighting="light kit")
     with closing(plotter):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import LogNorm, NoNorm, Normalize, PowerNorm
+from matplotlib.colors import Normalize, PowerNorm
 from matplotlib.figure import Figure
 from normed import HEIGHT, HIGH, LOW, NORMS, PLAIN, differences, ramp
 
@@ -94,28 +94,6 @@ def test_missing_limits_are_those_of_the_values() -> None:
     assert image.norm is norm and (norm.vmin, norm.vmax) == (LOW, HIGH)
     image.set_norm("symlog")
     assert image.get_clim() == (LOW, HIGH)
-
-
-REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({"norm": 3}, r"norm is 3; expected a matplotlib Normalize, such as PowerNorm\(0\.5\)"),
-    ({"norm": NoNorm()}, r"expected a matplotlib Normalize"),
-    ({"norm": "lg"}, r"norm is 'lg'; .* or a name such as 'log'"),
-    ({"norm": PowerNorm(2), "clim": (0, 1)}, r"and clim is given too; omit it, and give the norm"),
-    ({"norm": PowerNorm(2), "log_scale": True}, r"and log_scale is given too"),
-    (
-        {"norm": LogNorm()},
-        r"norm is LogNorm from 80 to 80, and the values range from -20 to 80",
-    ),
-    ({"n_colors": 0}, r"n_colors is 0; expected a whole number from 1 to 1,024"),
-    ({"flip_scalars": "yes"}, r"flip_scalars is 'yes'; expected True or False"),
-    ({"below_color": "blu"}, r"the colour 'blu' does not exist"),
-]
-
-
-@pytest.mark.parametrize(("options", "said"), REFUSED)
-def test_what_has_no_colours_raises(options: dict[str, Any], said: str) -> None:
-    with pytest.raises(FieldError, match=said):
-        flowtex.render(ramp(), size=SIZE, **{**PLAIN, **options})
 
 
 def test_a_norm_that_decreases_raises_and_the_axes_stay() -> None:

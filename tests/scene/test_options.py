@@ -33,42 +33,6 @@ def test_each_argument_goes_where_it_belongs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ({"zooom": 2}, r"^the setting or argument 'zooom' does not exist; did you mean 'zoom'\?$"),
-        (
-            {"sample": 2},
-            r"^the setting or argument 'sample' does not exist; did you mean 'samples'\?$",
-        ),
-        (
-            {"qqqq": 2},
-            r"^the setting .* 'qqqq' does not exist; help\(flowtex\.render\) has all of them$",
-        ),
-        ({"proj": "north"}, r"'proj' does not exist; did you mean 'projection'\?$"),
-        ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
-        ({"opacity": None}, r"^opacity is None; expected a number from 0 to 1$"),
-        ({"clim": (1, 2, 3)}, r"^clim is \(1, 2, 3\); expected two numbers, \(low, high\), "),
-        ({"clim": "ab"}, r"^clim is 'ab'; expected two numbers, \(low, high\), the lower one fir"),
-        ({"clim": (2, 1)}, r"^clim is \(2, 1\); expected .* the lower one first, or \"robust\"$"),
-        ({"cmap": "virdis"}, r"^the colour map 'virdis' does not exist; did you mean 'viridis'"),
-        ({"cmap": "cmocean.speed"}, r"install cmocean, and give its name there, 'speed'$"),
-        ({"cmap": 3}, r"^the colour map 3 does not exist; expected a name"),
-        ({"color": "greyy"}, r"greyy"),
-        ({"axes": "bar"}, r"^axes is 'bar'; expected 'ticks', 'scale', 'none', or None$"),
-        ({"opacity": -1, "clim": -3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is -3;"),
-    ],
-)
-def test_what_is_unknown_or_wrong_is_refused(values: dict[str, Any], text: str) -> None:
-    with pytest.raises(ValueError, match=text):
-        Options.split(**values)
-
-
-def test_what_a_call_has_no_use_for_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"^the setting or argument 'zoom' does not exist; "):
-        Scene.of(gyre(), zoom=2)
-
-
-@pytest.mark.parametrize(
     "function",
     [flowtex.render, flowtex.show, flowtex.movie, flowtex.export, flowtex.FlowWidget.__init__],
 )
@@ -123,13 +87,6 @@ def test_a_second_view_follows_the_first_in_what_is_not_its_own() -> None:
     end()
     first.settings.samples = 5
     assert second.settings.samples == 9
-
-
-def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
-    with pytest.raises(
-        FieldError, match=r"^plane cannot be set for a field that already exists, FlowField"
-    ):
-        Scene.of(gyre(), plane="k=1")
 
 
 @property_test(60)
@@ -188,25 +145,6 @@ def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
     assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "hint"),
-    [
-        ("vmin", 0.0, r"did you mean 'clim'\?"),
-        ("alpha", 0.5, r"did you mean 'opacity'\?"),
-        ("depth", 10, r"did you mean 'level'\?"),
-        ("colorbar", True, r"exist; show_scalar_bar=True draws a legend"),
-        ("streak_length", 5, r"exist; a streak has samples times spacing"),
-        ("title", "Wind", r"exist; .* ax\.set_title$"),
-        ("transform", object(), r"exist; it is not needed: longitudes"),
-        ("duration", 5, r"exist; the length of a movie is seconds=5$"),
-        ("qqqq", object(), r"exist; help\(flowtex\.render\) has all"),
-    ],
-)
-def test_arguments_of_other_packages_have_a_hint(name: str, value: Any, hint: str) -> None:
-    with pytest.raises(SettingsError, match=hint):
-        Options.split(**{name: value})
-
-
 def test_the_axis_of_a_dataset_is_selected_along() -> None:
     data = pytest.importorskip("xarray").Dataset(
         {"u": (("number", "lat", "lon"), np.ones((2, 3, 3)))}
@@ -217,18 +155,6 @@ def test_the_axis_of_a_dataset_is_selected_along() -> None:
         Scene.of(data, member=1)
     with pytest.raises(SettingsError, match=r"along an axis, use sel={'longitude': -30}$"):
         Options.split(mesh="era5.nc", longitude=-30)
-
-
-def test_a_message_has_one_line_of_a_long_value() -> None:
-    mesh = pv.ImageData(dimensions=(9, 9, 1))
-    with pytest.raises(FieldError, match=r"^path is \[ImageData .{60,90}\.\.\.; expected a path$"):
-        flowtex.movie("y.mp4", [mesh, mesh])  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("name", ["coastlines", "graticule", "lighting", "visible"])
-def test_a_switch_is_true_or_false(name: str) -> None:
-    with pytest.raises(FieldError, match=f"^{name} is '10m'; expected True or False$"):
-        Options.split(**{name: "10m"})
 
 
 def test_no_land_has_two_names() -> None:

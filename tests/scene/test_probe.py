@@ -356,23 +356,6 @@ def test_a_path_around_a_ring_comes_back() -> None:
     assert got.coordinates[:, 0] == pytest.approx(np.full(31, 10.0), abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("at", "pixel", "fault"),
-    [
-        ((41.0, 3.0), 0.1, r"\(41, 3\), outside the surface"),
-        ((1.0, 3.0), 0.0, r"pixel is 0\.0; expected a positive length"),
-        ((1.0, 3.0), np.nan, "pixel is nan"),
-        ((1.0, 3.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0)), "is behind the camera"),
-        ((1.0, 3.0), Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True), "seen edge-on"),
-    ],
-)
-def test_what_cannot_be_read_is_refused(
-    at: tuple[float, float], pixel: float | Camera, fault: str
-) -> None:
-    with pytest.raises(ValueError, match=fault):
-        probe(view_of(wind()), at, pixel=pixel, size=(9, 9))
-
-
 def test_from_afar_slices_are_coarse() -> None:
     field = turn()
     view, c = view_of(field), field.surface.center

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import flowtex
-from flowtex import FieldError
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import ImageError
@@ -69,13 +68,6 @@ def test_time_outside_is_refused() -> None:
     scene = Scene(field(3))
     with pytest.raises(ValueError, match=r"^time is 4.5; expected 0 to 4, the times of the field$"):
         scene.time = 4.5
-
-
-def test_an_unknown_scalar_lists_those_that_exist() -> None:
-    with pytest.raises(FieldError, match=r"no scalar 'mach'; expected one of 'speed'"):
-        Scene(field()).scalar("mach")
-    with pytest.raises(FieldError, match=r"; a component is named as in 'U_x', or chosen"):
-        Scene(field()).scalar("U_x")
 
 
 def test_only_the_steps_that_are_shown_are_traced() -> None:

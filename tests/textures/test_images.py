@@ -115,27 +115,6 @@ def test_every_kind_of_numbers_and_shape_is_taken(image: Any) -> None:
     np.testing.assert_array_equal(as_picture(image), [[[1, 1, 1, 1], [0, 0, 0, 1]]])
 
 
-@pytest.mark.parametrize(
-    ("image", "told"),
-    [
-        (np.zeros((3, 4, 2)), r"^the image has shape \(3, 4, 2\); expected \(H, W\) for grey"),
-        (np.zeros(3), r"^the image has shape \(3,\); expected"),
-        (None, r"^the image has shape \(\); expected"),
-        (np.zeros((0, 4)), r"^the image is empty, of shape \(0, 4\); expected at least one"),
-        (np.array([[0.0, np.nan]]), r"^the image has 1 values that are NaN or infinite; replace"),
-        (np.array([[0.0, 255.0]]), r"floats range from 0 to 255; expected 0 to 1: divide by"),
-        (
-            np.array([[0, 1]], np.int64),
-            r"^the image holds int64; expected uint8, or floats from 0 to 1$",
-        ),
-        (np.array([["red"]]), r"^the image holds <U3; expected uint8"),
-    ],
-)
-def test_what_is_no_image_is_told(image: Any, told: str) -> None:
-    with pytest.raises(ImageError, match=told):
-        as_picture(image)
-
-
 def test_an_image_that_is_too_large_is_averaged_down() -> None:
     image = np.zeros((3, 2 * LARGEST), np.uint8)
     image[:, ::2] = 255

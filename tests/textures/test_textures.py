@@ -230,22 +230,6 @@ def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
         )
 
 
-def test_slices_of_another_field_are_refused() -> None:
-    slices = trace(double_gyre_field(shape=(6, 11)))
-    with pytest.raises(
-        ValueError, match=r"^the slices have \(6, 11\) nodes and the field \(7, 11\)"
-    ):
-        textures(double_gyre_field(shape=(7, 11)), slices)
-
-
-@pytest.mark.parametrize("count", [1, 33])
-def test_slices_that_a_shader_cannot_use_are_refused(count: int) -> None:
-    field = double_gyre_field(shape=(6, 11))
-    slices = trace(field, lags=np.linspace(0.1, 1, count))
-    with pytest.raises(ValueError, match=rf"^{count} lags were traced; drawing needs 2 to 32"):
-        textures(field, slices)
-
-
 # --- the paper's textures -------------------------------------------------------------------
 
 

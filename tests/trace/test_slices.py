@@ -6,13 +6,12 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from flowtex import FieldError, FlowField, TraceSlices, trace
+from flowtex import FlowField, TraceSlices, trace
 from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
@@ -133,20 +132,6 @@ def test_positions_between_the_slices_lie_on_the_path(slices: TraceSlices) -> No
     assert np.median(away) < 0.05
 
 
-def test_positions_beyond_the_slices_are_refused(slices: TraceSlices) -> None:
-    with pytest.raises(ValueError, match=r"^lag is 4\.5; expected 0 to 4, the lag of the last"):
-        slices.positions(4.5)
-    with pytest.raises(ValueError, match=r"^lag is -1; expected 0 to 4"):
-        slices.positions(-1)
-
-
-def test_forward_positions_need_forward_slices() -> None:
-    one_sided = trace(double_gyre_field(shape=(6, 11)), two_sided=False)
-    assert one_sided.forward is None
-    with pytest.raises(ValueError, match=r"^the slices have no forward side: trace with"):
-        one_sided.positions(0.1, forward=True)
-
-
 def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSlices) -> None:
     small = slices.downsample(4)
     assert small.shape == (5, 10)
@@ -158,12 +143,6 @@ def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSli
         rtol=1e-5,
     )
     np.testing.assert_array_equal(slices.downsample(1).displacement, slices.displacement)
-
-
-@pytest.mark.parametrize("factor", [0, -1, 22])
-def test_downsampling_that_leaves_nothing_is_refused(slices: TraceSlices, factor: int) -> None:
-    with pytest.raises(ValueError, match=rf"^factor is {factor}; expected 1 to 21, the shorter"):
-        slices.downsample(factor)
 
 
 def test_one_step_of_several() -> None:
@@ -252,37 +231,6 @@ def test_a_missing_file_is_told_as_such(tmp_path: Path) -> None:
 
 
 # --- arguments ------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "lags", [[], [0.0, 1.0], [-1.0], [2.0, 1.0], [1.0, 1.0], [1.0, np.inf], [np.nan], [[1.0, 2.0]]]
-)
-def test_lags_that_do_not_increase_are_refused(lags: list[float]) -> None:
-    message = f"lags is {lags!r}; expected positive numbers in increasing order"
-    field = double_gyre_field(shape=(6, 11))
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        trace(field, lags=lags)
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        paths(field, [[1.0, 1.0]], lags)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"parameter": "length"}, 'parameter is \'length\'; expected "arclength" or "time"'),
-        ({"unit": -1.0}, "unit has values from -1 to -1; expected positive numbers"),
-        ({"tolerance": 0}, "tolerance is 0; expected a positive number of cells, such as 1e-3"),
-        (
-            {"nodes": np.ones((2, 3), bool), "compose": False},
-            "nodes has shape (2, 3); expected (6, 11) as the field has",
-        ),
-        ({"steps": [1]}, "time step 1 does not exist: expected 0 to 0"),
-    ],
-)
-def test_other_arguments_are_checked(options: dict[str, Any], message: str) -> None:
-    field = double_gyre_field(shape=(6, 11))
-    with pytest.raises(FieldError, match=f"^{re.escape(message)}$"):
-        trace(field, **options)
 
 
 def test_unit_scales_the_lags() -> None:

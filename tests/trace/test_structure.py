@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial import ConvexHull, Delaunay
 
 import flowtex
-from flowtex import FieldError, FlowField
+from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.trace.structure.critical_points import CriticalPoints
@@ -166,22 +166,6 @@ def test_walls_rest_and_gaps_have_no_critical_points() -> None:
     assert len(flowtex.critical_points(FlowField.from_arrays(p, flow, valid=valid))) == 0
     still = np.where(valid[..., None], flow, 0.0)
     assert len(flowtex.critical_points(FlowField.from_arrays(p, still))) == 0
-
-
-def test_what_has_no_structure_is_refused() -> None:
-    p = points_of(5)
-    free = FlowField.from_arrays(p, p, sign_free=True)
-    with pytest.raises(FieldError, match="this field is sign-free"):
-        flowtex.critical_points(free)
-    field = FlowField.from_arrays(p, p)
-    with pytest.raises(FieldError, match="expected a positive length"):
-        flowtex.separatrices(field, length=-1)
-    with pytest.raises(FieldError, match="kind 'node' does not exist; expected one of saddle"):
-        flowtex.critical_points(field).of_kind("node")
-    with pytest.raises(FieldError, match="time step 1 does not exist"):
-        flowtex.critical_points(field, steps=[1])
-    with pytest.raises(FieldError, match="GeoJSON needs longitudes"):
-        flowtex.critical_points(field).to_geojson()
 
 
 @pytest.mark.parametrize("seam", [0.2, 2.0, 6.0])

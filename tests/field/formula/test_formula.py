@@ -204,40 +204,6 @@ def test_known_formulas_have_names(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        (dict(x=(7, -7)), r"x is \(7, -7\); expected two numbers, the lower one first"),
-        (dict(u=(0, 1)), "u has a range, but the coordinates here are x and y"),
-        (dict(b="high"), "b is 'high'; expected a number, or value, low and high"),
-        (dict(b=(2, 0, 1)), r"b is \(2, 0, 1\); expected"),
-        (dict(z=1), "z is a coordinate or the time"),
-        (dict(times=[1, 0]), "expected times that increase"),
-        (dict(resolution=1), "resolution is 1; expected 2 to 10,000 nodes"),
-        (dict(surface="cube"), "surface is 'cube'; expected one of: sphere, torus, cylinder"),
-        (dict(surface=("u", "v")), "expected x, y and z of u and v"),
-        (dict(x=(-2, -1), y=(0, 1), _first="sqrt(x)"), "has no value in any cell of the grid"),
-        (dict(_first=None), "an expression is None; expected a text"),
-        (dict(_first=lambda q: q), "takes q; expected one of: x, y"),
-        (dict(_first=lambda x: x[:2]), "does not return numbers at nodes of shape"),
-    ],
-)
-def test_what_does_not_fit_is_refused(given: dict[str, Any], words: str) -> None:
-    first = given.pop("_first", "y")
-    with pytest.raises(FieldError, match=words):
-        flowtex.formula(first, "-x", **given)
-    with pytest.raises(FieldError, match="3 expressions are given; expected two, the rates"):
-        flowtex.formula("1", "2", "3")
-    with pytest.raises(
-        FieldError, match="not the name of a known formula; did you mean 'pendulum'"
-    ):
-        flowtex.formula("pendulu")
-    with pytest.raises(FieldError, match=r"^Pendulum has no parameter 'c'; expected one of: b$"):
-        flowtex.formula("pendulum", c=1)
-    with pytest.raises(FieldError, match=r"^'pendulum' is a known formula and .*; omit 'on'$"):
-        flowtex.formula("pendulum", "on")
-
-
-@pytest.mark.parametrize(
     ("line", "python"),
     [
         ("y; -sin(x) - b*y; x=-7,7; b=0.2", "'y', '-sin(x) - b*y', x=(-7.0, 7.0), b=0.2"),
@@ -261,21 +227,6 @@ def test_a_line_is_a_flow(line: str, python: str) -> None:
         assert other is not None and other.parameters["b"].value == most
     else:
         assert changed == given
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("y; x; b=fast", "b is 'fast'; expected one to three numbers separated by commas"),
-        ("y; x; t=1", "such as t=0,10,41"),
-        ("y; x; resolution=9000", "resolution cannot be the name of a parameter"),
-        ("y; x; z", "3 expressions are given"),
-        (";", "0 expressions are given"),
-    ],
-)
-def test_a_line_that_is_none_says_why(line: str, words: str) -> None:
-    with pytest.raises(FieldError, match=words):
-        line_field(line)
 
 
 @pytest.mark.parametrize(

@@ -33,30 +33,6 @@ def test_a_square_is_a_field() -> None:
         field.downsample(2)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"points": SQUARE.reshape(2, 2, 2)}, "points has shape"),
-        ({"points": np.array([["a"]])}, "points has type"),
-        ({"triangles": HALVES[:, :2]}, "triangles has shape"),
-        ({"triangles": HALVES + 0.5}, "whole numbers"),
-        ({"triangles": HALVES + 1}, "node 4; expected 0 to 3"),
-        ({"triangles": HALVES - 1}, "node -1"),
-        ({"triangles": HALVES[:0]}, "triangles is empty"),
-        ({"velocity": EVEN[:3]}, "velocity has shape"),
-        ({"velocity": np.full((4, 2), np.nan)}, "0 of 4 nodes are usable"),
-        ({"velocity": EVEN * 1e200}, "velocity has values"),
-        ({"times": [0.0, 1.0]}, "times has shape"),
-        ({"valid": [True]}, "valid has shape"),
-        ({"scalars": {"p": np.ones(3)}}, r"scalars\['p'\] has shape"),
-    ],
-)
-def test_what_does_not_fit_is_refused(change: dict[str, Any], words: str) -> None:
-    arrays: dict[str, Any] = {"points": SQUARE, "triangles": HALVES, "velocity": EVEN, **change}
-    with pytest.raises(FieldError, match=words):
-        FlowField.from_triangles(**arrays)
-
-
 def test_what_has_no_area_or_is_there_twice_is_left_out() -> None:
     triangles = np.concatenate([HALVES, [[0, 1, 5]], [[2, 1, 0]]])
     points = np.concatenate([SQUARE, [[5.0, 5.0]], [[0.5, 0.0]]])

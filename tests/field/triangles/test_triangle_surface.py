@@ -97,12 +97,6 @@ def test_values_at_a_point_are_linear(rng: np.random.Generator) -> None:
     assert values.scalars["height"] == pytest.approx(1.8)
 
 
-@pytest.mark.parametrize("index", [(-1.0, 0.2), (1e9, 0.0), (0.0, 1.5)])
-def test_a_place_that_is_none_is_refused(index: tuple[float, float]) -> None:
-    with pytest.raises(ValueError, match="number of the triangle"):
-        surface_point(rotating(sphere(1)).surface, index)
-
-
 def test_a_blanked_triangle_has_no_point() -> None:
     points, triangles = sphere(2)
     valid = points[:, 2] < 0.5

@@ -75,22 +75,6 @@ def test_without_a_margin_the_surface_fills_the_picture() -> None:
     assert (picture[..., 0] == picture[..., 1]).all()
 
 
-@pytest.mark.parametrize("margin", [-0.1, 0.5, "wide", float("nan")])
-def test_a_margin_out_of_range_is_refused(margin: Any) -> None:
-    for function in (flowtex.render, flowtex.extent):
-        with pytest.raises(ValueError, match=r"^margin is .*; expected a number from 0 to less th"):
-            function(edge(), margin=margin)
-
-
-def test_what_has_no_extent_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^the surface is curved.* with flowtex\.render"):
-        flowtex.extent(flowtex.examples.delta_wing_field())
-    with pytest.raises(ValueError, match=r"^beside makes two views.*omit it"):
-        flowtex.extent(edge(), beside={"lod": False})
-    with pytest.raises(ValueError, match=r"^camera is .*Omit it, and use zoom"):
-        flowtex.extent(edge(), camera=[(0, 0, 9), (0, 0, 0), (0, 1, 0)])
-
-
 # --- axes ---------------------------------------------------------------------------------------
 
 
@@ -408,20 +392,6 @@ def test_polar_axes_begin_at_the_centre_and_may_be_elsewhere(figure: Figure) -> 
     x, y = ax.transData.transform((1.0, 5.5)).astype(int)
     for _ in range(2):
         assert tuple(pixels(figure)[-y, x]) == (255, 0, 0)
-
-
-def test_axes_of_another_kind_are_refused(figure: Figure) -> None:
-    with pytest.raises(FieldError, match=r"^ax .*; expected rectilinear or polar matplotlib axes"):
-        flowtex.axes(figure.add_subplot(projection="hammer"), edge())
-
-
-def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
-    with pytest.raises(ValueError, match=r"^the surface is curved"):
-        flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
-    with pytest.raises(
-        FieldError, match=r"^ax is None; expected rectilinear or polar matplotlib axes"
-    ):
-        flowtex.axes(None, edge())  # type: ignore[arg-type]
 
 
 def test_who_has_no_holoviews_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

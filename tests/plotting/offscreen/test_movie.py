@@ -268,32 +268,6 @@ def test_a_movie_that_hardly_moves_states_the_needed_duration(
     assert changed(moving).min() > 0.05
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"motion": "off"}, "motion is 'off'; expected 'speed' or 'uniform'"),
-        ({"noise": "texture"}, "noise is 'texture', which cannot move"),
-        ({"seconds": 0.0}, "seconds is 0.0; expected a number from 0.1 to 600"),
-        ({"fps": 500.0}, "fps is 500.0; expected more than 0 and at most 120"),
-        ({"fps": 100.0, "seconds": 600.0}, "60,000 frames; expected at most"),
-        ({"size": (95, 64)}, "size is 95 x 64; an MP4 needs even sides, such as 94 x 64"),
-        ({"size": (8192, 8192)}, "MP4 can have at most 35,651,584 pixels"),
-        ({"quality": 0}, "quality is 0; expected a number from 1 to 100"),
-        ({"path": "flow.avi"}, "'.avi' is not a movie format; expected .mp4, .gif"),
-        ({"path": "flow.gif", "fps": 60.0}, "a GIF can show at most 50 frames per second"),
-        ({"path": "flow.gif", "size": (0, 10)}, "size is 0 x 10; expected 1 to 16384 pixels"),
-    ],
-)
-def test_what_cannot_be_is_told_before_anything_is_drawn(
-    options: dict[str, Any], said: str, tmp_path: Path
-) -> None:
-    pytest.importorskip("av")
-    path = tmp_path / options.pop("path", "flow.mp4")
-    with pytest.raises(MovieError, match=r"expected|needs|at most|use|stands") as error:
-        flowtex.movie(shear(), path, **{"size": SIZE, **options})
-    assert said in str(error.value) and not list(tmp_path.iterdir())
-
-
 def test_a_field_without_a_sign_does_not_stream() -> None:
     x, y = np.meshgrid(np.linspace(0, 1, 8), np.linspace(0, 1, 8))
     field = FlowField.from_arrays(
@@ -380,14 +354,6 @@ def test_supersampling_keeps_the_size_of_textures_too(noise: str, opengl: object
     )
     inside = (slice(20, 100), slice(20, 140))
     assert np.corrcoef(plain[inside].ravel(), fine[inside].ravel())[0, 1] > 0.9
-
-
-@pytest.mark.parametrize(
-    "options", [{"supersampling": 0}, {"supersampling": 9}, {"size": (9000, 9), "supersampling": 2}]
-)
-def test_pictures_too_large_are_refused(options: dict[str, Any], opengl: object) -> None:
-    with pytest.raises(ValueError, match="expected 1 to"):
-        flowtex.render(shear(), **options)
 
 
 @pytest.fixture(scope="module")
