@@ -57,12 +57,13 @@ def notify(text: str, kind: type[Warning] = Notice) -> None:
 
 
 def import_extra(module: str, extra: str) -> Any:
-    """Import an optional library; the error names the command that installs it."""
+    """Import a module that needs an extra; the error names the command that installs it."""
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
+        missing = (error.name or module).partition(".")[0]
         raise ModuleNotFoundError(
-            f"{module} is missing; install it with {install_extra(extra)}", name=module
+            f"{missing} is missing; install it with {install_extra(extra)}", name=missing
         ) from error
 
 

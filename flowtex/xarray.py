@@ -15,15 +15,21 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import numpy as np
-import xarray as xr
-from xarray.plot import FacetGrid
 
 import flowtex
 from flowtex._util.arguments import brief, checked_number
 from flowtex._util.terminal import plain_text
+from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.quantities import PointValues
 from flowtex.sources.datasets.read import recognised
+
+try:
+    import xarray as xr
+    from xarray.plot import FacetGrid
+except ModuleNotFoundError:
+    import_extra("xarray", "xarray")  # whose error names the command that installs it
+    raise
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,6 +6,7 @@ import difflib
 import functools
 import math
 import os
+import stat
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -114,6 +115,20 @@ def checked_path(name: str, path: Any) -> Path:
     if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
         raise FieldError(f"{name} is {brief(path)}; expected a path")
     return Path(path)
+
+
+def checked_source(path: Any) -> Path:
+    """Return the real path of what is to be read: a file, a folder, or nothing there."""
+    real = Path(os.path.realpath(checked_path("path", path).expanduser()))
+    try:
+        kind = stat.S_IFMT(real.stat().st_mode)
+    except (FileNotFoundError, NotADirectoryError):
+        return real
+    except OSError as error:
+        raise FieldError(f"{brief(str(path))}: cannot be opened ({error.strerror})") from error
+    if kind not in (stat.S_IFREG, stat.S_IFDIR):
+        raise FieldError(f"{path}: this is a pipe or a device; expected a file or a folder")
+    return real
 
 
 def checked_target(path: Any) -> Path:

@@ -20,10 +20,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from flowtex.errors import require_pyvista
+from flowtex.errors import import_extra, require_pyvista
 
 if TYPE_CHECKING:
     from flowtex.app.controllers.library import Choice, Library
@@ -46,7 +45,7 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
-        if name in ("FlowApp", "FlowArea"):
+        if name in ("FlowApp", "FlowArea", "serve"):
             require_pyvista(f"flowtex.app.{name}")
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+        return getattr(import_extra(f"{__name__}.{_HOMES[name]}", "app"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -7,8 +7,10 @@ if OpenGL is missing.
 
 from __future__ import annotations
 
+import errno
 import io
 import math
+import os
 import signal
 import sys
 import warnings
@@ -93,7 +95,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signal.SIGINT
     except Ended as ended:
         return ended.code
-    except Exception as error:
+    except Exception as fault:
+        error = _of_output(fault)
         is_of_system = isinstance(error, diagnostics.OpenGLMissingError)
         # Other errors than these are defects of the program.
         if debug or not (is_of_system or isinstance(error, (CycloptsError, FieldError))):
@@ -116,6 +119,15 @@ def hosted() -> HostedSession:
 
     warnings.showwarning = _warn  # type: ignore[assignment]
     return HostedSession(partial(open_site, _run))
+
+
+def _of_output(error: Exception) -> Exception:
+    """Return the error of a command, in plain words where its output has no room."""
+    if not isinstance(error, OSError) or error.errno != errno.ENOSPC or error.filename:
+        return error
+    # What waits to be written would fail again when the process ends.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return UsageError(f"the output cannot be written ({error.strerror})")
 
 
 def _explained(error: Exception) -> Exception:

@@ -24,10 +24,13 @@ from flowtex.textures.images import load_image
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
+#: A word, such as the name of a file, that is too long to print.
+LONG_WORD = re.compile(r"(\S{200})\S{200,}(\S{100})")
+
 
 def complain(error: Exception, colour: str = "red") -> None:
     """Print an error, or a warning, in one paragraph on stderr."""
-    text = in_flags(str(error).strip()) or type(error).__name__
+    text = in_flags(LONG_WORD.sub(r"\1…\2", str(error).strip())) or type(error).__name__
     say(("flowtex:", f"bold {colour}"), f" {text}", stderr=True)
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
+import secrets
+import stat
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -40,6 +43,11 @@ from flowtex.cli.options import (
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
+#: Environment variable with the secret word of ``flowtex serve``.
+TOKEN_VARIABLE = "FLOWTEX_TOKEN"
+#: Characters that are read of a file with the secret word.
+MOST_TOKEN = 1000
+
 
 def serve(
     store: Annotated[
@@ -52,8 +60,16 @@ def serve(
         str | None,
         Parameter(
             group=PAGE,
-            help="Secret word in the address, without which nothing is shown; random by default.",
+            help=(
+                "Secret word in the address, without which nothing is shown; by default that of "
+                "the environment variable FLOWTEX_TOKEN, or a random one. Other users of this "
+                "machine can read it in the list of processes."
+            ),
         ),
+    ] = None,
+    token_file: Annotated[
+        Path | None,
+        Parameter(group=PAGE, help="File with the secret word, which other users cannot read."),
     ] = None,
     title: Annotated[
         str | None, Parameter(group=PICTURE, help="Title of the page; the flow's name by default.")
@@ -64,26 +80,22 @@ def serve(
     """Serve a page that streams a pyramid."""
     options, server = drawing(look, settings), address or AddressFlags()
     require_app()
-    if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
-        raise UsageError(
-            f"--token is {token!r}; expected 16 or more letters, digits, '-' and '_' that nobody "
-            "can guess; omit --token to get a random one"
-        )
+    word = _secret_word(token, token_file)
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
         raise UsageError(
             f"{store} is missing or not a pyramid; build one with `flowtex pyramid FILE -o {store}`"
         )
-    from flowtex.app.server.security import LimitedServer, known_hosts, new_secret
+    from flowtex.app.server.security import LimitedServer, known_hosts
     from flowtex.app.server.site import serve_until_ended
     from flowtex.app.server.store_site import ServedStore, store_application
     from flowtex.rendering.diagnostics import has_display
 
     with waiting(f"Reading {store.name}") as end_waiting:
-        field = open_store(store)
         served = ServedStore(store)
-        page, word = _page(field, title, options, f"store/{served.run}/"), token or new_secret()
+        field = open_store(store)
+        page = _page(field, title, options, f"store/{served.run}/")
         hosts = known_hosts(server.host, server.allow_host)
         limited = LimitedServer(
             store_application(served, page, word, hosts), handler_cancellation=True
@@ -98,6 +110,34 @@ def serve(
         with suppress(KeyboardInterrupt, asyncio.CancelledError):
             asyncio.run(serving)
     return 0
+
+
+def _secret_word(token: str | None, file: Path | None) -> str:
+    """Return the secret word of the page's address, a random one where none is given."""
+    word, readable = os.environ.get(TOKEN_VARIABLE), ""
+    source = f"{TOKEN_VARIABLE} contains another text"
+    if token is not None:
+        word, source = token, f"--token is {token!r}"
+        readable = "--token in the list of processes; use --token-file or FLOWTEX_TOKEN"
+    elif file is not None:
+        try:
+            with file.open(encoding="utf-8", errors="replace") as opened:
+                word, source = opened.read(MOST_TOKEN).strip(), f"{file} contains another text"
+                if os.fstat(opened.fileno()).st_mode & stat.S_IROTH and os.name == "posix":
+                    readable = f"{file}; take it from them with `chmod 600 {file}`"
+        except OSError as error:
+            reason = error.strerror or error
+            raise UsageError(f"--token-file is {file}, which cannot be read ({reason})") from error
+    if word is None:
+        return secrets.token_urlsafe(24)
+    if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", word):
+        raise UsageError(
+            f"{source}; expected 16 or more letters, digits, '-' and '_' that nobody can guess; "
+            "omit it to get a random one"
+        )
+    if readable:
+        complain(UserWarning(f"other users of this machine can read {readable}"), "yellow")
+    return word
 
 
 def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 
-from flowtex._util.arguments import checked_path
+from flowtex._util.arguments import checked_path, checked_source
 from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def place_text(place: str | Path) -> str:
     text = str(checked_path("store", place)) if not isinstance(place, str) else place
     if not _URL.match(text):
         checked_path("store", text)
-        return str(Path(_FILE_URL.sub("/", text)).expanduser().resolve())
+        return str(checked_source(_FILE_URL.sub("/", text)))
     url = _URL.sub(r"\1://", text).replace("\\", "/")
     try:
         parts = urlsplit(url)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import checked_source
 from flowtex._util.cache import WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -98,7 +99,7 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
 
 def _stored(place: Any, options: FieldOptions, time: float | str | None) -> FlowField | None:
     """Return the field of a pyramid in a store, where there is one."""
-    if not isinstance(place, (str, Path)) or Path(place).is_file():
+    if not isinstance(place, (str, Path)) or checked_source(place).is_file():
         return None  # before anything is loaded
     from flowtex.pyramid import is_store, open_store
     from flowtex.pyramid.source import has_parts

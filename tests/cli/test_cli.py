@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import socket
 import subprocess
 import sys
@@ -75,10 +76,32 @@ def test_without_arguments_the_help_is_printed(run: Run) -> None:
 
 
 @pytest.mark.parametrize("token", ["", "word", "x" * 15, "a b" * 9, "ä" * 20])
-def test_a_token_that_can_be_guessed_is_refused(run: Run, tmp_path: Path, token: str) -> None:
+@pytest.mark.parametrize("way", ["--token", "--token-file", "FLOWTEX_TOKEN"])
+def test_a_token_that_can_be_guessed_is_refused(
+    run: Run, tmp_path: Path, token: str, way: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("trame_rca")
-    code, _, err = run("serve", tmp_path, "--token", token)
-    assert code == 2 and f"--token is {token!r}; expected 16 or more letters" in err
+    file = tmp_path / "token"
+    file.write_text(token, encoding="utf-8")
+    monkeypatch.setenv("FLOWTEX_TOKEN", token if way == "FLOWTEX_TOKEN" else "x" * 20)
+    given = {"--token": (way, token), "--token-file": (way, file)}.get(way, ())
+    code, _, err = run("serve", tmp_path, *given)
+    assert code == 2 and "expected 16 or more letters" in err
+    assert (f"--token is {token!r}" if way == "--token" else "contains another text") in err
+
+
+def test_ways_to_give_a_token_that_others_can_read_are_warned_of(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("trame_rca")
+    file = tmp_path / "token"
+    file.write_text("x" * 20)
+    file.chmod(0o644)
+    warning = "other users of this machine can read"
+    err = run("serve", tmp_path, "--token", "x" * 20)[2]
+    assert f"{warning} --token in the list of processes; use --token-file or FLOW" in err
+    assert f"{warning} {file}" in run("serve", tmp_path, "--token-file", file)[2]
+    file.chmod(0o600)
+    assert warning not in run("serve", tmp_path, "--token-file", file)[2]
+    assert "which cannot be read (No such file" in run("serve", tmp_path, "--token-file", "x")[2]
 
 
 def test_the_version_is_printed(run: Run) -> None:
@@ -245,6 +268,52 @@ def test_what_cannot_be_is_told_in_one_paragraph(
     assert message in err and err.startswith("flowtex: ")
     assert not out and "Traceback" not in err and 'plane="' not in err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes")
+@pytest.mark.parametrize("name", ["flow.vts", "flow.nc", "flow.zarr"])
+def test_paths_that_are_no_files_are_refused(run: Run, tmp_path: Path, name: str) -> None:
+    loop, pipe, folder = tmp_path / f"loop.{name}", tmp_path / f"pipe.{name}", tmp_path / "empty"
+    loop.symlink_to(loop)
+    os.mkfifo(pipe)
+    folder.mkdir()
+    (folder / name).symlink_to(folder / name)
+    long = "x" * 1_000_000 + name
+    for command in ("info", "show", "serve", "pyramid -o a.zarr", "render -o a.png"):
+        words = command.split()
+        for path, words_of in (
+            (loop, "Too many levels of symbolic links"),
+            (pipe, "this is a pipe or a device; expected a file or a folder"),
+            (long, "File name too long"),
+        ):
+            code, _, err = run(words[0], path, *words[1:])
+            assert code == 2 and words_of in err and len(err) < 1000
+    assert "the folder has no file that can be opened" in run("show", folder)[2]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device without room")
+def test_a_full_output_is_an_error() -> None:
+    words = [sys.executable, "-m", "flowtex", "--version"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "flowtex: the output cannot be written (No space left on device)\n"
+
+
+@pytest.mark.parametrize(
+    ("missing", "used", "extra"),
+    [
+        ("trame", "import flowtex.app; flowtex.app.serve('x')", "app"),
+        ("aiohttp", "from flowtex.app import serve", "app"),
+        ("xarray", "import flowtex.xarray", "xarray"),
+    ],
+)
+def test_a_missing_package_of_an_extra_is_named(missing: str, used: str, extra: str) -> None:
+    code = f"import sys; sys.modules[{missing!r}] = None; {used}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    last = done.stderr.splitlines()[-1]
+    assert f"{missing} is missing; install it with python -m pip install" in last
+    assert f"[{extra}]" in last
 
 
 def test_missing_opengl_has_a_code_of_its_own(

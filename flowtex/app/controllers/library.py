@@ -8,6 +8,7 @@ changed is opened again on request.
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any, Concatenate, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
+from flowtex._util.arguments import checked_source
 from flowtex._util.cache import ByteCache
 from flowtex.app.server.page import shortened
 from flowtex.errors import FieldError
@@ -135,7 +137,7 @@ class Library:
         self._named = dict(openers)
         self._python = dict(python or {})
         self._looks = dict(looks or {})
-        self._folder = None if folder is None else folder.resolve()
+        self._folder = None if folder is None else checked_source(folder)
         self._sources: ByteCache[str, Source] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
         self._flows: ByteCache[tuple[str, Choice], TracedFlow] = ByteCache(
             FLOW_BYTES, max_count=MOST_FLOWS
@@ -375,7 +377,8 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
         except OSError:
             continue
         for path in paths:
-            if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
+            real = Path(os.path.realpath(path))
+            if path.name.startswith(".") or not real.is_relative_to(folder):
                 continue
             if path.is_dir() and not path.is_symlink() and is_dataset_file(path):
                 files.append((path.relative_to(folder).as_posix(), path))

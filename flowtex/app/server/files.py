@@ -176,6 +176,10 @@ def add_route(application: web.Application, find: Callable[[str], Handler | None
         handler = find(request.match_info["token"])
         if handler is None:
             raise web.HTTPNotFound
+        if encoding := request.headers.get("Content-Encoding"):
+            raise web.HTTPUnsupportedMediaType(
+                text=f"The upload has the encoding {encoding[:40]!r}; send the file as it is.\n"
+            )
         return await handler.respond(request.match_info["name"], request)
 
     application.router.add_get("/flowtex/{token}/{name}", respond)

@@ -209,8 +209,8 @@ class LimitedServer:
             self._server = await create(self._admit, *endpoint, backlog=BACKLOG)
         else:
             self._server = await create(self._admit, sock=endpoint, backlog=BACKLOG)
-        port: int = self._server.sockets[0].getsockname()[1]
-        return port
+        name = self._server.sockets[0].getsockname()
+        return int(name[1]) if isinstance(name, tuple) else 0
 
     async def stop(self) -> None:
         """Listen no more, and end all connections."""

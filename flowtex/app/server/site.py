@@ -26,12 +26,14 @@ import time
 import webbrowser
 from collections.abc import Awaitable, Callable, Container, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from html import escape
 from pathlib import Path
 
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from flowtex._util.arguments import checked_number
+from flowtex._util.temporary import TemporaryFolder
 from flowtex._util.terminal import SIGNALS, Ended, announce_end
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import (
@@ -269,7 +271,8 @@ async def serve_until_ended(
         address = f"http://{_host_name(host)}:{port}/{rest}"
         announce(address)
         if open_browser:
-            _open(address)
+            folder = TemporaryFolder()  # removed with the variable
+            loop.run_in_executor(None, _open, _redirection(address, folder.path))
         with suppress(asyncio.CancelledError), bounded_log():
             await asyncio.Event().wait()
     finally:
@@ -285,14 +288,21 @@ def _host_name(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 
+def _redirection(address: str, folder: Path) -> str:
+    """Return the address of a file that leads to another address, which only this user can read.
+
+    Other users can read the arguments of a browser in the list of processes.
+    """
+    file = folder / "flowtex.html"
+    file.touch(0o600)
+    file.write_text(f'<meta http-equiv="refresh" content="0; url={escape(address)}">', "utf-8")
+    return file.as_uri()
+
+
 def _open(address: str) -> None:
-    """Open a browser without waiting for it; without one, the address is printed."""
-
-    def in_thread() -> None:
-        with suppress(webbrowser.Error):
-            webbrowser.open(address)
-
-    asyncio.get_running_loop().run_in_executor(None, in_thread)
+    """Open a browser; without one, the printed address remains."""
+    with suppress(webbrowser.Error):
+        webbrowser.open(address)
 
 
 class RepeatFilter(logging.Filter):

@@ -13,6 +13,7 @@ which a browser may still have, have other addresses.
 from __future__ import annotations
 
 import asyncio
+import os
 import re
 import secrets
 from collections.abc import Container
@@ -25,7 +26,16 @@ from flowtex.app.server.security import LOCAL, guard, is_same
 from flowtex.errors import import_extra
 from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.places import DOCUMENT, ReadFault, fault_words, is_refused, objects_at
+from flowtex.pyramid.places import (
+    DOCUMENT,
+    PyramidError,
+    ReadFault,
+    fault_words,
+    is_refused,
+    is_remote,
+    objects_at,
+    place_text,
+)
 
 #: Seconds for which a browser may keep an object.
 KEPT_S = 3600
@@ -40,6 +50,8 @@ class ServedStore:
     """The objects of a pyramid by their names."""
 
     def __init__(self, place: str | Path) -> None:
+        self._folder = None if is_remote(place) else Path(place_text(place))
+        self._check_links()
         levels = Levels(place)
         self.run = secrets.token_hex(4)  #: A word that is unique to this run.
         self._origin = objects_at(levels.place)
@@ -55,6 +67,19 @@ class ServedStore:
         names = [f"{name}/{DOCUMENT}" for name, _ in group.members(max_depth=None)]
         self._metadata = frozenset((DOCUMENT, *names))
 
+    def _check_links(self) -> None:
+        """Raise an error where a link leads out of a local store."""
+        for folder, folders, files in os.walk(self._folder) if self._folder else ():
+            for path in (Path(folder, name) for name in (*folders, *files)):
+                if path.is_symlink() and self._is_outside(path):
+                    raise PyramidError(
+                        f"{path} is a link to {path.readlink()}, outside of the store; put a copy "
+                        "in its place"
+                    )
+
+    def _is_outside(self, path: Path) -> bool:
+        return not Path(os.path.realpath(path)).is_relative_to(self._folder or "")
+
     async def get(self, name: str) -> bytes:
         """Return an object; a LookupError if it does not exist, a ReadFault when reading fails."""
         array, _, rest = name.partition("/c/")
@@ -64,6 +89,8 @@ class ServedStore:
             for word, count in zip(words, counts, strict=True)
         )
         if not (is_chunk or name in self._metadata):
+            raise LookupError(name)
+        if self._folder and self._is_outside(self._folder / name):  # since the start
             raise LookupError(name)
         obstore = import_extra("obstore", "store")
         async with self._reads:

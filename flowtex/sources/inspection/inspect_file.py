@@ -6,6 +6,7 @@ import math
 import warnings
 from functools import lru_cache
 from mmap import ACCESS_READ, mmap
+from os.path import realpath
 from pathlib import Path
 
 from flowtex.errors import FieldError, import_extra
@@ -35,7 +36,7 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
-    waiting, seen = [path], {path.resolve()}
+    waiting, seen = [path], {realpath(path)}
     while waiting:
         file = waiting.pop()
         if not file.is_file():
@@ -48,8 +49,8 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
                 raise
             raise FieldError(f"{file}: {error}") from error
         for member in members:
-            if len(seen) < MOST_MEMBERS and member.resolve() not in seen:
-                seen.add(member.resolve())
+            if len(seen) < MOST_MEMBERS and realpath(member) not in seen:
+                seen.add(realpath(member))
                 waiting.append(member)
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.arguments import brief
+from flowtex._util.arguments import brief, checked_source
 from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
@@ -331,12 +331,14 @@ def file_and_group(path: Path) -> tuple[Path, str]:
     return file, "" if file == path else path.relative_to(file).as_posix()
 
 
-def dataset_paths(path: Any) -> list[Path]:
+def dataset_paths(given: Any) -> list[Path]:
     """Return the paths of data of the Earth, or of groups as ``model.nc/ocean``; else none."""
-    items = path if isinstance(path, (list, tuple)) else [path]
+    items = given if isinstance(given, (list, tuple)) else [given]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
-        raise FieldError(f"path is {brief(path)}; expected the path of a file, or a list of paths")
+        raise FieldError(f"path is {brief(given)}; expected the path of a file, or a list of paths")
     paths = [Path(item).expanduser() for item in items]
+    for path in paths:
+        checked_source(path)
     files = [file_and_group(p)[0] for p in paths]
     all_exist = paths and all(map(is_dataset_file, files)) and all(file.exists() for file in files)
     return paths if all_exist else []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,7 +15,10 @@ pytest.importorskip("aiohttp")
 
 from flowtex import FlowField
 from flowtex.app.server.store_site import ServedStore
+from flowtex.errors import FieldError
 from flowtex.pyramid import build
+
+TILE = "0/velocity/c/0/0/0/0"
 
 
 def flow() -> FlowField:
@@ -43,6 +47,24 @@ def test_all_objects_are_handed_on(store: Path) -> None:
     with pytest.raises(LookupError):
         asyncio.run(served.get(name))
     (store / "away").rename(store / name)
+
+
+def test_links_out_of_a_store_are_not_followed(store: Path, tmp_path: Path) -> None:
+    place, secret = tmp_path / "a.zarr", tmp_path / "secret"
+    shutil.copytree(store, place)
+    secret.write_bytes(b"secret")
+    served = ServedStore(place)
+    (place / TILE).unlink()
+    (place / TILE).symlink_to(secret)
+    with pytest.raises(LookupError):
+        asyncio.run(served.get(TILE))
+    with pytest.raises(FieldError, match=r"0 is a link to .*secret, outside of the store; put a c"):
+        ServedStore(place)
+    (place / TILE).unlink()
+    (place / TILE).symlink_to(store / TILE)
+    secret.unlink()
+    secret.symlink_to(store)
+    assert asyncio.run(ServedStore(secret).get(TILE)) == (store / TILE).read_bytes()
 
 
 NO_NAMES = [

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gzip
 import io
 import os
 import signal
@@ -119,6 +120,9 @@ async def test_files_are_handed_on() -> None:
             assert answer.status == 200
         await link.until(lambda: link.get("value") == 4)
         assert other.get("value") == 1
+        packed = {"Content-Encoding": "gzip"}
+        async with here.http.post(sends, data=gzip.compress(b"1"), headers=packed) as answer:
+            assert answer.status == 415 and "send the file as it is" in await answer.text()
         large = io.BytesIO(bytes(3_000_000))
         async with here.http.post(f"{sends}?name=%C3%A4", data=large) as answer:
             assert (answer.status, await answer.text()) == (400, "ä is too large")
@@ -128,3 +132,16 @@ async def test_what_cannot_be_opened_is_told() -> None:
     with pytest.raises(FieldError, match=r"^the mesh is wrong$"):
         async with place(fault="the mesh is wrong"):
             pass
+
+
+async def test_no_other_user_can_connect_to_the_process_of_a_page() -> None:
+    async with place() as here:
+        _, link = await here.link()
+        opened = Path(f"/proc/{link.get('pid')}/fd")
+        targets = [str(file.readlink()) for file in opened.iterdir()]
+        inodes = {name[8:-1] for name in targets if name.startswith("socket:[")}
+        lines = [line.split() for line in Path("/proc/net/unix").read_text().splitlines()]
+        bound = [line[7] for line in lines if line[6] in inodes and len(line) > 7]
+        assert bound and not any(name.startswith("@") for name in bound)
+        (folder,) = [name for name in targets if name.endswith(".tmp")]
+        assert Path(folder, "page").is_socket() and Path(folder).stat().st_mode & 0o777 == 0o700

@@ -136,8 +136,10 @@ def test_what_a_browser_keeps_is_of_one_run(store: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_shell_serves_a_store(store: Path) -> None:
-    served = start("serve", str(store), "--token", "0123456789-abcde_")
+def test_the_shell_serves_a_store(store: Path, tmp_path: Path) -> None:
+    word = tmp_path / "word"
+    word.write_text("0123456789-abcde_\n")
+    served = start("serve", str(store), "--token-file", str(word))
     try:
         assert served.address.endswith("/0123456789-abcde_/")
         with urllib.request.urlopen(served.address) as answer:

@@ -1,15 +1,16 @@
 """A session in a separate process: its proxy in the server, and its host in the process.
 
-The process is forked from one that has loaded the libraries, and listens on a socket without a
-file, at a name that the system chooses. The server in front keeps addresses, secrets and limits,
-and passes on messages and files. A crash ends one page; its memory is limited, and the system
-shares the cores among processes.
+The process is forked from one that has loaded the libraries, and listens on a socket in a folder
+that only its owner can enter. The server in front keeps addresses, secrets and limits, and passes
+on messages and files. A crash ends one page; its memory is limited, and the system shares the cores
+among processes.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+import os
 import socket as sockets
 import threading
 from collections.abc import Callable
@@ -22,6 +23,7 @@ from yarl import URL
 
 from flowtex._util.child import ENDED, Child, ChildError
 from flowtex._util.progress import Stopped, check, stoppable
+from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.files import CHUNK_BYTES
 from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
@@ -70,9 +72,10 @@ class ProcessSession(Session):
     """A session in another process."""
 
     def __init__(self, child: Child, about: dict[str, Any]) -> None:
+        self._folder = os.open(about["folder"], os.O_RDONLY)
         self._http = aiohttp.ClientSession(
             "http://localhost",
-            connector=aiohttp.UnixConnector(f"\0{about['name']}", limit=0),
+            connector=aiohttp.UnixConnector(_socket_path(self._folder), limit=0),
             timeout=aiohttp.ClientTimeout(),
             skip_auto_headers=("Accept-Encoding",),  # bodies pass unchanged
             auto_decompress=False,
@@ -90,17 +93,17 @@ class ProcessSession(Session):
             try:
                 self._child.request({"run": True}, timeout=math.inf)
             except ChildError as error:
-                if not self._ending:
-                    with suppress(RuntimeError):  # the server has ended
-                        loop.call_soon_threadsafe(self._fall, str(error))
+                with suppress(RuntimeError):  # the server has ended
+                    loop.call_soon_threadsafe(self._fall, str(error))
         with suppress(ChildError):
             self._child.request({"end": True}, timeout=ENDING_S)
         with suppress(RuntimeError):
             loop.call_soon_threadsafe(self._ended.set)
 
     def _fall(self, how: str) -> None:
-        self.lost(f"its process {how}")
-        self._closing = asyncio.ensure_future(self.end())
+        if not self._ending:
+            self.lost(f"its process {how}")
+            self._closing = asyncio.ensure_future(self.end())
 
     async def carry(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a page and the process until one of them ends."""
@@ -130,6 +133,7 @@ class ProcessSession(Session):
         self._ending = True
         await self.disconnect()
         await self._http.close()
+        os.close(self._folder)
         with suppress(TimeoutError):
             async with asyncio.timeout(ENDING_S):
                 await self._ended.wait()
@@ -159,6 +163,11 @@ class _Files:
         return response
 
 
+def _socket_path(folder: int) -> str:
+    """Return the path of a page's socket in an open folder, whose own path may be too long."""
+    return f"/proc/self/fd/{folder}/page"
+
+
 class HostedSession:
     """A session in its own process; ``open_site`` returns a site for a request, and messages."""
 
@@ -166,6 +175,7 @@ class HostedSession:
         self._open_site = open_site
         self._loop = asyncio.new_event_loop()
         asyncio.set_event_loop(self._loop)
+        self._folder = TemporaryFolder()
         self._site: Any = None
 
     def __call__(self, request: dict[str, Any]) -> tuple[Any, tuple[()]]:
@@ -178,11 +188,13 @@ class HostedSession:
 
     async def _open(self) -> dict[str, Any]:
         socket = sockets.socket(sockets.AF_UNIX, sockets.SOCK_STREAM)
-        socket.bind("")  # the system chooses a name
+        descriptor = os.open(self._folder.path, os.O_RDONLY)
+        socket.bind(_socket_path(descriptor))
+        os.close(descriptor)
         await self._site.listen(socket)
         (session,) = self._site.sessions
         return {
-            "name": socket.getsockname()[1:].decode(),
+            "folder": str(self._folder.path),
             "token": session.token,
             "files": session.routes.token,
             "static": session.static,
