@@ -33,8 +33,8 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.temporary import TemporaryFolder
 from flowtex._util.terminal import SIGNALS, Ended, announce_end
+from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import (
     FAULT,

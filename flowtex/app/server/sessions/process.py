@@ -23,7 +23,7 @@ from yarl import URL
 
 from flowtex._util.child import ENDED, Child, ChildError
 from flowtex._util.progress import Stopped, check, stoppable
-from flowtex._util.temporary import TemporaryFolder
+from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.files import CHUNK_BYTES
 from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
