@@ -318,12 +318,14 @@ class DatasetSource(Source):
         self.axes = axis_values(first)
         if name := next(iter(self.axes), ""):
             self.default_plane = f"{name}={flow.drawn.numbers.get(name, 0)}"
+        self._datasets.close()
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, as :meth:`Source.plane_of` does."""
         names = two_names(self.vectors[0])
         array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
         drawn = choose(array, Choice({LEVEL: level}), Record())
+        self._datasets.close()
         return f"{LEVEL}={drawn.numbers.get(LEVEL, 0)}"
 
     def part(self, block: str | None = None) -> Source:

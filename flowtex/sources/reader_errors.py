@@ -7,6 +7,7 @@ starts with the name of the file.
 from __future__ import annotations
 
 import logging
+import os
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.
 _VTK_GLOBALS = threading.RLock()
+#: The variable that decides if HDF5 locks files.
+LOCKING = "HDF5_USE_FILE_LOCKING"
 #: Programs by the suffixes of their files, and by the first bytes.
 SUFFIXES = {".slf": "TELEMAC", ".selafin": "TELEMAC", ".omf": "OVF", ".ovf": "OVF"}
 BEGINNINGS = {b"# OOMMF": "OVF"}
@@ -76,7 +79,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     file = Path(path).expanduser()
     cause: Exception | None = None
     has_vtk = find_spec("pyvista") is not None  # other readers do not need it
-    with _VTK_GLOBALS, _vtk_log() if has_vtk else nullcontext() as catcher:
+    with _VTK_GLOBALS, without_locks(), _vtk_log() if has_vtk else nullcontext() as catcher:
         try:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
@@ -105,6 +108,28 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     warnings = catcher.warning_events if catcher else []
     for warning in dict.fromkeys(_first_line(event.alert) for event in warnings):
         notify(f"{file}: VTK reports: {warning}", UserWarning)
+
+
+@contextmanager
+def without_locks() -> Iterator[None]:
+    """Let libraries of HDF5 that are loaded in the block lock no file, unless the user decided.
+
+    Each of them reads the variable once. A lock would keep others from writing the file meanwhile.
+    """
+    if LOCKING in os.environ:
+        yield
+        return
+    os.environ[LOCKING] = "FALSE"
+    try:
+        yield
+    finally:
+        os.environ.pop(LOCKING, None)
+
+
+def load_netcdf4() -> None:
+    """Load netCDF's library, which then locks no file."""
+    with without_locks():
+        import netCDF4  # noqa: F401
 
 
 @contextmanager

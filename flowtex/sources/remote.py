@@ -28,7 +28,8 @@ READER = "flowtex.sources.remote:Reader"
 #: Modules of readers, those for meshes first.
 PRELOAD = (
     *("flowtex.sources.remote", "pyvista", "vtkmodules.vtkIOXML", "vtkmodules.vtkIOLegacy"),
-    *("xarray", "cf_xarray", "pyproj", "netCDF4", "dask.array", "cfgrib"),
+    *("xarray", "cf_xarray", "pyproj", "flowtex.sources.reader_errors:load_netcdf4"),
+    *("dask.array", "cfgrib"),
 )
 #: Time limit of a request, which a large file extends by its bytes per second.
 REQUEST_TIMEOUT_S, BYTES_PER_S = 60.0, 10e6

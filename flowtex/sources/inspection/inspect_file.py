@@ -26,6 +26,22 @@ NUMBER_BYTES = 8
 GRIB_MAGIC = b"GRIB"
 #: Messages of GRIB 1 that are too long for three bytes count in units of 120.
 LONG_MESSAGE, LONG_UNIT = 0x800000, 120
+#: Flag of GRIB 1 that a section has the grid.
+HAS_GRID = 0x80
+#: Flag of GRIB 1 that a section marks missing values.
+HAS_BITMAP = 0x40
+#: Flags of GRIB 1 for values that are not simply packed.
+NOT_SIMPLE = 0xD0
+#: Number of columns or rows that a reduced grid declares.
+MISSING = 0xFFFF
+#: Numbers of grids of latitudes and longitudes, also Gaussian ones, by the edition.
+LATLON = {1: (0, 4, 10, 14), 2: (0, 1, 2, 3, 40, 41, 42, 43)}
+#: Basic angles that stand for degrees, in GRIB 2.
+DEGREES = (0, 0xFFFFFFFF)
+#: Greatest latitude in degrees.
+POLE = 90.0
+#: Bits that may follow the packed values.
+PADDING = 16
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
@@ -112,25 +128,63 @@ def check_grib(data: Data) -> None:
 
 
 def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
-    """Return the number of points of the largest grid of a message."""
+    """Return the number of points of the largest grid of a message.
+
+    Raises a FieldError for latitudes beyond a pole, by which ecCodes may crash, and for packed
+    values that have not their declared number of bits, of which it would read others.
+    """
 
     def number(begin: int, count: int) -> int:
         return int.from_bytes(data[begin : begin + count], "big")
 
+    def check_latitudes(unit: int, count: int, *places: int) -> None:
+        for word in (number(begin, count) for begin in places):
+            latitude = (word & ~(1 << 8 * count - 1)) / unit
+            if latitude > POLE:
+                raise FieldError(
+                    f"{label} has the latitude {latitude:g}; expected -90 to 90: the file is corrupt"
+                )
+
+    place, most, count, bits = at + 16, 0, 0, 0
     if edition == 1:
-        if not number(at + 15, 1) & 0x80:
+        flags, grid = number(at + 15, 1), at + 8 + number(at + 8, 3)
+        if not flags & HAS_GRID:
             return 0
-        grid = at + 8 + number(at + 8, 3)
-        return number(grid + 6, 2) * number(grid + 8, 2)
-    place, most = at + 16, 0
-    while place + 11 <= end:
+        values = grid + number(grid, 3)
+        most = number(grid + 6, 2) * number(grid + 8, 2)
+        if number(grid + 5, 1) in LATLON[1]:
+            check_latitudes(1_000, 3, grid + 10, grid + 17)
+        simple = not (flags & HAS_BITMAP or number(values + 3, 1) & NOT_SIMPLE)
+        if simple and MISSING not in (number(grid + 6, 2), number(grid + 8, 2)):
+            _check_packed(number(values, 3) - 11, most, number(values + 10, 1), label)
+        return most
+    while place + 9 <= end:
         length = number(place, 4)
         if not 5 <= length <= end - place:
             break
-        if data[place + 4] == 3:
-            most = max(most, number(place + 6, 4))
+        match data[place + 4]:
+            case 3:
+                most = max(most, number(place + 6, 4))
+                if number(place + 12, 2) in LATLON[2] and number(place + 38, 4) in DEGREES:
+                    check_latitudes(1_000_000, 4, place + 46, place + 55)
+            case 5:
+                # Of simple packing; the length of others depends on the values.
+                count = number(place + 5, 4) if number(place + 9, 2) == 0 else 0
+                bits = number(place + 19, 1)
+            case 7 if count:
+                _check_packed(length - 5, count, bits, label)
         place += length
     # ecCodes reads for ever where sections do not lead to the end.
     if place + 4 != end or data[place:end] != b"7777":
         raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
     return most
+
+
+def _check_packed(nbytes: int, count: int, bits: int, label: str) -> None:
+    """Raise a FieldError if a section has not the bytes for this many bits of each value."""
+    check_count(nbytes, -(-count * bits // 8), f"the packing of {label}")
+    if 8 * nbytes >= count * (bits + 1) + PADDING:
+        raise FieldError(
+            f"{label} declares {bits} bits for each of {count:,} values, but its {nbytes:,} bytes "
+            "have room for more; the file is corrupt, write or copy it again"
+        )

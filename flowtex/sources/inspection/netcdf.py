@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 import struct
+from collections import Counter
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,6 +22,8 @@ SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 #: Bytes of a value by the number of its type.
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
+#: Most variables of a dataset; xarray looks at all of them for each one.
+MOST_VARIABLES = 2_000
 #: Number of records that the writer did not know.
 STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
 
@@ -32,6 +35,16 @@ def check_netcdf(data: Data, *, whole: bool) -> None:
     for name, shape, nbytes in header.arrays:
         if whole or len(shape) < 2:
             check_memory(nbytes, f"the variable {name}")
+
+
+def check_variables(count: int) -> None:
+    """Raise a FieldError for more variables, or other entries of a header, than can be read."""
+    if count > MOST_VARIABLES:
+        raise FieldError(
+            f"the file has {count:,} variables, dimensions or attributes; expected at most "
+            f"{MOST_VARIABLES:,}. Write those that are drawn to another file, as in "
+            "ds[['u', 'v']].to_netcdf(...)"
+        )
 
 
 class _Header:
@@ -105,7 +118,9 @@ class _Header:
     def _entries(self) -> range:
         """Return a range over the entries of a list."""
         self._unpack(">I")  # the kind of entries
-        return range(self._number())
+        count = self._number()
+        check_variables(count)
+        return range(count)
 
     def _name(self) -> str:
         length = self._number()
@@ -147,6 +162,8 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
             links: list[tuple[bytes, int]] = []
             # This follows no link out of the file.
             file.id.links.visit(lambda name, link: links.append((name, link.type)), info=True)
+            parents = Counter(name.rpartition(b"/")[0] for name, _ in links)
+            check_variables(0 if whole else max(parents.values(), default=0))
             for name, kind in links:
                 if kind not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
                     external = kind == h5py.h5l.TYPE_EXTERNAL

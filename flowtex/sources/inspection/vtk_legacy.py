@@ -103,6 +103,11 @@ class TextScanner:
         self._at += count
         return count
 
+    def joins(self) -> bool:
+        """Return whether a newline was skipped last, and none follows."""
+        at = self._at
+        return self._data[at - 1 : at] == b"\n" and self._data[at : at + 1] not in (b"\n", b"\r")
+
     def read(self, count: int) -> bytes:
         """Return the next bytes, at most ``count``."""
         count = self.skip(count)
@@ -251,6 +256,12 @@ class _Legacy:
         elif nbytes:
             self._text.line()
             check_count(self._text.skip(nbytes), nbytes, label)
+            if self._text.joins():
+                # The newline behind a shorter block was taken for its last byte.
+                raise FieldError(
+                    f"the file is damaged: no newline follows the {nbytes:,} bytes of {label}, so "
+                    "at least one of them is missing; write or copy it again"
+                )
 
     def _words(self, kind: bytes, values: int, label: str) -> None:
         """Skip texts: lines, or in binary files bytes after their number."""
