@@ -145,6 +145,15 @@ class FlowField(FieldConstructors, FieldQuantities):
     vectors: str = ""
     parts: Mapping[str, Steps] = field(default_factory=dict)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the data; what is computed from them is computed again."""
+        kind = type(self)
+        return {
+            name: value
+            for name, value in vars(self).items()
+            if not isinstance(getattr(kind, name, None), cached_property)
+        }
+
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
         """Make a field from a source.

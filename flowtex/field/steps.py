@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -21,6 +22,7 @@ class LazySteps:
     a list of numbers another array of steps, read later. ``np.asarray`` reads all. ``read`` returns
     a step, (J, I, ...), by its number from 0, and may be called by several threads; ``kept`` bytes
     of steps stay in memory once they have been read, and as many of those that are made from them.
+    A pickle has ``read``, and not the steps; a deep copy is the array itself, which never changes.
     """
 
     def __init__(
@@ -29,6 +31,12 @@ class LazySteps:
         self._count, self._read, self._most = count, read, kept
         self._kept: ByteCache[int, Floats] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(LazySteps, kept=self._most), (self._count, self._read)
+
+    def __deepcopy__(self, memo: Any) -> LazySteps:
+        return self
 
     def __len__(self) -> int:
         return self._count
@@ -62,7 +70,14 @@ class LazySteps:
 
     def map(self, function: Callable[[Floats], Floats]) -> LazySteps:
         """Return steps that a function makes from these when they are read."""
-        return LazySteps(self._count, lambda number: function(self.step(number)), kept=self._most)
+        return LazySteps(self._count, partial(self._mapped, function), kept=self._most)
+
+    def _mapped(self, function: Callable[[Floats], Floats], number: int) -> Floats:
+        return function(self.step(number))
+
+    def _picked(self, numbers: AnyArray, rest: Any, number: int) -> Floats:
+        step = self.step(int(numbers[number]))
+        return np.asarray(step[rest]) if rest else step
 
     def __getitem__(self, key: Any) -> Any:
         first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
@@ -73,11 +88,7 @@ class LazySteps:
             return np.asarray(self)[key]
         if isinstance(first, slice) and not rest and len(numbers) == self._count:
             return self
-        return LazySteps(
-            len(numbers),
-            lambda n: self.step(int(numbers[n]))[rest] if rest else self.step(int(numbers[n])),
-            kept=self._most,
-        )
+        return LazySteps(len(numbers), partial(self._picked, numbers, rest), kept=self._most)
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> AnyArray:
         """Read all steps."""
@@ -129,4 +140,4 @@ def scaled_steps(steps: Steps, scale: float) -> Steps:
     """Return steps times a factor."""
     if scale == 1.0:
         return steps
-    return steps.map(lambda step: step * scale) if isinstance(steps, LazySteps) else steps * scale
+    return steps.map(partial(np.multiply, scale)) if isinstance(steps, LazySteps) else steps * scale

@@ -6,6 +6,7 @@ no direction is drawn.
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import Any, TypeVar
 
 import numpy as np
@@ -83,15 +84,16 @@ def _at_nodes(field: Any, steps: Steps) -> Steps:
     """Return means at the nodes, (T, J, I), of values that belong to cells."""
     if field.triangles is not None:
         areas, count = norm(field.surface.crosses), field.shape[1]
-        flat = map_steps(steps, lambda step: step[0])
-        return map_steps(nodal_means(flat, field.triangles, areas, count), lambda step: step[None])
+        flat = map_steps(steps, itemgetter(0))
+        return map_steps(nodal_means(flat, field.triangles, areas, count), itemgetter(None))
+    return map_steps(steps, _corner_means)
 
-    def mean(step: Floats) -> Floats:
-        cells = np.pad(step[:-1, :-1], 1, constant_values=np.nan)
-        around = np.stack([cells[j : j + len(step), i : i + step.shape[1]] for j, i in CORNERS])
-        return np.asarray(np.ma.masked_invalid(around).mean(axis=0).filled(np.nan))
 
-    return map_steps(steps, mean)
+def _corner_means(step: Floats) -> Floats:
+    """Return means at the nodes of values at cells, (J, I), each at its first node."""
+    cells = np.pad(step[:-1, :-1], 1, constant_values=np.nan)
+    around = np.stack([cells[j : j + len(step), i : i + step.shape[1]] for j, i in CORNERS])
+    return np.asarray(np.ma.masked_invalid(around).mean(axis=0).filled(np.nan))
 
 
 def unknown_share(field: Any, step: int) -> Floats:

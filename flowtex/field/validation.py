@@ -7,6 +7,7 @@ arrays into the form that the rest of the package uses.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -292,24 +293,27 @@ def filled_gaps(
     sometimes: Bools = np.any(masks, axis=0)
     if np.array_equal(sometimes, np.all(masks, axis=0)):
         return unchanged
-
-    def filled(step: Floats) -> Floats:
-        return np.where((sometimes & ~_known(step))[..., None], 0.0, step)
-
-    def lacking(step: Floats) -> Floats:
-        return np.where(_known(step), 0.0, 1.0)
-
-    def speed(step: Floats) -> Floats:
-        with np.errstate(over="ignore", invalid="ignore"):  # the field refuses such values later
-            return np.where(_known(step), np.linalg.norm(step, axis=-1), np.nan)
-
-    additions = {NO_DATA: map_steps(velocity, lacking), "speed": map_steps(velocity, speed)}
+    additions = {NO_DATA: map_steps(velocity, _lacking), "speed": map_steps(velocity, _speed)}
     return Filled(
-        map_steps(velocity, filled),
+        map_steps(velocity, partial(_filled, sometimes)),
         {**unchanged.scalars, **{k: v for k, v in additions.items() if k not in unchanged.scalars}},
         {"speed": unit, **(units or {})},
         NO_DATA,
     )
+
+
+def _filled(sometimes: Bools, step: Floats) -> Floats:
+    """Return a step with zeros at nodes that lack data, and have them at other steps."""
+    return np.where((sometimes & ~_known(step))[..., None], 0.0, step)
+
+
+def _lacking(step: Floats) -> Floats:
+    return np.where(_known(step), 0.0, 1.0)
+
+
+def _speed(step: Floats) -> Floats:
+    with np.errstate(over="ignore", invalid="ignore"):  # the field refuses such values later
+        return np.where(_known(step), np.linalg.norm(step, axis=-1), np.nan)
 
 
 def known_nodes(field: Any, first: int, last: int) -> Bools:

@@ -148,6 +148,40 @@ def grib2(points: int) -> bytes:
     return b"GRIB\0\0\0\x02" + struct.pack(">Q", 16 + len(content)) + content
 
 
+def grib(
+    edition: int, *, packed: int = 12, bits: int | None = None, latitude: float | None = None
+) -> bytes:
+    """Return two messages of winds, packed into some bits, which may declare others.
+
+    They may declare another latitude as well.
+    """
+    import eccodes
+
+    messages = b""
+    for number in (165, 166):
+        message = eccodes.codes_grib_new_from_samples(f"regular_ll_sfc_grib{edition}")
+        name = {165: "10u", 166: "10v"}[number]
+        key = ("indicatorOfParameter", number) if edition == 1 else ("shortName", name)
+        eccodes.codes_set(message, *key)
+        count = eccodes.codes_get(message, "numberOfDataPoints")
+        eccodes.codes_set(message, "bitsPerValue", packed)
+        eccodes.codes_set_values(message, np.linspace(number, number + (packed > 0), count))
+        places = {
+            key: eccodes.codes_get_offset(message, key)
+            for key in ("bitsPerValue", "latitudeOfFirstGridPoint")
+        }
+        data = bytearray(eccodes.codes_get_message(message))
+        eccodes.codes_release(message)
+        if bits is not None:
+            data[places["bitsPerValue"]] = bits
+        if latitude is not None:
+            width, unit = (3, 1e3) if edition == 1 else (4, 1e6)
+            at = places["latitudeOfFirstGridPoint"]
+            data[at : at + width] = round(latitude * unit).to_bytes(width, "big")
+        messages += bytes(data)
+    return messages
+
+
 def zarr_of_a_size(path: Path, version: int, **declared: Any) -> None:
     """Write a Zarr folder of a wind, and then what it declares of its arrays."""
     import xarray as xr

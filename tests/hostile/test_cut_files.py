@@ -310,6 +310,18 @@ def test_what_is_missing_is_told(files: Whole, tmp_path: Path, name: str, share:
         inspect_file(lay(tmp_path / "cut", files, name, name, data))
 
 
+@pytest.mark.parametrize("name", ["binary.vtk", "image.vtk", "old.vtk"])
+def test_a_byte_that_is_missing_in_a_binary_block_is_refused(
+    files: Whole, tmp_path: Path, name: str
+) -> None:
+    data = files[name][name]
+    begin = data.index(b"LOOKUP_TABLE default\n") + 21
+    for at in (begin, begin + 100, begin + 299):
+        path = lay(tmp_path / str(at), files, name, name, data[:at] + data[at + 1 :])
+        with pytest.raises(FieldError, match=r"no newline follows the \d+ bytes of scalars"):
+            FlowField.from_file(path)
+
+
 def test_a_grid_that_is_cut_to_one_of_two_dimensions_is_refused(
     files: Whole, tmp_path: Path
 ) -> None:

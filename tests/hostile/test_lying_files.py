@@ -95,6 +95,11 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
             lies.grib2(4)[:19] + b"\x16" + lies.grib2(4)[20:],
             "the sections of message 1 do not match its length",
         ),
+        ("bits.grib", lies.grib(2, bits=4), "message 1 declares 4 bits for each of 496 values"),
+        ("wide.grib", lies.grib(2, bits=24), "the packing of message 1 declares 1,488 bytes"),
+        ("one.grib", lies.grib(1, bits=4), "message 1 declares 4 bits for each of 496 values"),
+        ("pole.grib", lies.grib(1, latitude=120.0), "message 1 has the latitude 120"),
+        ("pole2.grib", lies.grib(2, latitude=160.0), "has the latitude 160"),
         ("spaces.vtu", b"\n" * 300 + lies.vtu(10**12)[21:], "3,000,000,000,000 values"),
         (
             "piece.vtu",
@@ -133,6 +138,24 @@ def test_a_size_that_the_file_has_not_is_refused(
 ) -> None:
     (tmp_path / name).write_bytes(content)
     assert what in refused(tmp_path / name)
+
+
+def test_grib_of_any_packing_is_read(tmp_path: Path) -> None:
+    for edition in (1, 2):
+        for bits in (0, 1, 12, 24):
+            path = tmp_path / f"{edition}_{bits}.grib"
+            path.write_bytes(lies.grib(edition, packed=bits))
+            inspect_file(path)
+
+
+def test_variables_beyond_a_number_are_refused(tmp_path: Path) -> None:
+    import netCDF4
+
+    for name, kind in (("classic.nc", "NETCDF3_CLASSIC"), ("four.nc", "NETCDF4")):
+        with netCDF4.Dataset(tmp_path / name, "w", format=kind) as file:  # type: ignore[arg-type]
+            for number in range(2_001):
+                file.createVariable(f"x{number}", "f4", ())
+        assert "the file has 2,001 variables" in refused(tmp_path / name)
 
 
 def test_an_array_beside_a_surface_is_as_long_as_it_says(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -63,21 +64,27 @@ def derived_steps(name: str, field: Any) -> Steps:
         raise FieldError(
             f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
         )
-    surface, projection, compute = field.surface, field.projection, DERIVED[name]
-    whole = node_gradient(surface, projection)
-
-    def scalar(step: Floats, gradient: NodeGradient = whole) -> Floats:
-        with np.errstate(invalid="ignore"):
-            moved = true_velocity(step, surface.points, projection)
-            return gradient.with_poles(compute(gradient.of_vectors(moved)))
-
-    def known_only(number: int) -> Floats:
-        gradient = node_gradient(surface, projection, known_nodes(field, number, number))
-        return scalar(field.velocity[number], gradient)
-
     if field.uncertainty == NO_DATA:
-        return LazySteps(len(field.times), known_only)
-    return map_steps(field.velocity, scalar)
+        return LazySteps(len(field.times), partial(_of_known, name, field))
+    surface, projection = field.surface, field.projection
+    gradient = node_gradient(surface, projection)
+    return map_steps(field.velocity, partial(_derived, name, surface.points, projection, gradient))
+
+
+def _derived(
+    name: str, points: Floats, projection: Any, gradient: NodeGradient, step: Floats
+) -> Floats:
+    """Return a derived scalar of a step of the velocity, (J, I)."""
+    with np.errstate(invalid="ignore"):
+        moved = true_velocity(step, points, projection)
+        return gradient.with_poles(DERIVED[name](gradient.of_vectors(moved)))
+
+
+def _of_known(name: str, field: Any, number: int) -> Floats:
+    """Return a derived scalar of a step, from the nodes that have data there."""
+    known = known_nodes(field, number, number)
+    gradient = node_gradient(field.surface, field.projection, known)
+    return _derived(name, field.surface.points, field.projection, gradient, field.velocity[number])
 
 
 def steps_of(field: Any, name: str) -> Steps:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 import scipy
@@ -103,11 +105,8 @@ def _grid_gradient(
     poles = tuple(_poles(points, valid))
     points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
 
-    def difference(nodal: Floats, axis: int, turns: Floats) -> Floats:
-        turn = turns[axis] if periodic[axis] else None
-        return _difference(nodal, valid, axis, turn)
-
-    p_i, p_j = (difference(points, axis, offset) for axis in (1, 0))
+    turns = [turn if is_closed else None for turn, is_closed in zip(offset, periodic, strict=True)]
+    p_i, p_j = (_difference(points, valid, axis, turns[axis]) for axis in (1, 0))
     for axis, line in poles:  # a pole has the directions of the line beside it
         lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
         lines[line] = lines[abs(line - 1)]
@@ -126,14 +125,20 @@ def _grid_gradient(
         for array in (two, i_two, j_two):
             np.negative(array, out=array)
 
-    def derivative(nodal: Floats) -> Floats:
-        by_i, by_j = (difference(nodal, axis, np.zeros((2, len(nodal)))) for axis in (1, 0))
-        by_j *= j_two
-        by_j += by_i * i_two
-        by_i *= i_one
-        return np.stack([by_i, by_j])
-
+    derivative = partial(_grid_derivative, valid, periodic, np.stack([i_one, i_two, j_two]))
     return NodeGradient(np.stack([one, two]), derivative, poles)
+
+
+def _grid_derivative(
+    valid: Bools, periodic: tuple[bool, bool], cells: Floats, nodal: Floats
+) -> Floats:
+    """Return derivatives (2, C, J, I) of values at nodes, (C, J, I), by the cells per length."""
+    turns = [np.zeros(len(nodal)) if is_closed else None for is_closed in periodic]
+    by_i, by_j = (_difference(nodal, valid, axis, turns[axis]) for axis in (1, 0))
+    by_j *= cells[2]
+    by_j += by_i * cells[1]
+    by_i *= cells[0]
+    return np.stack([by_i, by_j])
 
 
 def _difference(nodal: Floats, valid: Bools, axis: int, turn: Floats | None) -> Floats:
@@ -227,12 +232,13 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
         diagonal = np.where(solvable, -np.bincount(rows, entries, count), np.nan)
         operators.append(matrix + scipy.sparse.diags_array(diagonal))
 
-    def derivative(nodal: Floats) -> Floats:
-        columns = nodal[:, 0].T
-        return np.stack([(operator @ columns).T[:, None] for operator in operators])
-
     directions = np.stack([one, two]).transpose(0, 2, 1)[:, :, None]
-    return NodeGradient(directions, derivative)
+    return NodeGradient(directions, partial(_applied, operators))
+
+
+def _applied(operators: list[Any], nodal: Floats) -> Floats:
+    columns = nodal[:, 0].T
+    return np.stack([(operator @ columns).T[:, None] for operator in operators])
 
 
 def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:

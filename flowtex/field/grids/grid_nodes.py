@@ -8,8 +8,9 @@ interpolation. Paths are traced to both sides, kernels are symmetric, and grains
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -266,22 +267,26 @@ def grid_nodes(
         v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
         v = with_equal_ends(v[None], closed, surface.poles)
     v[:, ~ok] = 0.0
-    appended = [n - m for n, m in zip(ok.shape, p.shape[:2], strict=True)]
-
-    def closed_as_nodes(step: Floats) -> Floats:
-        for axis, lines in enumerate(appended):
-            if lines:
-                step = np.concatenate([step, np.take(step, [0], axis=axis)], axis=axis)
-        return step
-
-    def moving(step: Floats) -> Floats:
-        step = closed_as_nodes(three_components(step))
-        return np.where((ok & finite_nodes(step))[..., None], step, 0.0)
-
+    closed_as_nodes = partial(_closed, [n > m for n, m in zip(ok.shape, p.shape, strict=False)])
+    moving = partial(_moving, ok, closed_as_nodes)
     steps = velocity.map(moving) if isinstance(velocity, LazySteps) else v
     read = {name: scalar.map(closed_as_nodes) for name, scalar in late.items()}
     ordered = {name: {**nodal.scalars, **read}[name] for name in (*scalars, *on_cells)}
     return GridNodes(surface, steps, ok, closed, ordered, bool(v.any()))
+
+
+def _closed(appended: Sequence[bool], step: Floats) -> Floats:
+    """Return a step whose first line comes again at the end along these axes."""
+    for axis, is_appended in enumerate(appended):
+        if is_appended:
+            step = np.concatenate([step, np.take(step, [0], axis=axis)], axis=axis)
+    return step
+
+
+def _moving(ok: Bools, closed: Callable[[Floats], Floats], step: Floats) -> Floats:
+    """Return a step of a velocity, zero at nodes without data."""
+    step = closed(three_components(step))
+    return np.where((ok & finite_nodes(step))[..., None], step, 0.0)
 
 
 def sign_free_faults(v: Floats) -> list[str]:

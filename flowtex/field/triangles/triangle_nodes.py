@@ -84,7 +84,7 @@ def triangle_nodes(
     if isinstance(velocity, LazySteps):
         steps = velocity.map(partial(_row, ok))
     data = {
-        name: scalars[name].map(lambda step: step[None])
+        name: scalars[name].map(_as_row)
         if isinstance(scalars[name], LazySteps)
         else scalar_steps(s, (1, len(p)))
         for name, s in arrays.items()
@@ -112,14 +112,24 @@ def triangle_nodes(
     if len(used) < len(p):
         ok, steps, data = _joined(number[same], len(used), ok, steps, data)
         p = p[used]
-    steps = map_steps(steps, lambda step: np.where(ok[:, None], step, 0.0))
+    steps = map_steps(steps, partial(_at_rest, ~ok))
     for name, s in on_cells.items():
         late = cell_scalars[name]
         if isinstance(late, LazySteps):
-            data[name] = late.map(lambda step: step[None, drawn])
+            data[name] = late.map(partial(_as_row, at=drawn))
         else:
             data[name] = scalar_steps(s, (1, cells))[..., drawn]
     return TriangleNodes(p[None].copy("C"), number[corners], steps, ok[None], data)
+
+
+def _as_row(step: Floats, at: Any = slice(None)) -> Floats:
+    """Return some values of a step, (N, ...), as a row of nodes, (1, N, ...)."""
+    return step[None, at]
+
+
+def _at_rest(unused: Bools, step: Floats) -> Floats:
+    """Return a step, (1, N, 3), that is zero at nodes that are not in use."""
+    return np.where(unused[:, None], 0.0, step)
 
 
 def _row(ok: Bools, step: Floats) -> Floats:
@@ -221,12 +231,14 @@ def _joined(
     """Average the values of nodes at one place; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)
     summed = partial(sums_at, number[kept], count=count, of=kept)
-
-    def mean(step: Floats) -> Floats:
-        return known_means(step[0], summed)[None]
-
+    mean = partial(_row_means, summed=summed)
     usable = np.bincount(number[kept], ok[kept], count) > 0
     return usable, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}
+
+
+def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
+    """Return :func:`known_means` of a row of nodes, (1, N, ...)."""
+    return known_means(step[0], summed)[None]
 
 
 def edges_of(triangles: Indices) -> Indices:

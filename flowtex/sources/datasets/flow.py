@@ -188,20 +188,20 @@ class Flow:
     trimmed: tuple[slice, ...] = ()  #: Rows and columns that repeat no others.
     mesh: Mesh | None = None
     staggered: bool = False
-    mean: Callable[[int], tuple[Floats, Floats]] | None = None  #: Of the members of an ensemble.
+    mean: Callable[[int], Floats] | None = None  #: Of the members of an ensemble.
 
-    def components(self, step: int) -> tuple[Floats, Floats]:
-        """Return the components eastward and northward, or along x and y, in :attr:`unit`."""
+    def components(self, step: int) -> Floats:
+        """Return the components eastward and northward, or along x and y, (2, ...)."""
         if self.mean is not None:
             return self.mean(step)
         u, v = self.values.read(step)
         self.datasets.close()
         if self.mesh is not None:
-            return self.mesh.vectors_at_nodes(u, v, self.cells[0])
+            return np.stack(self.mesh.vectors_at_nodes(u, v, self.cells[0]))
         u, v = u[self.trimmed], v[self.trimmed]
-        if self.orientation.along != "grid" or self.places.is_line:
-            return u, v
-        return self.places.turned(self.ahead, u, v)
+        if self.orientation.along == "grid" and not self.places.is_line:
+            u, v = self.places.turned(self.ahead, u, v)
+        return np.stack([u, v])
 
     def at_nodes(self, values: Floats) -> Floats:
         """Return values of another variable, in the middle of all cells, at the nodes.

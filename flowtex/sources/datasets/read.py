@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -53,11 +54,6 @@ OF_GRIDS = re.compile(
     rf"{LONGITUDE.pattern}|{LATITUDE.pattern}|^(e[12][tuvf]|d[xy][tuvcg]?|[tuvf]?mask\w*|[xy]c?)$",
     re.I,
 )
-
-#: Reads the components u and v at the nodes of a step.
-Step = Callable[[int], tuple[Floats, Floats]]
-#: Steps whose components are kept, as velocity and speed use the same.
-MOST_READ = 4
 
 #: Steps of a series among which the first one that moves is searched.
 MOST_SEARCHED = 200
@@ -134,38 +130,28 @@ def _whole(
     nodes, arguments = (
         _on_grid(flow, projection) if flow.mesh is None else _on_mesh(flow, projection)
     )
-    read = lru_cache(MOST_READ)(flow.components)
-
-    def later(function: Callable[[int], Floats]) -> LazySteps:
-        return LazySteps(count, function)
-
-    def value(function: Callable[[int], Floats], step: int) -> Floats:
-        return nodes.at(function(step))
-
-    extra = {key: later(partial(value, s.read)) for key, s in scalars.items() if not s.on_faces}
+    # Velocity and speed use the same components.
+    read = LazySteps(count, flow.components)
+    own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
+    extra = {key: steps.map(nodes.at) for key, steps in own.items() if not scalars[key].on_faces}
     on_cells: dict[str, LazySteps] = {}
     if flow.mesh is not None:
-        faces = flow.mesh.triangle_faces[getattr(nodes, "members", slice(None))]
-        own = {key: later(s.read) for key, s in scalars.items() if s.on_faces}
-        on_cells = {key: steps.map(lambda step: step[faces]) for key, steps in own.items()}
+        faces = itemgetter(flow.mesh.triangle_faces[getattr(nodes, "members", slice(None))])
+        on_cells = {key: own[key].map(faces) for key, s in scalars.items() if s.on_faces}
     flat = nodes.projection is not None and not nodes.projection.is_globe
     if flat:
-        extra["speed"] = later(lambda step: np.hypot(*map(nodes.at, read(step))))
+        extra["speed"] = read.map(partial(_speed, nodes))
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
     elif flow.unit:
         arguments["velocity_unit"] = units.symbol(flow.unit)
     if nodes.projection is None:
         arguments["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
     scale = (units.factor(flow.unit, "m/s") or 1.0) if flat and flow.unit else 1.0
-
-    def vectors(step: int) -> Floats:
-        return nodes.vectors(*map(nodes.at, read(step))) * scale
-
     if spread is not None:
-        extra[spread_name(uncertainty)] = later(partial(value, spread))
-    velocity = later(vectors)
+        extra[spread_name(uncertainty)] = LazySteps(count, spread).map(nodes.at)
+    velocity = read.map(partial(_vectors, nodes, scale))
     if count > 1:
-        _note_rest(read, count, flow)
+        _note_rest(read, flow)
     make: Any = GridArrays if flow.mesh is None else TriangleArrays
     arrays: GridArrays | TriangleArrays = make(
         points=nodes.points,
@@ -181,16 +167,19 @@ def _whole(
     return arrays
 
 
-def _note_rest(read: Callable[[int], tuple[Floats, Floats]], count: int, flow: Flow) -> None:
+def _speed(nodes: MapNodes | MeshMap | PlaneNodes, components: Floats) -> Floats:
+    return np.asarray(np.hypot(*map(nodes.at, components)))
+
+
+def _vectors(nodes: MapNodes | MeshMap | PlaneNodes, scale: float, components: Floats) -> Floats:
+    return nodes.vectors(*map(nodes.at, components)) * scale
+
+
+def _note_rest(read: LazySteps, flow: Flow) -> None:
     """Record that the first step is at rest, and the first one that is not."""
-
-    def moves(step: int) -> bool:
-        return any(np.nan_to_num(part).any() for part in read(step))
-
-    if moves(0):
-        return
-    first = next((n for n in range(1, min(count, MOST_SEARCHED)) if moves(n)), None)
-    if first is not None:
+    searched = read[:MOST_SEARCHED]
+    first = next((n for n, step in enumerate(searched) if np.nan_to_num(step).any()), 0)
+    if first:
         times = np.asarray(flow.drawn.times)[first : first + 1]
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
         flow.record(
@@ -221,7 +210,9 @@ def _averaged(
         )
         for number in range(u.sizes[dim])
     ]
-    mean, spread = mean_and_spread([member.components for member in members])
+    sums = LazySteps(
+        members[0].drawn.steps, partial(_sums, [member.components for member in members])
+    )
     record("select", f"mean over {dim}", caption=f"mean over {dim}")
     drawn = members[0].drawn
     if axis_kind(u, dim) == TIME:
@@ -231,8 +222,8 @@ def _averaged(
         ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
     ]
     kept = Datasets(others, datasets.closers)
-    changes: dict[str, Any] = {"mean": mean, "drawn": drawn, "datasets": kept}
-    return replace(members[0], **changes), spread
+    changes: dict[str, Any] = {"mean": partial(_mean, sums), "drawn": drawn, "datasets": kept}
+    return replace(members[0], **changes), partial(_spread, sums)
 
 
 def _on_grid(flow: Flow, projection: str | None) -> tuple[MapNodes | PlaneNodes, dict[str, Any]]:
@@ -382,31 +373,27 @@ def recognised(data: Any) -> dict[str, str]:
     return rows
 
 
-def mean_and_spread(members: Sequence[Step]) -> tuple[Step, Callable[[int], Floats]]:
-    """Return functions that read the mean velocity of members, and their spread from 0 to 1.
+def _sums(members: Sequence[Callable[[int], Floats]], step: int) -> Floats:
+    """Return the means of u, v and u² + v² of the members of an ensemble, (3, ...)."""
+    total = np.zeros(())
+    for read in members:
+        u, v = read(step)
+        total = total + np.stack([u, v, u * u + v * v])
+    return total / len(members)
 
-    The spread is the standard deviation of the velocity, of both components together, over the
-    length of its mean; it is 1 where that is more.
+
+def _mean(sums: LazySteps, step: int) -> Floats:
+    return sums.step(step)[:2]
+
+
+def _spread(sums: LazySteps, step: int) -> Floats:
+    """Return the spread of an ensemble from 0 to 1.
+
+    It is the standard deviation of the velocity, of both components together, over the length of
+    its mean; 1 where that is more.
     """
-
-    @lru_cache(MOST_READ)
-    def sums(number: int) -> Floats:
-        total = np.zeros(())
-        for read in members:
-            u, v = (np.asarray(part, dtype=float) for part in read(number))
-            total = total + np.stack([u, v, u * u + v * v])
-        return total / len(members)
-
-    def mean(number: int) -> tuple[Floats, Floats]:
-        u, v, _ = sums(number)
-        return u, v
-
-    def spread(number: int) -> Floats:
-        u, v, square = sums(number)
-        length = u * u + v * v
-        with np.errstate(invalid="ignore", divide="ignore"):
-            # Nodes at rest in all members have no spread.
-            share = np.where(square > 0, np.sqrt(np.maximum(square / length - 1, 0)), 0.0)
-        return np.where(np.isnan(square), np.nan, np.minimum(share, 1.0))
-
-    return mean, spread
+    u, v, square = sums.step(step)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # Nodes at rest in all members have no spread.
+        share = np.where(square > 0, np.sqrt(np.maximum(square / (u * u + v * v) - 1, 0)), 0.0)
+    return np.where(np.isnan(square), np.nan, np.minimum(share, 1.0))

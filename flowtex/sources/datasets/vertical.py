@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,7 +33,7 @@ from flowtex.sources.datasets.axes import (
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import variable, velocity_unit
-from flowtex.sources.datasets.values import checked_component, numbers_in
+from flowtex.sources.datasets.values import Component, checked_component, numbers_in
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -99,33 +100,17 @@ def read_section(
     y, y_factor, y_text = _vertical(up, two)
     count = drawn.steps
 
-    read = [checked_component(part, 1.0, 2, None, record) for part in parts]
-
-    def component(number: int) -> Callable[[int], Floats]:
-        def values(step: int) -> Floats:
-            result = read[number].read(step, None, axes=2)
-            close()
-            return result
-
-        return values
-
-    def velocity(step: int) -> Floats:
-        a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
-        return np.stack([a, b, np.zeros_like(a)], axis=-1)
-
-    velocities = LazySteps(count, velocity)
-    scalars = {
-        # The axes have different units, so a speed along both has none.
-        "speed": lambda step: np.abs(component(0)(step)) * metres,
-        u: component(0),
-        v: component(1),
-    }
+    components = [checked_component(part, 1.0, 2, None, record) for part in parts]
+    along_u, along_v = (LazySteps(count, partial(_step, part, close)) for part in components)
+    velocities = LazySteps(count, partial(_velocity, along_u, along_v, metres * x_factor, y_factor))
+    # The axes have different units, so a speed along both has none.
+    speed = along_u.map(np.abs).map(partial(np.multiply, metres))
     return GridArrays(
         points=np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1),
         velocity=velocities if count > 1 else velocities[0],
         times=drawn.times,
         reading=record.reading,
-        scalars={key: LazySteps(count, read) for key, read in scalars.items()},
+        scalars={"speed": speed, u: along_u, v: along_v},
         name=name,
         time_unit="s",
         units={"speed": "m/s", u: unit, v: str(two.attrs["units"])},
@@ -133,6 +118,18 @@ def read_section(
         periodic="",
         section=SectionAxes(x_text, y_text, downward=_is_downward(up)),
     )
+
+
+def _step(part: Component, close: Callable[[], None], step: int) -> Floats:
+    values = part.read(step, None, axes=2)
+    close()
+    return values
+
+
+def _velocity(u: LazySteps, v: LazySteps, across: float, up: float, step: int) -> Floats:
+    """Return vectors, (J, I, 3), of components in units of the axes per second."""
+    a, b = u.step(step) * across, v.step(step) * up
+    return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
 
 def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:

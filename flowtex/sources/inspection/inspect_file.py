@@ -142,7 +142,7 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
             latitude = (word & ~(1 << 8 * count - 1)) / unit
             if latitude > POLE:
                 raise FieldError(
-                    f"{label} has the latitude {latitude:g}; expected -90 to 90: the file is corrupt"
+                    f"{label} has the latitude {latitude:g}; expected -90 to 90: it is damaged"
                 )
 
     place, most, count, bits = at + 16, 0, 0, 0

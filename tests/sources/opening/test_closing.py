@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +15,7 @@ import xarray as xr
 from earth_data import winds
 
 from flowtex import FlowField
+from flowtex.sources.open_source import open_source
 from flowtex.sources.opening.dataset_files import as_datasets, open_datasets
 
 pytestmark = [
@@ -62,3 +67,55 @@ def test_groups_and_series_are_closed(tmp_path: Path) -> None:
         assert any(map(is_open, (tree, *steps)))
         opened.close()
         assert not any(map(is_open, (tree, *steps)))
+
+
+def test_a_source_holds_no_file_open(tmp_path: Path) -> None:
+    data().to_netcdf(tmp_path / "run.nc")
+    source = open_source(tmp_path / "run.nc")
+    assert not is_open(tmp_path / "run.nc")
+    source.field()
+    assert not is_open(tmp_path / "run.nc")
+
+
+def test_a_file_that_is_open_for_reading_is_not_locked(tmp_path: Path) -> None:
+    data().to_netcdf(tmp_path / "run.nc")
+    reading = """
+import sys, h5py
+from pathlib import Path
+from flowtex.sources.opening.dataset_files import open_datasets
+from flowtex.sources.reader_errors import errors_of_file
+with errors_of_file(sys.argv[1]):
+    opened = open_datasets([Path(sys.argv[1])])
+opened[0].u.values
+assert "netCDF4" in sys.modules
+print("open", flush=True)
+input()
+"""
+    reader = subprocess.Popen(
+        [sys.executable, "-c", reading, tmp_path / "run.nc"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert reader.stdout is not None and reader.stdout.readline() == "open\n"
+        import h5py
+
+        with h5py.File(tmp_path / "run.nc", "r+", locking=True) as file:
+            file.attrs["history"] = "written meanwhile"
+    finally:
+        reader.communicate("\n")
+
+
+@pytest.mark.parametrize("options", [{}, {"globe": True}, {"uncertainty": "time"}])
+def test_a_field_of_a_file_is_pickled_and_copied(tmp_path: Path, options: Any) -> None:
+    data().to_netcdf(tmp_path / "run.nc")
+    field = FlowField.from_file(tmp_path / "run.nc", **options).with_derived("vorticity")
+    speeds = np.asarray(field.speed)
+    for other in (pickle.loads(pickle.dumps(field)), copy.deepcopy(field)):
+        assert type(other.velocity) is type(field.velocity)
+        np.testing.assert_array_equal(other.velocity, field.velocity)
+        np.testing.assert_array_equal(other.speed, speeds)
+        for name, steps in field.scalars.items():
+            np.testing.assert_array_equal(other.scalars[name], steps)
+    assert not is_open(tmp_path / "run.nc")
