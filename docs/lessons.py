@@ -39,7 +39,7 @@ class WidgetView(live.View):
         chosen = {**options, **dict(widget.settings)}
         self.mesh, self.look = mesh, {**chosen, "camera": dict(widget.camera)}
         self.time = widget.time
-        self.views = widget._views.views
+        self.views = widget._views
         self.camera = dict(widget.camera)
         self.whole = self.plays = False
         what = repr(sorted(chosen.items(), key=str)).encode() + self.pictures[0].tobytes()

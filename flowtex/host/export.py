@@ -34,7 +34,15 @@ from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.host import still
-from flowtex.host.view import TileSource, WebView, asset, browser_options, client_script, web_views
+from flowtex.host.view import (
+    TileSource,
+    WebView,
+    asset,
+    browser_options,
+    client_script,
+    first_parts,
+    web_views,
+)
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
@@ -383,7 +391,7 @@ def _packed(
             tiles = TileSource(scene, budget=0).tiles()
             parts = chain([scene.surface()], map(scene.step, steps), tiles)
         else:
-            parts = chain([first_parts(scene, time)])
+            parts = chain([first_parts(scene, scene.times[0] if time is None else time)])
         for name, array in chain.from_iterable(part.items() for part in parts):
             if name in names:  # values of all times are parts of each step
                 continue
@@ -447,16 +455,6 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
         "derivesSpeed": "speed" not in stored.about["scalars"],
         "steps": [scene.source(step) for step in range(scene.steps)],
     }
-
-
-def first_parts(scene: ClientData, time: float | None) -> Parts:
-    """Return the arrays with which a page begins: the surface, and one moment."""
-    parts = scene.surface()
-    for step in scene.moment(float(scene.times[0] if time is None else time)):
-        parts |= scene.values(step, shown=True)
-        step_parts = scene.step(step)
-        parts |= {name: step_parts[name] for name in step_parts if not name.startswith("scalars/")}
-    return parts
 
 
 def _stored(view: WebView) -> StoredPyramid:

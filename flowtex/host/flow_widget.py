@@ -18,7 +18,8 @@ import io
 import sys
 import threading
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
+from concurrent.futures import wait
 from contextlib import suppress
 from contextvars import copy_context
 from pathlib import Path
@@ -34,8 +35,8 @@ from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.host.export import PREVIEW, page_text, write_page
-from flowtex.host.feed import Feed, Send
-from flowtex.host.still import MakeCamera, still_png
+from flowtex.host.feed import Feed
+from flowtex.host.still import still_png
 from flowtex.host.view import WebView, browser_options, client_module, web_views
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
@@ -142,9 +143,12 @@ class Host:
         asyncio.run_coroutine_threadsafe(flush(), self._loop)
 
 
-#: Width of a still where the widget fills the cell, and most pixels of its sides.
-USUAL_WIDTH, MOST_SIDE = 800, 4096
-SLACK = 1e-9  #: Share of the duration by which rounding may move a time outside of it.
+#: Width of a still where the widget fills the cell, in pixels.
+USUAL_WIDTH = 800
+#: Most pixels of the sides of a still.
+MOST_SIDE = 4096
+#: Share of the duration by which rounding may move a time outside of it.
+SLACK = 1e-9
 
 
 class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
@@ -247,11 +251,22 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._fit = arguments.view.first_camera
         self._ends: list[Callable[[], None]] = []
         host = Host()
-        self._views = Views(
-            views,
-            lambda number, header: host.call(self._announce, number, header),
-            lambda content, buffers: host.call(self.send, content, buffers),
-        )
+
+        def feed(number: int, view: WebView) -> Feed:
+            return Feed(
+                view,
+                moment=lambda: views[0].scene.time,
+                announce=lambda header: host.call(self._announce, number, header),
+                send=lambda content, buffers: host.call(
+                    self.send, {**content, "view": number}, buffers
+                ),
+            )
+
+        #: One view or two, from left to right. The second has the settings of the first except its
+        #: own, and the browser links their cameras.
+        self._feeds = [feed(n, view) for n, view in enumerate(views)]
+        for view in views[1:]:
+            follow(lambda: self.scene, lambda view=view: view.scene, view.own)  # type: ignore[misc]
         first = self._fit(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
             _key=uuid.uuid4().hex,
@@ -262,21 +277,25 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             axes=arguments.view.axes,
             **dict(self.settings),
         )
-        for number, header in enumerate(self._views.headers):
-            self._announce(number, header)
+        for number, each in enumerate(self._feeds):
+            self._announce(number, each.header)
         self._reading = arguments.field
         self.on_msg(self._handle_message)
         self.observe(lambda c: setattr(self.settings, c["name"], c["new"]), list(TABLE))
         self.observe(self._to_time, "time")
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
-        for feed in self._views.feeds:
-            feed.start()
+        for each in self._feeds:
+            each.start()
         self._is_made = True
 
     @property
     def scene(self) -> Scene:
         """The field, its appearance and its textures."""
-        return self._views.first
+        return self._feeds[0].view.scene
+
+    @property
+    def _views(self) -> list[WebView]:
+        return [feed.view for feed in self._feeds]
 
     @property
     def field(self) -> FlowField:
@@ -290,14 +309,17 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
         before, field = self.field.surface, share_field(read_field(mesh, reading))
-        self._views.show(field)
+        for view in self._views:  # all, or none if it does not fit one of them
+            view.scene.showing(field).close()
+        for view in self._views:
+            view.show(field)
         self._frame = self._still = None
         if not can_share_camera(before, field.surface):
             self.camera = Camera.fit(field.surface, PREVIEW[0] / PREVIEW[1]).to_dict()
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
-        views = self._views.views
+        views = self._views
         lay_image([view.scene for view in views], load_image(image), views[-1].own)
 
     def set_still(self, picture: Bytes) -> None:
@@ -318,25 +340,27 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         shown: dict[str, Any] = {"camera": dict(self.camera), "axes": self.axes}
         shown |= {"time": self.time, "clock": self.clock}
         if path is None:
-            return page_text(self._views.views, title=title, picture=self._frame, **shown)
-        write_page(self._views.views, path, title=title, picture=self._frame, **shown)
+            return page_text(self._views, title=title, picture=self._frame, **shown)
+        write_page(self._views, path, title=title, picture=self._frame, **shown)
         return None
 
     def close(self) -> None:
         """Remove the widget from the page and free its memory."""
-        if "_views" in vars(self):  # also a widget whose constructor failed is closed
+        if "_feeds" in vars(self):  # also a widget whose constructor failed is closed
             for end in self._ends:
                 end()
             self._ends = []
-            self._views.close()
+            for feed in self._feeds:
+                feed.close()
+                feed.view.close()
         super().close()
         if not sys.is_finalizing():  # a kernel that ends leaves its stills
             self._update_stills(last=True)
 
     @traitlets.validate("noise")
     def _check_noise(self, proposal: Any) -> Any:
-        views = getattr(self, "_views", None)
-        if proposal["value"] == "image" and views is not None and views.first.image is None:
+        is_made = "_feeds" in vars(self)
+        if proposal["value"] == "image" and is_made and self.scene.image is None:
             raise TraitValueError(NO_IMAGE)
         return proposal["value"]
 
@@ -379,6 +403,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                     self.send_state(name)
 
     def _announce(self, number: int, header: Header) -> None:
+        if len(self._feeds) > 1:
+            own, settings = self._views[1].own_settings, self._views[number].scene.settings
+            values = {name: getattr(settings, name) for name in own} if number else {}
+            header = {**header, "differs": list(own), "own": values}
         # Not while the browser's values are being set, which would delay it until after the arrays
         # that belong to it.
         with self._state_lock:
@@ -388,27 +416,77 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             trait = "_header_beside" if number else "_header"
             setattr(self, trait, {**header, "shaders": None})
 
-    def _handle_message(self, _: Any, content: Any, buffers: list[memoryview]) -> None:
-        if isinstance(content, dict):
-            if content.get("kind") == "frame":
-                self._frame = self._still = bytes(buffers[0])
-                with suppress(OSError, ValueError, TypeError, KeyError):
-                    self._still = self._views.framed(self._frame, content, self._look(), self.axes)
-                self._update_stills()
-            self._views.handle_message(content)
+    def _handle_message(self, _: Any, message: Any, buffers: list[memoryview]) -> None:
+        """Answer the client; invalid messages are ignored."""
+        if not isinstance(message, dict):
+            return
+        kind, number, request = message.get("kind"), message.get("view", 0), message.get("request")
+        for feed in self._feeds:
+            feed.acknowledged = True
+            if kind == "ready":
+                feed.ready()
+        if kind == "frame":
+            self._frame = self._still = bytes(buffers[0])
+            with suppress(OSError, ValueError, TypeError, KeyError):
+                self._still = self._framed(self._frame, message)
+            self._update_stills()
+        if kind == "appearance" and isinstance(message.get("changes"), dict):
+            chosen = {n: value for n, value in message["changes"].items() if n in CHOSEN}
+            with suppress(ValueError, KeyError, TypeError):
+                self.scene.appearance = self.scene.appearance.changed(**chosen)
+        is_known = isinstance(number, int) and 0 <= number < len(self._feeds)
+        if is_known and isinstance(request, str):
+            feed = self._feeds[number]
+            if kind == "drop":
+                feed.drop(request)
+            if kind == "load":
+                self._load(feed, request, message)
+
+    def _load(self, feed: Feed, request: str, message: Header) -> None:
+        key, steps, mark = message.get("key"), message.get("steps"), message.get("mark", "")
+        if not _are_whole(steps):
+            return
+        if key is None and mark in ("", *MARK_PARTS.values()):
+            feed.load(request, None, steps, mark)
+        elif _are_whole(key) and len(key) == len(TileKey._fields):
+            feed.load(request, TileKey(*key), steps)
+
+    def _framed(self, frame: bytes, message: Header) -> bytes:
+        """Return a still of what a browser has drawn; raises an error for an invalid message."""
+        image = Image.open(io.BytesIO(frame)).convert("RGB")
+        count, (width, height) = len(self._feeds), (int(side) for side in message["size"])
+        size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
+        wide, ground = image.width // count, rgb(message["ground"])
+        parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
+        return _side_by_side(
+            still_png(
+                feed.view, size, data=feed.source.scene, flow=part, ground=ground, **self._look()
+            )
+            for feed, part in zip(self._feeds, parts, strict=True)
+        )
 
     def _picture(self, timeout_s: float) -> bytes | None:
         """Return a still of the browser's last frame, or one that NumPy draws."""
         if self._still is not None:
             return self._still
-        size = (self.size[0] or USUAL_WIDTH, self.size[1])
-        return self._views.picture(size, self._look(), self.axes, timeout_s)
+        width, height, count = self.size[0] or USUAL_WIDTH, self.size[1], len(self._feeds)
+        for feed in self._feeds if timeout_s > 0 else ():
+            feed.draw((width // count, height // count), **self._look())  # in the same shape
+        stills = [feed.still for feed in self._feeds if feed.still is not None]
+        done, _ = wait(stills, max(timeout_s, 0))
+        if len(done) < count or any(still.exception() for still in done):
+            return None
+        return _side_by_side(still.result() for still in stills)
 
-    def _look(self) -> MakeCamera:
-        """Return the camera by the shape of the picture, to which one that was not moved fits."""
+    def _look(self) -> Any:
+        """Return arguments of stills: a camera that was not moved fits the shape of the picture."""
         surface, camera = self.field.surface, Camera.from_dict(dict(self.camera))
         is_moved = camera != self._fit(surface, PREVIEW[0] / PREVIEW[1])
-        return lambda aspect: camera if is_moved else self._fit(surface, aspect)
+        return {
+            "camera": lambda aspect: camera if is_moved else self._fit(surface, aspect),
+            "axes": self.axes,
+            "differs": self._views[-1].own_settings,
+        }
 
     def _to_time(self, change: Any) -> None:
         if change["new"] != self.scene.time:
@@ -429,129 +507,15 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return f"FlowWidget({self.field!r}, {state})"
 
 
-class Views:
-    """One view or two, from left to right, each with its feed.
-
-    Both are one widget: the second has the settings of the first except its own, and the browser
-    links their cameras, so that they move in the same frame.
-
-    ``announce`` is called with the number of a view and its new header, before its arrays are
-    sent; ``send`` with a message, which has the number of its view, and its buffers.
-    """
-
-    def __init__(
-        self, views: Sequence[WebView], announce: Callable[[int, Header], None], send: Send
-    ) -> None:
-        self.views = tuple(views)
-        for view in self.views[1:]:
-            follow(lambda: self.first, lambda view=view: view.scene, view.own)  # type: ignore[misc]
-        self.feeds = [self._feed(n, view, announce, send) for n, view in enumerate(self.views)]
-
-    @property
-    def first(self) -> Scene:
-        """The scene of the first view."""
-        return self.views[0].scene
-
-    def show(self, field: FlowField) -> None:
-        """Show another flow in all views, or in none if it does not fit one of them."""
-        for view in self.views:
-            view.scene.showing(field).close()
-        for view in self.views:
-            view.show(field)
-
-    def _feed(
-        self, number: int, view: WebView, announce: Callable[[int, Header], None], send: Send
-    ) -> Feed:
-        return Feed(
-            view,
-            moment=lambda: self.first.time,
-            announce=lambda header: announce(number, self._with_own(number, header)),
-            send=lambda message, buffers: send({**message, "view": number}, buffers),
-        )
-
-    def _with_own(self, number: int, header: Header) -> Header:
-        if len(self.views) == 1:
-            return header
-        own, settings = self.views[1].own_settings, self.views[number].scene.settings
-        values = {name: getattr(settings, name) for name in own} if number else {}
-        return {**header, "differs": list(own), "own": values}
-
-    @property
-    def headers(self) -> list[Header]:
-        """Header of each view."""
-        return [self._with_own(n, feed.header) for n, feed in enumerate(self.feeds)]
-
-    def handle_message(self, message: Header) -> None:
-        """Answer the client; invalid messages are ignored."""
-        kind, number = message.get("kind"), message.get("view", 0)
-        for feed in self.feeds:
-            feed.acknowledged = True
-            if kind == "ready":
-                feed.ready()
-        if not (isinstance(number, int) and 0 <= number < len(self.feeds)):
-            return
-        request = message.get("request")
-        if kind == "appearance" and isinstance(message.get("changes"), dict):
-            self._take_appearance(message["changes"])
-        if kind == "drop" and isinstance(request, str):
-            self.feeds[number].drop(request)
-        key, steps = message.get("key"), message.get("steps")
-        if kind == "load" and isinstance(request, str) and _are_whole(steps):
-            mark = message.get("mark", "")
-            if key is None and mark in ("", *MARK_PARTS.values()):
-                self.feeds[number].load(request, None, steps, mark)
-            elif _are_whole(key) and len(key) == len(TileKey._fields):
-                self.feeds[number].load(request, TileKey(*key), steps)
-
-    def _take_appearance(self, changes: Header) -> None:
-        """Apply colours that were chosen in the browser; invalid ones are ignored."""
-        chosen = {name: value for name, value in changes.items() if name in CHOSEN}
-        with suppress(ValueError, KeyError, TypeError):
-            self.first.appearance = self.first.appearance.changed(**chosen)
-
-    def framed(self, frame: bytes, content: Header, camera: MakeCamera, axes: str | None) -> bytes:
-        """Return a still of what a browser has drawn; raises an error for an invalid message."""
-        image = Image.open(io.BytesIO(frame)).convert("RGB")
-        count, (width, height) = len(self.feeds), (int(side) for side in content["size"])
-        size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
-        wide, ground = image.width // count, rgb(content["ground"])
-        parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
-        look: Any = {"axes": axes, "ground": ground, "differs": self.views[-1].own_settings}
-        pictures = [
-            still_png(view, size, camera, data=feed.scene, flow=part, **look)
-            for view, feed, part in zip(self.views, self.feeds, parts, strict=True)
-        ]
-        return _side_by_side(pictures)
-
-    def picture(
-        self, size: tuple[int, int], camera: MakeCamera, axes: str | None, timeout_s: float
-    ) -> bytes | None:
-        """Return a still of all views as PNG, if there is one in this many seconds."""
-        view_size = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
-        if timeout_s > 0:
-            for feed in self.feeds:
-                feed.draw(view_size, camera, axes=axes, differs=self.views[-1].own_settings)
-                feed.pictured.wait(timeout_s)
-        pictures = [feed.picture for feed in self.feeds if feed.picture is not None]
-        if len(pictures) < len(self.feeds):
-            return None
-        return _side_by_side(pictures)
-
-    def close(self) -> None:
-        """Close the feeds and the views."""
-        for feed, view in zip(self.feeds, self.views, strict=True):
-            feed.close()
-            view.close()
-
-
 def _are_whole(values: Any) -> TypeGuard[list[int]]:
     return isinstance(values, list) and all(isinstance(value, int) for value in values)
 
 
-def _side_by_side(pictures: Sequence[bytes]) -> bytes:
-    if len(pictures) == 1:
-        return pictures[0]
-    columns = [np.asarray(Image.open(io.BytesIO(png)).convert("RGB")) for png in pictures]
+def _side_by_side(pictures: Iterable[bytes]) -> bytes:
+    first, *others = pictures
+    if not others:
+        return first
+    columns = [np.asarray(Image.open(io.BytesIO(png)).convert("RGB")) for png in (first, *others)]
     file = io.BytesIO()
     Image.fromarray(np.hstack(columns)).save(file, "PNG")
     return file.getvalue()

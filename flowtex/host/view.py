@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 from flowtex._util.arguments import checked_count
 from flowtex._util.cache import ByteCache
@@ -30,13 +33,25 @@ from flowtex.sources.notices import notify_section
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 
-#: Memory of the tiles that are kept to be sent again, and of a node of them, in bytes.
-BUDGET_BYTES, NODE_BYTES = 400_000_000, 200
+T = TypeVar("T")
+
+#: Memory of the tiles that are kept to be sent again, in bytes.
+BUDGET_BYTES = 400_000_000
+#: Memory of a node of a tile, in bytes.
+NODE_BYTES = 200
+#: Groups of parts that are requested by name: for controls and legend, and for other colours.
+PART_GROUPS = {
+    "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
+    "colours": ("cmap", "maps"),
+}
+#: Directions whose farthest nodes represent the whole surface.
+DIRECTIONS = 400
 #: Parts that are made at once, for all browsers together.
 MOST_THREADS = max(os.cpu_count() or 1, 4)
 _pool = pool(MOST_THREADS, "flowtex-tile")
 #: Marks take seconds, for which no tile has to wait.
 _marks_pool = pool(1, "flowtex-marks")
+_generations = itertools.count(1)
 
 
 class WebView:
@@ -243,22 +258,35 @@ class TileSource:
         parts(None, (3,))        the flow and the values of the whole at a time step
         parts(key, (3, 4))       a tile: its header and surface, and flow and values at two steps
         parts(None, (3,), kind)  marks of a kind at a step: critical points, or separatrices
+        parts(None, (), group)   those of the whole surface in one of PART_GROUPS
 
     A widget sends them in messages, the application as files, and an exported page holds them;
     ``client/src/sources`` is the other side. A store has the same parts in its own files, which
     :mod:`flowtex.pyramid.tasks` writes and a browser reads without a server.
 
     ``scene`` may be replaced at any time by the same scene in other colours. All methods may be
-    called from any thread.
+    called from any thread. ``generation`` is its number among those of this process.
     """
 
     def __init__(self, scene: ClientData, budget: int = BUDGET_BYTES) -> None:
-        self.scene = scene
+        self.scene, self.generation = scene, next(_generations)
         self._tiles: ByteCache[TileKey, _Tile] = ByteCache(budget)
         self._is_closed = False
 
+    @classmethod
+    def of(cls, scene: ClientData, before: TileSource | None) -> TileSource:
+        """Return the source of a scene: the one before if only its colours differ, else closed."""
+        if before is not None and before.scene.textures is scene.textures:
+            before.scene = before.scene.recoloured(scene.colours)
+            return before
+        if before is not None:
+            before.close()
+        return cls(scene)
+
     def parts(self, key: TileKey | None, steps: Sequence[int], kind: str = "") -> Parts:
         """Return the parts of a tile at time steps, or of the whole; a LookupError if none."""
+        if kind in PART_GROUPS:
+            return _group(self.scene, kind)
         if kind:
             return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}
         if key is None:
@@ -297,13 +325,9 @@ class TileSource:
         kind: str = "",
     ) -> Future[Parts]:
         """Make parts in a thread; ``Stopped`` once it ``is_over``, or the source is closed."""
-
-        def make() -> Parts:
-            with stoppable(lambda: self._is_closed or is_over()):
-                check()
-                return self.parts(key, steps, kind)
-
-        return (_marks_pool if kind else _pool).submit(make)
+        make = partial(self.parts, key, steps, kind)
+        executor = _pool if kind in ("", *PART_GROUPS) else _marks_pool
+        return in_pool(make, lambda: self._is_closed or is_over(), executor)
 
     def tiles(self) -> Iterator[Parts]:
         """Yield the parts of all tiles that are sent without a request, coarse ones first."""
@@ -322,6 +346,41 @@ class TileSource:
         """Stop making parts."""
         self._is_closed = True
         self._tiles.clear()
+
+
+def _group(scene: ClientData, group: str) -> Parts:
+    """Return a group of parts of the whole surface; controls need only its farthest nodes."""
+    parts = {name: part for name, part in scene.surface().items() if name in PART_GROUPS[group]}
+    if group != "controls":
+        return parts
+    nodes = scene.textures.geometry.position.reshape(-1, 3)
+    nodes = nodes[np.isfinite(nodes).all(axis=1)]
+    directions = np.random.default_rng(0).normal(size=(DIRECTIONS, 3))
+    directions = np.concatenate([directions, np.eye(3), -np.eye(3)])
+    farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
+    return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
+
+
+def in_pool(
+    work: Callable[[], T], is_over: Callable[[], bool], executor: Executor = _pool
+) -> Future[T]:
+    """Do work in a thread; ``Stopped`` once it ``is_over``."""
+
+    def guarded() -> T:
+        with stoppable(is_over):
+            check()
+            return work()
+
+    return executor.submit(guarded)
+
+
+def first_parts(scene: ClientData, time: float) -> Parts:
+    """Return the arrays with which a client begins: the surface, and what shows one moment."""
+    parts = scene.surface()
+    for step in scene.moment(time):
+        parts |= scene.values(step, shown=True)
+        parts |= {n: p for n, p in scene.step(step).items() if not n.startswith("scalars/")}
+    return parts
 
 
 def asset(name: str) -> Path:

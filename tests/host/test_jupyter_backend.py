@@ -61,7 +61,7 @@ def test_a_widget_looks_as_the_plotter(notebook: Any) -> None:
     assert widget.camera["parallel"]
     assert widget.camera["parallel_scale"] == 0.125
     np.testing.assert_allclose(widget.camera["focal_point"], (1.5, 0.5, 0.0))
-    table = widget._views.views[0].data().colours.scale.table
+    table = widget._views[0].data().colours.scale.table
     assert table is not None
     np.testing.assert_array_equal(table[:, :3], colour_table("cividis")[:, :3])
     widget.close()

@@ -10,14 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from waiting import PATIENCE_S, wait_until
+from heard import Heard
+from waiting import PATIENCE_S
 
 from flowtex._util.progress import check
-from flowtex.host.feed import Worker
-from flowtex.host.flow_widget import Views
-from flowtex.host.view import web_views
-from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene.options import Options
+from flowtex.host.flow_widget import FlowWidget
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid
 
@@ -33,71 +30,26 @@ def swirl(times: int = 1) -> Any:
     return flowtex.FlowField.from_arrays(points, steps, scalars={"depth": x * x + y})
 
 
-class Client:
-    """What a client would have received."""
-
-    def __init__(self, field: Any, **options: Any) -> None:
-        self.header: Header = {}
-        self.arrays: dict[str, Any] = {}
-        self.order: list[str] = []
-        self.requests = 0
-        self.loaded: list[str] = []
-        self.errors: list[Any] = []
-        views = web_views(field, Options.split(samples=9, **options))
-        self.views = Views(views, lambda number, header: self._take(header), self._receive)
-        self.header = self.views.headers[0]
-        for feed in self.views.feeds:
-            feed.start()
-        self.views.handle_message({"kind": "ready"})
-        self.wait(lambda: bool(self.header["pyramid"]))
-
-    def _take(self, header: Header) -> None:
-        self.header = header
-
-    def _receive(self, message: dict[str, Any], buffers: list[Any]) -> None:
-        if message["kind"] == "error":
-            self.errors.append(message["text"])
-        if message["kind"] == "loaded":
-            self.loaded.append(message["request"])
-            self.errors += [message["error"]] if "error" in message else []
-        for info, data in zip(message.get("parts", ()), buffers, strict=False):
-            array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
-            self.arrays[info["name"]] = array
-            self.order.append(info["name"])
-
-    def ask(self, key: tuple[int, int, int] | None, *steps: int) -> str:
-        """Ask for a tile; return the name of the request."""
-        self.requests += 1
-        message = {"kind": "load", "key": key and list(key), "steps": list(steps), "view": 0}
-        self.views.handle_message({**message, "request": str(self.requests)})
-        return str(self.requests)
-
-    def load(self, key: tuple[int, int, int] | None, *steps: int) -> None:
-        """Ask for a tile, and wait for all of it."""
-        request = self.ask(key, *steps)
-        self.wait(lambda: request in self.loaded)
-
-    def wait(self, ready: Callable[[], bool]) -> None:
-        wait_until(ready, lambda: self.order)
-
-
 @pytest.fixture
-def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Client]]:
+def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Heard]]:
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
     for name in ("COARSE_STEADY", "COARSE_VARYING"):
         monkeypatch.setattr(f"flowtex.host.feed.{name}", 400)
-    made: list[Client] = []
+    made: list[FlowWidget] = []
 
-    def call(*arguments: Any, **options: Any) -> Client:
-        made.append(Client(*arguments, **options))
-        return made[-1]
+    def call(field: Any, **options: Any) -> Heard:
+        made.append(FlowWidget(field, samples=9, **options))
+        client = Heard(made[-1], monkeypatch)
+        client.say(kind="ready")
+        client.wait(lambda: bool(client.header["pyramid"]))
+        return client
 
     yield call
-    for client in made:
-        client.views.close()
+    for widget in made:
+        widget.close()
 
 
-def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> None:
+def test_tiles_come_with_all_that_draws_them(make: Callable[..., Heard]) -> None:
     client = make(swirl(2), scalars="speed", clim=(0.0, 1.0))
     pyramid = client.header["pyramid"]
     assert pyramid["depth"] == 2
@@ -117,13 +69,13 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     assert "tile/0/0/0/position" not in client.arrays
 
 
-def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Client]) -> None:
+def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Heard]) -> None:
     client = make(swirl(2))
     assert client.header["structure"]["parts"] == ["critical", "separatrices", "nullclines"]
     assert not any(name.startswith("critical") for name in client.arrays)
     message = {"kind": "load", "key": None, "steps": [1], "view": 0, "mark": "critical"}
-    client.views.handle_message({**message, "request": "marks", "mark": "other"})
-    client.views.handle_message({**message, "request": "marks"})
+    client.say(**{**message, "request": "marks", "mark": "other"})
+    client.say(**message, request="marks")
     client.wait(lambda: "marks" in client.loaded)
     (row,) = client.arrays["critical/1"]
     assert client.header["structure"]["kinds"][int(row[3])]["name"] == "centre"
@@ -133,7 +85,7 @@ def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Client]) -> 
 
 @pytest.mark.threads
 def test_what_is_given_up_is_neither_made_nor_sent(
-    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
+    make: Callable[..., Heard], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client = make(swirl())
     client.load((1, 0, 1), 0)
@@ -149,26 +101,26 @@ def test_what_is_given_up_is_neither_made_nor_sent(
         return textures(*arguments)
 
     monkeypatch.setattr(Pyramid, "region", slow)
-    request = client.ask((1, 0, 0), 0)
+    client.ask("dropped", (1, 0, 0), 0)
     assert began.wait(PATIENCE_S)
-    client.views.handle_message({"kind": "drop", "request": request})
+    client.say(kind="drop", request="dropped")
     go.set()
     client.load((0, 0, 1), 0)
     client.load((1, 0, 0), 0)  # the first has made nothing
     assert client.order.count("tile/1/0/0/header") == 1
-    assert request not in client.loaded
+    assert "dropped" not in client.loaded
     assert client.errors == []
 
 
 def test_tiles_in_other_colours_are_the_same(
-    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
+    make: Callable[..., Heard], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client = make(swirl(), cmap="magma")
     client.load((0, 0, 1), 0)
     before, generation = client.arrays.copy(), client.header["generation"]
     tile = "tile/0/0/1"
     monkeypatch.setattr(TextureSet, "layers", None)
-    scene = client.views.first
+    scene = client.widget.scene
     scene.appearance = replace(scene.appearance, scalars="depth", clim=(0.0, 3.0))
     client.wait(lambda: "scalars/0/1" in client.arrays)
     client.load((0, 0, 1), 0)
@@ -183,7 +135,7 @@ def test_tiles_in_other_colours_are_the_same(
 
 
 def test_errors_are_told_to_who_asked(
-    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    make: Callable[..., Heard], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     client = make(swirl())
 
@@ -206,42 +158,10 @@ def test_errors_are_told_to_who_asked(
 @pytest.mark.parametrize(
     "wrong", [{"key": 1}, {"key": [0, "a", 0]}, {"key": [0, 0]}, {"steps": [0.5]}, {"request": 3}]
 )
-def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong: Any) -> None:
+def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Heard], wrong: Any) -> None:
     client = make(swirl())
     given = {"kind": "load", "request": "a", "key": [1, 0, 1], "steps": [0]}
-    client.views.handle_message({**given, **wrong})
+    client.say(**{**given, **wrong})
     client.load((1, 0, 0), 0)
-    assert client.loaded == ["1"]
+    assert len(client.loaded) == 1
     assert client.errors == []
-
-
-@pytest.mark.threads
-def test_worker_does_urgent_jobs_first_and_takes_turns() -> None:
-    turns, done, may = threading.Semaphore(1), list[str](), threading.Event()
-    first, other = (Worker(turns, "a test", lambda e: done.append(str(e))) for _ in range(2))
-    first.do(lambda: done.append(str(may.wait(PATIENCE_S))))
-    wait_until(lambda: turns._value == 0)
-    first.do(lambda: done.append("later"))
-    first.do(lambda: done.append("urgent"), urgency=1)
-    first.do(lambda: done.append(f"{1 / 0}"))
-    other.do(lambda: done.append("other"))
-    assert done == []
-    may.set()
-    wait_until(lambda: not first.busy and not other.busy)
-    assert [text for text in done if text != "other"] == [
-        *("True", "urgent", "later", "division by zero"),
-    ]
-    assert "other" in done
-
-
-@pytest.mark.threads
-def test_closed_worker_begins_no_job() -> None:
-    done, may = list[str](), threading.Event()
-    worker = Worker(threading.Semaphore(1), "a test", lambda error: done.append(str(error)))
-    worker.do(lambda: done.append(str(may.wait(PATIENCE_S))))
-    worker.do(lambda: done.append("second"))
-    wait_until(lambda: len(worker._jobs) == 1)
-    worker.close()
-    may.set()
-    wait_until(lambda: not worker.busy)
-    assert done == ["True"]

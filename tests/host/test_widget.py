@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from heard import Heard, names_of
 from page_reader import Reader
 from PIL import Image
 from triangle_meshes import sphere, surface_of
@@ -42,40 +43,6 @@ def gyre(times: int = 1, nodes: int = 30) -> flowtex.FlowField:
     at = nodes_of((nodes, nodes))
     series = [examples.double_gyre_velocity(at, float(t)) for t in range(times)]
     return flowtex.FlowField.from_arrays(at, np.stack(series), name="gyre")
-
-
-def names_of(message: dict[str, Any]) -> list[str]:
-    """Names of the parts that a message describes."""
-    return [info["name"] for info in message.get("parts", ())]
-
-
-class Heard:
-    """What a client would have received: messages, and arrays by name."""
-
-    def __init__(self, widget: FlowWidget, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.widget = widget
-        self.messages: list[dict[str, Any]] = []
-        self.arrays: dict[str, np.ndarray[Any, Any]] = {}
-        self.headers: list[int] = [widget._header["generation"]]
-        self._came = threading.Condition()
-        monkeypatch.setattr(type(widget), "send", self._send, raising=False)
-        widget.observe(lambda change: self.headers.append(change["new"]["generation"]), "_header")
-
-    def _send(self, content: dict[str, Any], buffers: Any = None) -> None:
-        with self._came:
-            self.messages.append({**content, "header": self.widget._header["generation"]})
-            if content["kind"] == "parts":
-                for info, data in zip(content["parts"], buffers, strict=True):
-                    array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
-                    self.arrays[info["name"]] = array
-            self._came.notify_all()
-
-    def say(self, **message: Any) -> None:
-        self.widget._handle_custom_msg(message, [])
-
-    def wait(self, ready: Callable[[], bool]) -> None:
-        with self._came:
-            assert self._came.wait_for(ready, timeout=PATIENCE_S), self.messages
 
 
 @pytest.fixture
@@ -177,7 +144,7 @@ def test_a_client_that_is_ready_gets_what_it_needs(
     # Those of the first moment may still be on their way.
     assert not {"flow/3", "flow/4"} & set(heard.arrays)
     assert {"padded", "unit", "cmap", "scalars/1"} <= set(heard.arrays)
-    scene = widget._views.feeds[0].scene
+    scene = widget._feeds[0].source.scene
     np.testing.assert_array_equal(heard.arrays["flow/1"], scene.step(1)["flow/1"])
     np.testing.assert_array_equal(heard.arrays["padded"], scene.surface()["padded"])
     heard.say(kind="load", request="a", key=None, steps=[3])
@@ -190,13 +157,13 @@ def test_a_client_that_is_ready_gets_what_it_needs(
 @pytest.fixture
 def refine(monkeypatch: pytest.MonkeyPatch) -> Iterator[threading.Event]:
     """Yield what lets finer forms of a large field follow the coarse one."""
-    may, now = threading.Event(), feed.Feed._refine
+    may, now = threading.Event(), feed.Feed._complete
 
     def later(*arguments: Any) -> None:
         may.wait(PATIENCE_S)
         now(*arguments)
 
-    monkeypatch.setattr(feed.Feed, "_refine", later)
+    monkeypatch.setattr(feed.Feed, "_complete", later)
     yield may
     may.set()
 
@@ -235,7 +202,7 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
     heard.say(kind="ready")
     heard.wait(lambda: {"triangles", "blocks", "slices/0", "places"} <= set(heard.arrays))
     assert heard.arrays["triangles"].max() < header["geometry"]["shape"][1] < len(points)
-    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
+    assert widget._feeds[0].settled.wait(PATIENCE_S)
     assert widget._header is header
     key = [header["pyramid"]["depth"] - 1, 0, 0]
     heard.say(kind="load", request="a", key=key, steps=[0])
@@ -261,7 +228,7 @@ def test_large_field_is_shown_coarse_first(
     shapes = [widget._header["geometry"]["shape"]]
     widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
     refine.set()
-    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
+    assert widget._feeds[0].settled.wait(PATIENCE_S)
     assert shapes == [[10, 10], [60, 60]]
 
 
@@ -270,26 +237,24 @@ def test_a_setting_sends_what_it_changes_and_no_more(
 ) -> None:
     widget = make(noise="texture", resolution=32)
     heard = Heard(widget, monkeypatch)
-    settle(widget, heard)
+    heard.settle()
     assert "noise" in heard.arrays
     widget.contrast = 2.0
     widget.samples = 30
-    wait_until(lambda: not busy(widget))
     assert heard.messages == []
     was = heard.arrays["noise"]
     widget.seed = 5
     heard.wait(lambda: not np.array_equal(was, heard.arrays["noise"]))
     assert "position" not in {name for m in heard.messages for name in names_of(m)}
     widget.noise = "procedural"
-    heard.wait(lambda: heard.messages[-1]["header"] == 2)
-    assert "FLOWTEX_PAPER" not in widget._header["variant"]
+    wait_until(lambda: "FLOWTEX_PAPER" not in widget._header["variant"])
 
 
 def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     widget = make()
     widget.set_image(SQUARES.astype(np.uint8))
     assert widget.noise == "image"
-    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
+    assert widget._feeds[0].settled.wait(PATIENCE_S)
     assert widget._header["paper"]["picture"]
 
 
@@ -303,7 +268,7 @@ def test_an_error_while_tracing_is_told(
         msg = "out of memory"
         raise MemoryError(msg)
 
-    monkeypatch.setattr(widget._views.views[0], "data", fail)
+    monkeypatch.setattr(widget._views[0], "data", fail)
     widget.noise = "texture"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
     told = [m["text"] for m in heard.messages if m["kind"] == "error"]
@@ -328,7 +293,8 @@ def test_a_notebook_that_is_read_elsewhere_has_a_picture(
     free.set()
     assert "gyre: 20 x 20" in data["text/plain"]
     assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
-    assert widget._views.feeds[0].pictured.wait(PATIENCE_S)
+    stills = [feed.still for feed in widget._feeds]
+    assert stills[0] is not None and stills[0].result(PATIENCE_S)
     data, _ = widget._repr_mimebundle_()
     with Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) as picture:
         assert picture.size == (800, 400)
@@ -475,7 +441,7 @@ def test_messages_of_any_thread_have_the_session_of_the_widget(
 
     monkeypatch.setattr(FlowWidget, "send", send)
     session.set("Bob")
-    widget._views.handle_message({"kind": "ready"})
+    widget._handle_custom_msg({"kind": "ready"}, [])
     wait_until(lambda: sent)
     assert all(name == "Ada" for name, _ in sent)
     assert any(thread != threading.current_thread().name for _, thread in sent)
@@ -484,7 +450,7 @@ def test_messages_of_any_thread_have_the_session_of_the_widget(
 def test_many_views_of_one_mesh_share_what_is_made_of_it(make: Make) -> None:
     first, other = make(gyre(nodes=100)), make(gyre(nodes=100), contrast=2.0)  # made twice
     assert first.field is other.field
-    first_scene, other_scene = (w._views.feeds[0].scene for w in (first, other))
+    first_scene, other_scene = (w._feeds[0].source.scene for w in (first, other))
     assert first_scene.textures is other_scene.textures
     different = make(gyre(nodes=101))
     assert different.field is not first.field
@@ -514,7 +480,7 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
     heard.say(kind="ready")
     heard.wait(lambda: {0, 1} <= {m["view"] for m in heard.messages})
     # The second follows the first but in what is its own.
-    second = widget._views.views[1].scene.settings
+    second = widget._views[1].scene.settings
     widget.samples = 33
     assert second.samples == 33
     widget.noise = "texture"
@@ -534,7 +500,7 @@ def test_another_flow_takes_the_place_of_the_first(
 ) -> None:
     widget = make(gyre(3), samples=30, contrast=0.5)
     heard = Heard(widget, monkeypatch)
-    settle(widget, heard)
+    heard.settle()
     widget.time, widget.camera = 2.0, {"focal_point": [0.5, 0.25, 0]}
     camera, first = dict(widget.camera), heard.arrays["flow/0"]
     resent: list[Any] = []
@@ -623,21 +589,6 @@ def test_opacity_and_legend(make: Make) -> None:
         make(opacity=2)
 
 
-def busy(widget: FlowWidget) -> bool:
-    """Return whether something is being made or sent."""
-    return any(
-        worker.busy for feed in widget._views.feeds for worker in (feed._builds, feed._answers)
-    )
-
-
-def settle(widget: FlowWidget, heard: Heard) -> None:
-    """Wait until the widget has sent all that it sends by itself."""
-    heard.say(kind="ready")
-    wait_until(lambda: not busy(widget))
-    assert widget._views.feeds[0].settled.is_set()
-    heard.messages.clear()
-
-
 def coloured(times: int = 1) -> flowtex.FlowField:
     field = gyre(times)
     heights = field.points[..., 1] - 0.4
@@ -651,7 +602,7 @@ def test_an_appearance_is_sent_without_the_slices(
 ) -> None:
     widget = make(coloured())
     heard = Heard(widget, monkeypatch)
-    settle(widget, heard)
+    heard.settle()
     generation = widget._header["generation"]
     widget.scalars = "height"
     heard.wait(lambda: "scalars/0/1" in heard.arrays)
@@ -679,7 +630,7 @@ def test_colours_that_are_chosen_in_the_browser_are_taken(
     heard = Heard(widget, monkeypatch)
     heard.say(kind="appearance", changes={"scalars": "height", "cmap": "magma", "clim": [0, 1]})
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
-    second = widget._views.views[1].scene.appearance
+    second = widget._views[1].scene.appearance
     assert (second.scalars, second.cmap) == ("height", "gray")  # its own stays
     wrong_ones = ({"cmap": "nix"}, {"scalars": ["x"]}, {"clim": "ab"}, {"opacity": 3})
     for wrong in (*wrong_ones, {"lod": False}, 3, None):
@@ -699,7 +650,7 @@ def test_lines_of_the_earth_are_switched_from_both_sides(
     )
     widget = make(field)
     heard = Heard(widget, monkeypatch)
-    settle(widget, heard)
+    heard.settle()
     headers: list[Any] = []
     widget.observe(lambda change: headers.append(change["new"]["earth"]), "_header")
     widget.coastlines, widget.land = False, "red"

@@ -16,8 +16,6 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
@@ -33,12 +31,11 @@ from flowtex.app.server.page import (
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.host.view import TileSource, WebView, client_module
+from flowtex.host.view import PART_GROUPS, TileSource, WebView, client_module
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
-from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
-from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
+from flowtex.rendering.webgl.protocol import Header, parts_file
 from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
@@ -50,13 +47,6 @@ _numbers = itertools.count(1)
 PAINTERS = ("server", "browser")
 #: Name of the whole surface in place of a tile.
 WHOLE = "whole"
-#: Groups of its parts that pages request by name: for controls and legend, and for other colours.
-PART_GROUPS = {
-    "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
-    "colours": ("cmap", "maps"),
-}
-#: Directions whose farthest nodes represent the whole surface.
-DIRECTIONS = 400
 #: Fields of the appearance that a page may choose, and the types of their values.
 CHOICES: dict[str, tuple[type, ...]] = {
     "scalars": (str, bool),
@@ -73,9 +63,8 @@ class HandedScene:
     """A scene for the page: its header, and files of its parts at its own address."""
 
     def __init__(self, routes: Routes) -> None:
-        self._routes = routes
+        self._routes, self._stem = routes, ""
         self._source: TileSource | None = None
-        self._generation, self._stem = 0, ""
 
     def update(self, pane: FlowHandle, background: object, **values: object) -> Header:
         """Replace the scene by that of a pane, or by the same in other colours.
@@ -83,19 +72,14 @@ class HandedScene:
         Return the header, with further values of the pane, and the address of the parts.
         """
         data = WebView(pane.scene, background=background).data()
-        colours = replace(data.colours, bar=True)  # VTK draws none into its pictures
-        source = self._source
-        if source is not None and source.scene.textures is data.textures:
-            source.scene = source.scene.recoloured(colours)
-        else:
-            self.close()
-            self._generation = next(_numbers)
-            source = self._source = TileSource(data.recoloured(colours))
+        # VTK draws no legend into its pictures.
+        data = data.recoloured(replace(data.colours, bar=True))
+        source = self._source = TileSource.of(data, self._source)
         self._routes.withdraw(self._stem)
         self._stem = f"parts-{next(_numbers)}"
         header = source.scene.header(pane.settings, time=pane.time, clock=pane.clock)
         return {
-            "header": {**header, "generation": self._generation, **values},
+            "header": {**header, "generation": source.generation, **values},
             "parts": self._routes.give_each(self._stem, lambda name: self._give(source, name)),
         }
 
@@ -103,21 +87,17 @@ class HandedScene:
         """Return a function that makes the file of a tile, or of the whole, at time steps."""
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
+        kind = place if place in (*PART_GROUPS, *MARK_PARTS.values()) else ""
         key = None
-        mark = place if place in MARK_PARTS.values() else ""
-        if place != WHOLE and place not in PART_GROUPS and not mark:
+        if place != WHOLE and not kind:
             level, row, column = map(int, place.split(","))
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
             raise LookupError(name)
 
         async def content() -> Content:
-            loop = asyncio.get_running_loop()
             try:
-                if place in PART_GROUPS:
-                    parts = await loop.run_in_executor(None, some_parts, source.scene, place)
-                else:
-                    parts = await asyncio.wrap_future(source.ask(key, steps, kind=mark))
+                parts = await asyncio.wrap_future(source.ask(key, steps, kind=kind))
             except Stopped:  # the scene is no longer shown
                 parts = {}
             except Exception as error:
@@ -126,7 +106,7 @@ class HandedScene:
                 _log.warning("%s could not be made: %s", part, error)
                 raise FileNotFoundError(name) from error
             # Packing takes a while, and the loop has other pages to serve.
-            body = await loop.run_in_executor(None, parts_file, parts)
+            body = await asyncio.get_running_loop().run_in_executor(None, parts_file, parts)
             return body, "application/octet-stream", None
 
         return content
@@ -355,19 +335,6 @@ def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
     baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
     return (*built, *baked, scene.field, scene.appearance, id(scene.image))
-
-
-def some_parts(scene: ClientData, place: str) -> Parts:
-    """Return a group of parts of the whole surface; controls need only its farthest nodes."""
-    parts = {name: part for name, part in scene.surface().items() if name in PART_GROUPS[place]}
-    if place != "controls":
-        return parts
-    nodes = scene.textures.geometry.position.reshape(-1, 3)
-    nodes = nodes[np.isfinite(nodes).all(axis=1)]
-    directions = np.random.default_rng(0).normal(size=(DIRECTIONS, 3))
-    directions = np.concatenate([directions, np.eye(3), -np.eye(3)])
-    farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
-    return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
 
 
 class Player:
