@@ -19,8 +19,8 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bytes, Floats, Floats32
 from flowtex.errors import FieldError
 
-#: Colour maps by default: of most values, and of those around zero.
-DEFAULT_CMAP, SIGNED_CMAP = "viridis", "RdBu_r"
+DEFAULT_CMAP = "viridis"  #: Colour map of most values.
+SIGNED_CMAP = "RdBu_r"  #: Colour map of values around zero.
 #: Luminance from which black has more contrast than white.
 LIGHT_FROM = 0.18
 #: Entries of a colour map.
@@ -50,13 +50,10 @@ NORM_ENTRIES = 1024
 BISECTIONS = 120
 #: Share of the colour map by which a norm may decrease: rounding.
 ROUNDING = 1e-9
-#: Size of the matplotlib bar whose ticks a norm has, in inches, and least share of the bar between
-#: two ticks.
-BAR_SIZE, TICK_GAP = (3.0, 1.0), 0.12
-
-#: Digits of the values of a legend: the fewest that distinguish them; and the number from which on
-#: the text of one has a power of ten.
-DIGITS, LARGE = range(3, 9), 1e6
+BAR_SIZE = (3.0, 1.0)  #: Size of the matplotlib bar whose ticks a norm has, in inches.
+TICK_GAP = 0.12  #: Least share of the bar between two ticks.
+DIGITS = range(3, 9)  #: Digits of the values of a legend: the fewest that distinguish them.
+LARGE = 1e6  #: Number from which on the text of one has a power of ten.
 #: The table of no colours.
 NO_COLOURS = np.zeros((0, 4), np.uint8)
 

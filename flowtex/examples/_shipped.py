@@ -16,17 +16,20 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import import_extra
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Folder of the shipped files, and their names.
+#: Folder of the shipped files.
 DATA = Path(__file__).parent / "data"
-CYLINDER, VORTEX, DELTA_WING = "cylinder.npz", "vortex.npz", "delta_wing.npz"
-OCEAN, WEATHER = "ocean.nc.gz", "weather.nc.gz"
-#: Earth's turning in radians a second, gravity in m/s², metres of a degree.
-TURNING, GRAVITY, DEGREE = 7.2921e-5, 9.81, np.radians(EARTH_RADIUS)
+CYLINDER = "cylinder.npz"  #: Vortex shedding.
+VORTEX = "vortex.npz"  #: Two-dimensional turbulence.
+DELTA_WING = "delta_wing.npz"  #: The winged body.
+OCEAN = "ocean.nc.gz"  #: Currents.
+WEATHER = "weather.nc.gz"  #: Winds.
+TURNING = 7.2921e-5  #: Earth's turning in radians a second.
+GRAVITY = 9.81  #: Gravity in m/s².
 
 
 def cylinder_arrays() -> tuple[Floats, Floats, Floats, Floats]:

@@ -1,16 +1,12 @@
 """Points of a surface: the one at a position in index space, and the one nearest to a point.
 
-Every renderer cuts the cells of a structured surface along the diagonal from their first corner
-(j, i) to (j + 1, i + 1), and what lies between the nodes is linear in the triangles; so is what
-this module returns. Each surface returns its own triangles.
+Values are linear in the triangles that renderers draw, and bilinear in cells that are
+parallelograms, in space or in longitude and latitude. On the Earth places are looked up by these,
+so that values do not depend on the map.
 
-On the Earth places are looked up by longitude and latitude, so that values do not depend on the
-map. Where cells are parallelograms, in these or in space, values are bilinear in them.
-
-To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
-field. From the triangles around them a walk leads over the surface, across the side on which the
-point lies as long as that leads nearer; that also finds the way over cells that are thousands of
-times longer than wide, where the nearest node is not a corner of the right cell.
+To find a point in space, the nearest nodes are looked up in a tree. From the triangles around them
+a walk leads over the surface, across the side on which the point lies as long as that leads nearer:
+of cells thousands of times longer than wide, the nearest node may belong to another one.
 """
 
 from __future__ import annotations
@@ -31,16 +27,16 @@ from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.surface import Surface
 
-#: Nodes around a point from which walks begin, and most triangles of a walk.
-START_NODES, WALK_STEPS = 4, 96
+START_NODES = 4  #: Nodes around a point from which walks begin.
+WALK_STEPS = 96  #: Most triangles of a walk.
 #: Height of a triangle over a side, squared, below which it has no area.
 FLAT_TRIANGLE = 1e-20
-#: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
-CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
-#: The same on the Earth, where a map is inverted, and how far a cell is from a parallelogram.
-EARTH_TOLERANCE, EARTH_SKEW = 1e-4, 1e-3
-#: Cells that are tried for a place, and the share of one by which it may lie beside it.
-MOST_CELLS, ROUNDING = 8, 1e-9
+CURVED_TOLERANCE = 0.1  #: Distance from a curved surface that counts as on it, in cells.
+FLAT_TOLERANCE = 1e-6  #: The same from a flat one.
+EARTH_TOLERANCE = 1e-4  #: The same on the Earth, where a map is inverted.
+EARTH_SKEW = 1e-3  #: How far a cell on the Earth is from a parallelogram, at most, to count as one.
+MOST_CELLS = 8  #: Cells that are tried for a place.
+ROUNDING = 1e-9  #: Share of a cell by which a place may lie beside it.
 #: Latitude from which on a node has the longitude of the one beside it.
 POLE_LATITUDE = 90 - 1e-6
 #: The globe on which places of the Earth are looked up.
@@ -254,10 +250,8 @@ def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[flo
     """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
     The result is ``None`` if the surface is farther than ``tolerance`` times the size of the
-    nearest cell; another program may divide a curved cell into other triangles. The surface
-    consists of the triangles that renderers draw, so points of a picture are exact. The first call
-    for a field builds a tree of its nodes; further calls take about a millisecond. Raises a
-    FieldError if the point is not two or three finite numbers.
+    nearest cell: another program may divide a curved cell into other triangles. Raises a FieldError
+    if the point is not two or three finite numbers.
 
     Examples
     --------

@@ -144,21 +144,6 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     )
 
 
-def point_at(field: Any, place: ArrayLike, time: Any = None) -> PointValues | None:
-    """Return the values at a place in the coordinates of the data; ``None`` outside the data."""
-    at = np.asarray(place, dtype=float)
-    if not np.isfinite(at).all():
-        raise FieldError(f"the place is {brief(place)}; expected finite numbers")
-    if field.projection is not None:
-        index = locate_lonlat(field, *at.tolist())
-    else:
-        frame = field.surface.frame
-        if len(at) == 2 and frame is not None and not frame[:, 2].any():
-            at = np.append(at, field.surface.center[2])
-        index = locate(field, at, tolerance=CURVED_TOLERANCE if frame is None else FLAT_TOLERANCE)
-    return None if index is None else values_at(field, index, time)
-
-
 def _on_earth(
     field: Any,
     projection: Projection,
@@ -306,4 +291,16 @@ class FieldQuantities:
             if time is not None:
                 raise FieldError(f"z is {z}, but the field lies on the Earth; omit z")
             z, time = None, z
-        return point_at(field, (x, y) if z is None else (x, y, z), time)
+        place = (x, y) if z is None else (x, y, z)
+        at = np.asarray(place, dtype=float)
+        if not np.isfinite(at).all():
+            raise FieldError(f"the place is {brief(place)}; expected finite numbers")
+        if field.projection is not None:
+            index = locate_lonlat(field, *at.tolist())
+        else:
+            frame = field.surface.frame
+            if len(at) == 2 and frame is not None and not frame[:, 2].any():
+                at = np.append(at, field.surface.center[2])
+            tolerance = CURVED_TOLERANCE if frame is None else FLAT_TOLERANCE
+            index = locate(field, at, tolerance=tolerance)
+        return None if index is None else values_at(field, index, time)

@@ -21,8 +21,8 @@ from flowtex.field.units import speed_unit, velocity_units
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
-#: Ranges of lengths, for single precision, and of speeds and times, whose squares must be finite.
-LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
+LENGTHS = (1e-30, 1e30)  #: Range of lengths, for single precision.
+MAGNITUDES = (1e-100, 1e100)  #: Range of speeds and times, whose squares must be finite.
 #: The scalar that is 1 where there are no data, 0 elsewhere.
 NO_DATA = "no data"
 
@@ -73,6 +73,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
+#: Warning about a velocity that is zero.
 ALL_AT_REST = (
     "The velocity is zero at every node, so the picture shows no flow; check the selected "
     "array and its region. On a wall draw the wall shear stress, such as wallShearStress."

@@ -2,22 +2,17 @@
 
 A path of lag 2 s is the path of lag s, continued by the path of lag s from where, and when, that
 one ends (hierarchical line integration, Hlawatsch, Sadlo and Weiskopf 2011). Doubling the lags
-costs one look-up for each node, whatever the length, where integration would cost as many steps
-as the path has cells.
+costs one look-up for each node, where integration would cost as many steps as the path has cells.
 
-A look-up between the nodes is bilinear, corrected by the mean second differences around its cell,
-and as good as the slice is smooth there. Around a centre or near a separatrix long paths of
-neighbours part, so the change of the second differences in a cell is compared with the slice's
-length, and where it is large the path is continued in shorter, smooth pieces. The remaining
-error is of the order of that of the bilinear velocity.
+A look-up between the nodes is bilinear, corrected by the mean second differences around its cell.
+Around a centre or near a separatrix long paths of neighbours part: where the change of the second
+differences in a cell is large for the slice's length, the path is continued in shorter, smooth
+pieces. The remaining error is of the order of that of the bilinear velocity. Displacements are
+complex numbers, i + j sqrt(-1), so that one gather takes both components.
 
-Displacements are complex numbers, i + j sqrt(-1), so that one gather takes both components.
-
-A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
-one step up: then each piece begins at a time for which there are slices.
-
-Close to a pole slices cannot be interpolated, as the paths of neighbours pass it on either side.
-Only there are paths integrated.
+A flow that varies is composed only when its lags are whole numbers of its equal time steps, so that
+each piece begins at a time for which there are slices. Close to a pole paths are integrated, as
+those of neighbours pass it on either side.
 """
 
 from __future__ import annotations
@@ -41,11 +36,10 @@ MOST_PIECES = 64
 BLOCK = 65536
 #: Cells beyond a border to which look-ups may displace a path that follows it.
 BORDER_CELLS = 1e-2
-#: Parts of a piece in which its end is searched, and halvings of the one with the end.
-SEARCH_PARTS, SEARCH_BISECTIONS = 16, 6
-
-#: Error of a look-up that is allowed, as a share of the path's length, and in cells.
-ERROR_SHARE, ERROR_CELLS = 0.002, 0.003
+SEARCH_PARTS = 16  #: Parts of a piece in which its end is searched.
+SEARCH_BISECTIONS = 6  #: Halvings of the part with the end.
+ERROR_SHARE = 0.002  #: Error of a look-up that is allowed, as a share of the path's length.
+ERROR_CELLS = 0.003  #: Error that is allowed besides, in cells.
 #: Typical error of a look-up over the range of the second differences at the corners of its cell.
 ERROR_CHANGE = 1 / 64
 #: Factor of the allowed error in the first composed slice, whose pieces are many.
@@ -164,8 +158,6 @@ class _SliceLookup:
     """The slices that are filled so far, and look-ups in them at any position.
 
     It judges where each slice is smooth enough, for its length, to be interpolated between nodes.
-    Where a path comes close to a pole it never is, because its neighbours pass the pole on the
-    other side: a slice is used up to the lag at which they do.
     """
 
     def __init__(
@@ -230,8 +222,7 @@ class _SliceLookup:
     ) -> _Piece:
         """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag.
 
-        They continue by a whole slice, or by a part of the first: interpolation between slices of
-        long lags would be less accurate.
+        It is by a whole slice, or a part of the first: between long slices errors are larger.
         """
         base = self._base(step)
         unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)

@@ -1,17 +1,12 @@
 """Paths of many particles at once, each with its own step.
 
 The scheme is the embedded Runge-Kutta pair of order 3(2) by Bogacki and Shampine (1989), whose
-last stage is the first of the next step. Every particle keeps its own step size, which follows
-its own error; the arrays hold the particles still under way and shrink as paths come to their
-end. Positions at the lags come from the cubic Hermite polynomial through a step's two
-ends, of the order of the scheme, so the lags do not shorten the steps.
+last stage is the first of the next step. Positions at the lags come from the cubic Hermite
+polynomial through a step's two ends, of the order of the scheme, so the lags do not shorten steps.
 
-A path that leaves the domain, enters a blanked cell or stops is ended there. That lag is its
-reach, and beyond it the path continues straight: interpolation between a path that has ended and
-its neighbour that has not then stays true up to the reach.
-
-Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.sampler`): it
-changes to another chart between two steps, and its positions are returned in index space.
+A path that leaves the domain, enters a blanked cell or stops is ended there. That lag is its reach,
+and beyond it the path continues straight: so interpolation between it and a neighbour that has not
+ended stays true up to the reach. Next to a pole a particle is followed in the plane there.
 """
 
 from __future__ import annotations
@@ -25,16 +20,19 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Numbers, Sampler
 
-#: A step may grow or shrink by these factors.
-STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
+STEP_SHRINK = 0.2  #: Least factor by which a step changes.
+STEP_GROWTH = 4.0  #: Greatest one.
+STEP_SAFETY = 0.9  #: Share of the step that its error allows.
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps after which the remaining paths are ended: so many for each line of nodes, as a
-#: path in few cells goes round and round, within these limits.
-STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
-#: Steps within which a path in a steady flow leaves a square whose sides are so many times the
-#: error allowed in a step; otherwise it stays there.
-CIRCLE_STEPS, CIRCLE_ERRORS = 48, 20.0
+#: Rounds of steps for each line of nodes after which the remaining paths are ended, as a path in
+#: few cells goes round and round.
+STEPS_PER_LINE = 50
+LEAST_STEPS = 1_000  #: Least number of rounds.
+MOST_STEPS = 20_000  #: Greatest number of rounds.
+#: Steps within which a path in a steady flow leaves a small square; otherwise it stays there.
+CIRCLE_STEPS = 48
+CIRCLE_ERRORS = 20.0  #: Sides of that square, in errors allowed in a step.
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, also in computations.

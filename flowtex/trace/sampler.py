@@ -1,15 +1,14 @@
 """The velocity between the nodes and between the time steps.
 
 A sampler gives the rate of change of a particle's position in index space, (di, dj) per unit of
-lag, anywhere: bilinear in space, linear in time, constant beyond the border of the domain and
-before the first time step. Blanked nodes take the velocity of the nearest valid one, so a path
-that grazes a blanked region bends as its neighbours do until it is ended there. Next to a pole it
-gives the same in the plane there (see :mod:`flowtex.trace.sampler`).
+lag: bilinear in space, linear in time, constant beyond the border and before the first time step.
+Blanked nodes take the velocity of the nearest valid one, so a path that grazes a blanked region
+bends as its neighbours do until it is ended there.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
@@ -32,35 +31,39 @@ RESTING_CELLS = 1e-3
 #: By time, a particle is at rest that goes no further than this, in cells, until the last lag.
 STILL_CELLS = 1e-5
 Numbers = NDArray[np.int8]
-#: Cells from a pole within which a path is followed in the plane: at least so many, and up to
-#: where cells have this ratio of width to length.
-LEAST_NEAR_CELLS, NEAR_ASPECT = 6, 0.5
+LEAST_NEAR_CELLS = 6  #: Cells from a pole within which a path is followed in the plane, at least.
+NEAR_ASPECT = 0.5  #: Ratio of width to length up to which cells are followed there.
 #: Cells from a pole within which slices are not interpolated between nodes.
 CLOSE_CELLS = 4
-#: Cells beyond those at which a path leaves the plane again, and cells beyond that with data.
-LEAVE_CELLS, SPARE_CELLS = 1, 3
+LEAVE_CELLS = 1  #: Cells beyond those at which a path leaves the plane again.
+SPARE_CELLS = 3  #: Cells beyond that with data.
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
-#: Cells that a particle may move at once: where nothing is blanked, and next to a blanked cell.
-MOST_ROOM_CELLS, LEAST_ROOM_CELLS = 4, 1
+MOST_ROOM_CELLS = 4  #: Cells that a particle may move at once where nothing is blanked.
+LEAST_ROOM_CELLS = 1  #: The same next to a blanked cell.
 
 
-class Sampler(ABC):
-    """The field as the integrator samples it.
+class Sampler:
+    """The field as the integrator samples it, by arc length or by its own time.
 
-    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them. The
-    data are components along i and j, and other values to interpolate, (T, J, I, C).
+    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them. By
+    arc length a steady field has unit speed in space. Beside a critical point the velocity is
+    divided by the interpolated speed of the nodes, so a path comes to rest there instead of passing
+    it.
     """
 
-    #: Longest step in units of lag, so that no change in time is missed.
-    longest = np.inf
-    #: Times of the data, and the one from which lags count.
-    times = np.zeros(1)
-    destination = 0.0
-    #: Speed up to which a particle has stopped.
-    floor = 0.0
-
-    def __init__(self, field: FlowField, data: Floats) -> None:
+    def __init__(self, field: FlowField, *, by_length: bool) -> None:
+        flow = field.index_velocity
+        data = np.asarray(flow.components)
+        #: Speed up to which a particle has stopped, by arc length.
+        self._floor = 0.0
+        if by_length:
+            data = np.concatenate([data, flow.speed[..., None]], axis=-1)
+            self._floor = max(STOPPED_SPEED * float(flow.speed.max()), np.finfo(float).tiny)
+        #: Times of the data, and the one from which lags count.
+        self.times, self.destination = field.times, float(field.times[-1])
+        #: Longest step in units of lag, so that no change in time is missed.
+        self.longest = np.inf if field.steady else float(np.diff(field.times).max())
         data = fill_blanked(data, field.valid, data.ndim - 3)
         parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
         grid = NodeGrid.of(field)
@@ -132,66 +135,31 @@ class Sampler(ABC):
         """Return the lag to the first or last time step, beyond which the flow is constant."""
         return float(direction * (self.times[0 if direction < 0 else -1] - self.destination))
 
-    @abstractmethod
-    def rest(self, unit: Floats, last: float) -> Floats:
-        """Return rates (N,) below which a particle is at rest, for lags up to ``last * unit``."""
-
-    @abstractmethod
-    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Return the rate on one chart, forward."""
-
-
-class LengthSampler(Sampler):
-    """A steady field by arc length: the direction of the flow, at unit speed in space.
-
-    Beside a critical point the velocity is divided by the interpolated speed of the nodes, so a
-    path comes to rest there instead of passing it.
-    """
-
-    def __init__(self, field: FlowField) -> None:
-        flow = field.index_velocity
-        speed = flow.speed[..., None]
-        super().__init__(field, np.concatenate([flow.components, speed], axis=-1))
-        self.floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
-
-    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Return the direction for one unit of length."""
-        del lag, direction
-        corners = patch.corners(position)
-        speed = patch.blend(2, corners)
-        still = speed <= self.floor
-        speed[still] = np.inf
-        result = np.empty_like(position)
-        np.divide(patch.blend(0, corners), speed, out=result[0])
-        np.divide(patch.blend(1, corners), speed, out=result[1])
-        return result
-
-    def rest(self, unit: Floats, last: float) -> Floats:
-        """Return rates below which a particle is at rest; moving ones cover a cell per unit."""
-        del last
-        return RESTING_CELLS / unit
-
-
-class TimeSampler(Sampler):
-    """A field by its own time; lags count from the time of step number ``step``."""
-
-    def __init__(self, field: FlowField) -> None:
-        super().__init__(field, field.index_velocity.components)
-        self.times = field.times
-        self.destination = float(field.times[-1])
-        self.longest = np.inf if field.steady else float(np.diff(field.times).max())
-
-    def since(self, destination: float) -> TimeSampler:
+    def since(self, destination: float) -> Sampler:
         """Return this sampler with lags counted from another destination time."""
-        other = object.__new__(TimeSampler)
-        other.__dict__.update(self.__dict__, destination=destination)
+        other = copy(self)
+        other.destination = destination
         return other
 
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Return rates (N,) below which a particle is at rest, for lags up to ``last * unit``.
+
+        By arc length moving ones cover a cell per unit; in a flow that varies none stays at rest.
+        """
+        if self._floor:
+            return RESTING_CELLS / unit
+        return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)
+
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Return the velocity at time destination + direction * lag."""
+        """Return the rate on one chart, forward, at time destination + direction * lag."""
         corners = patch.corners(position)
         if len(self.times) == 1:
-            return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
+            result = np.stack([patch.blend(0, corners), patch.blend(1, corners)])
+            if self._floor:
+                speed = patch.blend(2, corners)
+                speed[speed <= self._floor] = np.inf
+                result /= speed
+            return result
         step, late = bracket(self.times, self.destination + direction * lag, side="left")
         np.clip(late, 0, 1, out=late)
         result = np.empty((2, len(lag)))
@@ -202,10 +170,6 @@ class TimeSampler(Sampler):
             row *= late
             row += before
         return result
-
-    def rest(self, unit: Floats, last: float) -> Floats:
-        """Return rates below which a particle is at rest; in a time-varying flow none stays so."""
-        return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)
 
 
 class Patch(NamedTuple):
@@ -257,14 +221,11 @@ class Patch(NamedTuple):
 
 
 class Charts:
-    """The charts of a surface with poles: index space, and next to a pole the tangent plane.
+    """The charts of a surface with poles: index space, 0, and next to each pole the tangent plane.
 
-    Cells around a pole have no width, and in index space the velocity there has no bound. In the
-    plane that touches the surface at the pole both are ordinary, so a path that comes within a few
-    cells of a pole is followed in that plane, across the pole if need be. Its positions are stored
-    in index space again.
-
-    Chart 0 is index space; the others are the planes of the poles, in cells towards the pole.
+    In index space the velocity at a pole has no bound. So a path that comes within a few cells of a
+    pole is followed in the plane that touches the surface there, in cells towards the pole, across
+    it if need be. Its positions are stored in index space again.
     """
 
     def __init__(self, poles: Poles) -> None:

@@ -1,13 +1,9 @@
 """Trace slices: where the particle now at a node was, or will be, at other times.
 
-This is the intermediate form of the paper (section 3.1): the slice S(Td, Ts) holds, for every
-node (i, j), the position (a, b) from which a particle released at Ts reaches the node at Td. It
-is stored as the displacement (a - i, b - j), which is continuous across a seam and exact under
-interpolation at lag zero, for a handful of lags = Td - Ts.
-
-A streak is a fixed number of pixels, so its length on the surface doubles with every level of
-detail. The lags therefore double too, from a quarter of a cell, where a path between two nodes
-is as good as straight, to a quarter of the whole surface.
+The slice S(Td, Ts) of the paper (section 3.1) holds, for every node (i, j), the position (a, b)
+from which a particle released at Ts reaches the node at Td. It is stored as the displacement
+(a - i, b - j), which is continuous across a seam, for a handful of lags = Td - Ts. These double, as
+the length of a streak does with every level of detail.
 """
 
 from __future__ import annotations
@@ -41,14 +37,15 @@ NODE_AXES = {
     "displacement": 2,
     "forward": 2,
 }
-#: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
-FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
+FIRST_CELLS = 0.25  #: First lag in cells.
+LAST_EXTENTS = 0.25  #: Last lag as a share of the surface's extent.
+MOST_CHOSEN_LAGS = 24  #: Greatest number of lags.
 #: Parts of an octave to which a chosen last lag is rounded.
 LAST_PARTS = 8
 #: Percentile of the sizes of cells that counts as that of small ones.
 SMALL_CELLS = 5
-#: Least and greatest size of cells, in multiples of one unit, with which they share it.
-LEAST_CELL, MOST_CELL = 0.25, 16.0
+LEAST_CELL = 0.25  #: Least size of cells, in multiples of one unit, with which they share it.
+MOST_CELL = 16.0  #: Greatest one.
 #: Quotient of one lag and the one before.
 RATIO = 2.0
 #: Least number of lags that are drawn; the uncertainty of a flow lies in the layer of one more.

@@ -23,12 +23,12 @@ from flowtex.trace.trace import trace
 
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
-#: Most bytes of the steps in which paths to one time are traced, where they are read late; bytes of
-#: a node of each: velocity, speed, and samples; and least number of steps that remain when more are
-#: thinned out evenly.
-HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 72, 8
-#: Length of a streak as a share of the surface, and most change of velocity meanwhile, as a share.
-STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
+#: Most bytes of the steps in which paths to one time are traced, where they are read late.
+HELD_BYTES = 500_000_000
+STEP_BYTES = 72  #: Bytes of a node of each: velocity, speed, and samples.
+LEAST_HELD = 8  #: Least number of steps that remain when more are thinned out evenly.
+STREAK_EXTENTS = 0.05  #: Length of a streak as a share of the surface.
+MOST_CHANGE = 0.5  #: Most change of velocity meanwhile, as a share.
 #: Most nodes where it changes by more, as a share, for pathlines.
 MOST_CHANGING = 0.05
 #: Most nodes along each axis, and pairs of steps, that are sampled.
@@ -122,9 +122,8 @@ class SliceStore:
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
             first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
             # Every n-th of them where they are many.
-            apart = -(
-                -(last - first) // max(HELD_BYTES // (STEP_BYTES * self.unit.size), LEAST_HELD)
-            )
+            most = max(HELD_BYTES // (STEP_BYTES * self.unit.size), LEAST_HELD)
+            apart = -(-(last - first) // most)
             some = range(first + (step - first) % apart, last, apart)
             steps = sorted({first, *some, last - 1})
             part = self.field.at_steps(steps)

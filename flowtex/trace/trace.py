@@ -28,23 +28,24 @@ from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.validation import known_nodes
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
-from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
+from flowtex.trace.sampler import Sampler
 from flowtex.trace.slices import TraceSlices, choose_lags, lag_unit
 from flowtex.trace.triangles.trace import triangle_paths, triangle_slices
 
 A = TypeVar("A")
 B = TypeVar("B")
-#: Lags that single precision holds, also in computations.
-LEAST_LAG, MOST_LAG = 1e-30, 1e30
+LEAST_LAG = 1e-30  #: Least lag that single precision holds, also in computations.
+MOST_LAG = 1e30  #: Greatest one.
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
-#: Share of the greatest speed that is rounding, and contraction by less than the error of paths.
-ROUNDED_SPEED, LEAST_STRETCH = 1e-9, 10 * TOLERANCE
+ROUNDED_SPEED = 1e-9  #: Share of the greatest speed that is rounding.
+LEAST_STRETCH = 10 * TOLERANCE  #: Contraction that is due to the error of paths.
 #: First step of a particle in a steady flow, as a share of the horizon.
 FIRST_STEP = 0.2
-#: Particles followed together, and blocks of them followed at once. Threads wait for each other
-#: between the operations on a block: on 16 cores blocks a quarter as large take 1.5 times as long.
-BLOCK, MOST_THREADS = 65536, 8
+#: Particles followed together. Threads wait for each other between the operations on a block: on
+#: 16 cores blocks a quarter as large take 1.5 times as long.
+BLOCK = 65536
+MOST_THREADS = 8  #: Blocks followed at once.
 #: Length in cells up to which the paths of a steady field are integrated, not composed.
 DIRECT_CELLS = 1.0
 
@@ -128,7 +129,15 @@ def trace(
     """
     check_field(field, FlowField)
     parameter = _parameter(field, parameter)
-    _check_signs(field, two_sided=two_sided, compose=compose)
+    if field.sign_free and not two_sided:
+        raise FieldError(
+            "two_sided is False; expected True, because a sign-free field has two equal sides"
+        )
+    if field.sign_free and compose:
+        raise FieldError(
+            "compose is True; expected False or None, because paths of a sign-free field cannot "
+            "be composed between nodes of opposite sign"
+        )
     lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
     units = lag_unit(field, parameter) if unit is None else _checked_unit(field, unit)
     if not (np.isfinite(units).all() and (units > 0).all()):
@@ -238,19 +247,6 @@ def paths(
     return replace(result, reach=result.reach * unit)
 
 
-def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
-    """Raise a FieldError for arguments that have no meaning in a sign-free field."""
-    if field.sign_free and not two_sided:
-        raise FieldError(
-            "two_sided is False; expected True, because a sign-free field has two equal sides"
-        )
-    if field.sign_free and compose:
-        raise FieldError(
-            "compose is True; expected False or None, because paths of a sign-free field cannot "
-            "be composed between nodes of opposite sign"
-        )
-
-
 def _step_numbers(field: FlowField, steps: Any) -> list[int]:
     """Return destination times as indices from 0."""
     if steps is None:
@@ -262,9 +258,7 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
-    if parameter == "arclength":
-        return [LengthSampler(field)]
-    sampler = TimeSampler(field)
+    sampler = Sampler(field, by_length=parameter == "arclength")
     return [sampler.since(float(field.times[step])) for step in steps]
 
 

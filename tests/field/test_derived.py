@@ -127,16 +127,6 @@ def test_numbering_and_gaps_change_nothing_elsewhere() -> None:
         assert holed[:9] == pytest.approx(whole[:9], abs=1e-12)
 
 
-def test_a_rotation_on_a_closed_axis_has_one_vorticity() -> None:
-    angle, radius = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(1, 2, 13))
-    p = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
-    v = np.stack([-p[..., 1], p[..., 0]], axis=-1)
-    field = FlowField.from_arrays(p, v)
-    assert field.periodic == (False, True)
-    assert field.derive("vorticity")[0] == pytest.approx(2.0, abs=1e-9)
-    assert field.derive("shear")[0] == pytest.approx(0.0, abs=1e-9)
-
-
 def test_ftle_of_a_saddle_and_of_the_double_gyre() -> None:
     p = lattice(20) - (1.0, 0.5)
     field = FlowField.from_arrays(p, 0.5 * p * (1, -1))
@@ -270,28 +260,6 @@ def test_two_lines_of_triangles_have_a_linear_fit() -> None:
     field = FlowField.from_triangles(p, Delaunay(p).simplices, flow)
     assert field.derive("vorticity") == pytest.approx(5.0)
     assert field.derive("divergence") == pytest.approx(0.75)
-
-
-def test_steps_that_are_read_late_stay_so() -> None:
-    field, exact = crooked(12)
-    read: list[int] = []
-
-    def step(number: int) -> Floats:
-        read.append(number)
-        return np.asarray((number + 1) * field.velocity[0])
-
-    late = FlowField.from_triangles(
-        field.points.reshape(-1, 3),
-        Delaunay(field.points.reshape(-1, 3)[:, :2]).simplices,
-        LazySteps(5, lambda n: step(n).reshape(-1, 3)),
-        times=np.arange(5.0),
-    )
-    read.clear()
-    vorticity = late.derive("vorticity")
-    assert isinstance(vorticity, LazySteps)
-    third = vorticity[3]
-    assert set(read) <= {3}
-    assert np.abs(third.ravel() - 4 * exact["vorticity"].ravel()).max() < 1.0
 
 
 def test_a_picture_is_coloured_by_what_is_derived() -> None:

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.grids.grid_nodes import axes, corner_signs, oriented, products
+from flowtex.field.grids.grid_nodes import axes, corner_signs, products
 
 Floats = NDArray[np.float64]
 
@@ -54,26 +54,6 @@ def test_around_half_a_turn_a_single_cut_is_left(count: int) -> None:
     points = grid(count)
     field = FlowField.from_arrays(points, flipped(half(points)), sign_free=True)
     assert count / 2 - 1 <= cut(field) <= count
-
-
-def test_flips_change_nothing_but_the_sign() -> None:
-    points = grid()
-    fields = [
-        FlowField.from_arrays(points, flipped(half(points), seed), sign_free=True)
-        for seed in (1, 2)
-    ]
-    one, two = (f.velocity / f.velocity[0, 0, 0, 0] for f in fields)
-    np.testing.assert_array_equal(one, two)
-
-
-def test_parts_that_do_not_touch_are_oriented_apart() -> None:
-    points = grid()
-    valid = np.ones(points.shape[:2], bool)
-    valid[:, 10] = False
-    v = flipped(directions(0.5 * points[..., 0]))
-    found = oriented(np.pad(v, ((0, 0), (0, 0), (0, 1))), valid, (False, False))
-    for part in (found[:, :10], found[:, 11:]):
-        assert (np.sum(part * part[:1, :1], axis=-1) > 0).all()
 
 
 def test_the_closing_line_agrees_with_the_first() -> None:

@@ -82,10 +82,3 @@ def test_a_value_beside_a_step_without_is_that_of_the_nearer_step() -> None:
         scene.time = time
         assert np.isnan(scene.scalar("speed")[NOT_NOW]).all() == lacks
         assert (scene.scalar("speed")[15:] == 5).all()
-
-
-def test_a_tiny_field_has_room_for_the_uncertainty() -> None:
-    velocity = np.ones((2, 2, 2, 2))
-    velocity[0, 1, 1] = np.nan
-    scene = Scene(FlowField.from_arrays(CORNERS.reshape(2, 2, 2), velocity))
-    assert len(scene.store.lags) > 2 and scene.textures.layers(0).shape[0] > 0

@@ -5,11 +5,7 @@ import pytest
 
 from flowtex.field.interpolation import (
     along_line,
-    between_nodes,
     bracket,
-    cell_of,
-    cubic_weights,
-    fill_blanked,
     inverse_along_line,
     steps_around,
 )
@@ -31,43 +27,6 @@ def test_a_number_of_the_line_begins_an_interval_or_ends_one() -> None:
     interval, share = bracket(line, values, side="left")
     np.testing.assert_array_equal(interval, [[0, 0], [1, 1]])
     np.testing.assert_array_equal(share, [[-1.0, 1.0], [0.5, 1.5]])
-
-
-def test_blanked_nodes_take_the_nearest_value(rng: np.random.Generator) -> None:
-    data = rng.standard_normal((2, 4, 5, 3))
-    known = np.ones((4, 5), bool)
-    assert fill_blanked(data, known, 1) is data
-    known[:2, 0] = False
-    filled = fill_blanked(data, known, 1)
-    np.testing.assert_array_equal(filled[:, known], data[:, known])
-    np.testing.assert_array_equal(filled[:, 0, 0], data[:, 0, 1])
-    np.testing.assert_array_equal(fill_blanked(data[0, ..., 0], known), filled[0, ..., 0])
-
-
-def test_cells_fractions_and_turns() -> None:
-    x = np.array([-0.5, 0.0, 2.25, 4.0, 9.0])
-    cell, inside, beyond, turns = cell_of(x, 5, periodic=False)
-    np.testing.assert_array_equal(cell, [0, 0, 2, 3, 3])
-    np.testing.assert_array_equal(inside, [0, 0, 0.25, 1, 1])
-    np.testing.assert_array_equal(beyond, [-0.5, 0, 0, 0, 5])
-    assert not turns.any()
-    cell, inside, beyond, turns = cell_of(x, 5, periodic=True)
-    np.testing.assert_array_equal(cell + inside + 4 * turns, x)
-    np.testing.assert_array_equal(turns, [-1, 0, 0, 1, 2])
-    assert not beyond.any()
-
-
-def test_cubic_weights_sum_to_one_and_meet_the_nodes() -> None:
-    weights = np.array(cubic_weights(np.linspace(0, 1, 5)))
-    np.testing.assert_allclose(weights.sum(axis=0), 1, atol=1e-15)
-    np.testing.assert_array_equal(weights[:, 0], [0, 1, 0, 0])
-    np.testing.assert_array_equal(weights[:, -1], [0, 0, 1, 0])
-
-
-def test_values_between_nodes_are_linear_and_constant_beyond() -> None:
-    j, i = np.mgrid[:3, :4]
-    index = np.array([[1.5, 0.5], [3.0, 2.0], [7.0, 1.0]])
-    np.testing.assert_allclose(between_nodes(i + 10 * j, index), [6.5, 23.0, 13.0])
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -58,12 +58,6 @@ def test_a_point_of_the_surface_is_found(
         assert np.abs(there - point).max() < 1e-9 * field.surface.extent
 
 
-def test_an_index_comes_back(rng: np.random.Generator) -> None:
-    field = flat()
-    for at in rng.uniform(0.01, 0.99, (40, 2)) * [8, 12]:
-        assert locate(field, values_at(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
-
-
 def test_a_point_off_the_surface_has_no_index() -> None:
     plane, ball = flat(), sphere()
     assert locate(plane, (-0.5, 0.5)) is None
@@ -97,17 +91,6 @@ def test_a_seam_is_no_border() -> None:
     assert locate(flat_map, (365.0, 5.0)) == pytest.approx((6.5, 0.5))
     assert locate(flat_map, (-5.0, 5.0)) == pytest.approx((6.5, 35.5))
     assert values_at(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
-
-
-def test_the_nearest_of_two_sheets_counts() -> None:
-    s, t = np.meshgrid(np.linspace(-1, 1, 41), np.linspace(0, 1, 6))
-    # A strip folded over, a tenth apart.
-    x = np.minimum(1 - np.abs(s), 0.95)
-    points = np.stack([x, t, 0.1 * np.tanh(20 * s)], axis=-1)
-    field = FlowField.from_arrays(points, np.ones_like(points), periodic="")
-    low, high = locate(field, (0.5, 0.5, -0.101)), locate(field, (0.5, 0.5, 0.101))
-    assert low == pytest.approx((2.5, 10.0), abs=1e-6)
-    assert high == pytest.approx((2.5, 30.0), abs=1e-6)
 
 
 def test_the_tree_lives_as_long_as_its_field() -> None:

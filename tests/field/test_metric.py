@@ -61,32 +61,14 @@ def test_uniform_flow_on_a_linear_grid_is_exact(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LINEAR)
-def test_between_the_nodes_of_a_linear_grid_it_is_exact(name: str) -> None:
+@pytest.mark.parametrize(("rows", "columns"), [(6, 9), (2, 2)])
+def test_a_linear_grid_is_exact_between_nodes_and_beyond(
+    name: str, rows: int, columns: int
+) -> None:
     matrix = linear_map(name)
-    surface = open_surface(indices(6, 9) @ matrix.T)
-    at = inside(np.random.default_rng(0), 6, 9)
-    size = np.abs(matrix).max()
-    np.testing.assert_allclose(surface.at(at), at @ matrix.T, atol=1e-13 * 10 * size)
-
-
-def test_beyond_the_border_a_linear_grid_goes_on() -> None:
-    matrix = linear_map("sheared")
-    surface = open_surface(indices(6, 9) @ matrix.T)
-    at = np.array([[-2.5, 3.0], [9.5, 2.25], [4.0, -1.0], [3.5, 7.0], [-1.0, 8.0]])
-    np.testing.assert_allclose(surface.at(at), at @ matrix.T, atol=1e-12)
-
-
-def test_the_shape_of_the_question_is_the_shape_of_the_answer() -> None:
-    surface = open_surface(indices(6, 9) @ linear_map("square").T)
-    assert surface.at(np.zeros((2, 3, 4, 2))).shape == (2, 3, 4, 3)
-    assert surface.at(np.zeros(2)).shape == (3,)
-
-
-def test_two_lines_are_enough() -> None:
-    matrix = linear_map("sheared")
-    surface = open_surface(indices(2, 2) @ matrix.T)
-    at = inside(np.random.default_rng(0), 2, 2)
-    np.testing.assert_allclose(surface.at(at), at @ matrix.T, atol=1e-13)
+    surface = open_surface(indices(rows, columns) @ matrix.T)
+    at = 3 * inside(np.random.default_rng(0), rows, columns) - 5
+    np.testing.assert_allclose(surface.at(at), at @ matrix.T, atol=1e-12 * np.abs(matrix).max())
 
 
 # --- smooth maps converge -------------------------------------------------------------------
@@ -140,19 +122,6 @@ def test_positions_converge_with_order_two_or_better() -> None:
     assert (errors(worst) > 2.5).all()
 
 
-def test_a_small_step_in_index_space_is_the_step_in_space() -> None:
-    """What the tracer relies on: moving by u in index space moves by u P_i + v P_j."""
-
-    def worst(n: int) -> float:
-        surface = open_surface(smooth(*grid(n)))
-        step, at = np.array([0.3, -0.2]), indices(n, n)[1:-1, 1:-1]
-        moved = (surface.at(at + 1e-3 * step) - surface.at(at - 1e-3 * step)) / 2e-3
-        told = np.einsum("c,cjix->jix", step, surface.tangents[:, 1:-1, 1:-1])
-        return float(np.abs(moved - told).max() / np.abs(told).max())
-
-    assert worst(9) < 1e-5
-
-
 # --- tangents -------------------------------------------------------------------------------
 
 
@@ -170,18 +139,6 @@ def test_tangents_are_the_slopes_of_positions_at_the_nodes(component: int) -> No
     np.testing.assert_allclose(slope, surface.tangents[component], atol=2e-5)
 
 
-def test_nodes_are_where_they_are() -> None:
-    points = smooth(*grid(9))
-    np.testing.assert_allclose(open_surface(points).at(indices(9, 9)), points, atol=1e-15)
-
-
-def test_swapping_the_axes_swaps_the_tangents() -> None:
-    points = smooth(*grid(9))
-    by_i, by_j = open_surface(points).tangents
-    turned = open_surface(np.swapaxes(points, 0, 1)).tangents
-    np.testing.assert_allclose(turned, np.swapaxes(np.stack([by_j, by_i]), 1, 2), atol=1e-15)
-
-
 # --- seams ----------------------------------------------------------------------------------
 
 
@@ -190,18 +147,6 @@ def cylinder(lines: int = 25, columns: int = 6) -> GridSurface:
     height = np.linspace(0.5, 1, columns)[None] ** 2
     points = np.stack(np.broadcast_arrays(np.cos(angle), np.sin(angle), height), axis=-1)
     return GridSurface(points, np.ones((lines, columns), bool), (True, False))
-
-
-def test_positions_run_on_across_a_seam() -> None:
-    surface = cylinder()
-    at = np.array([[2.5, 0.0], [1.25, 24.0]])
-    for seam in at:
-        before, after = (surface.at(seam + np.array([0, d])) for d in (-1e-9, 1e-9))
-        np.testing.assert_allclose(before, after, atol=1e-8)
-    d = np.array([0, 1e-4])
-    ahead = (surface.at(at + d) - surface.at(at)) / 1e-4
-    behind = (surface.at(at) - surface.at(at - d)) / 1e-4
-    np.testing.assert_allclose(ahead, behind, atol=1e-3 * np.abs(ahead).max())
 
 
 def test_a_whole_turn_comes_back() -> None:
@@ -225,12 +170,6 @@ def test_a_turn_of_a_flat_map_goes_on() -> None:
     np.testing.assert_allclose(
         surface.at(at + np.array([36, 0])), surface.at(at) + np.array([360, 0, 0]), atol=1e-11
     )
-
-
-def test_tangents_agree_on_both_sides_of_a_seam() -> None:
-    tangents = cylinder().tangents
-    np.testing.assert_allclose(tangents[:, 0], tangents[:, -1], atol=1e-15)
-    assert np.linalg.norm(tangents[1][:, 0], axis=-1).std() < 1e-12, "a node of a circle differs"
 
 
 def test_a_seam_is_nothing_special() -> None:
@@ -260,13 +199,6 @@ def test_flow_along_a_sphere_is_kept() -> None:
     # One turn of 40 cells takes 2 pi units of time.
     np.testing.assert_allclose(u[..., 0], 40 / (2 * np.pi), rtol=5e-3)
     np.testing.assert_allclose(u[..., 1], 0, atol=1e-2)
-
-
-def test_flow_out_of_a_sphere_is_lost() -> None:
-    surface = sphere().surface
-    found = surface.express(surface.points[None])
-    assert found.normal_share > 0.999
-    assert found.speed.max() < 0.02
 
 
 def test_half_of_the_flow_is_lost() -> None:
@@ -322,20 +254,6 @@ def test_fill_values_of_blanked_nodes_bend_nothing() -> None:
     u = field.index_velocity.components[0]
     np.testing.assert_allclose(u[valid], np.broadcast_to([1.0, 2.0], u[valid].shape), rtol=1e-9)
     assert field.surface.extent < 20
-
-
-def test_blanked_nodes_do_not_move() -> None:
-    points = indices(8, 9) @ linear_map("square").T
-    velocity = np.ones_like(points) * [1.0, 1, 0]
-    velocity[2, 2] = np.nan
-    u = FlowField.from_arrays(points, velocity).index_velocity
-    assert not u.components[0, 2, 2].any()
-    assert u.normal_share == 0.0
-
-
-def test_no_flow_loses_nothing() -> None:
-    surface = open_surface(indices(5, 5) @ linear_map("square").T)
-    assert surface.express(np.zeros((1, 5, 5, 3))).normal_share == 0.0
 
 
 def test_cell_size_follows_the_smaller_side() -> None:

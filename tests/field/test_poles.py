@@ -116,13 +116,6 @@ def test_beyond_a_pole_lies_the_other_side(columns: int) -> None:
     )
 
 
-def test_on_nodes_it_is_exact() -> None:
-    found = surface(sphere())
-    i, j = np.meshgrid(np.arange(36.0), np.arange(-18.0, 0))
-    over = np.roll(found.points[18:0:-1, :-1], 18, axis=1)
-    np.testing.assert_allclose(found.at(np.stack([i, j], axis=-1)), over, rtol=0, atol=2e-16)
-
-
 @pytest.mark.parametrize("bent", [0.0, 0.3])
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_line_over_the_pole_goes_straight_on(turned: bool, bent: float) -> None:
@@ -147,14 +140,6 @@ def test_tangents_at_the_pole_are_those_of_the_sphere() -> None:
     np.testing.assert_allclose(along_j[-1], -expected, atol=1e-12)
 
 
-def test_the_size_of_cells_is_their_length_at_the_pole() -> None:
-    size = surface(sphere(91, 180)).cell_size
-    np.testing.assert_allclose(size[0] / (np.pi / 90), 1, rtol=1e-3)
-    middle = size[45] / (np.pi / 90)
-    np.testing.assert_allclose(middle, 1, rtol=1e-2)
-    assert (np.abs(np.diff(np.log(size[:, 0]))) < 1).all()
-
-
 # --- the plane ------------------------------------------------------------------------------
 
 
@@ -170,14 +155,6 @@ def test_to_the_plane_and_back(end: int, turned: bool, bent: float) -> None:
     np.testing.assert_allclose(pole.index(place), there, atol=1e-9)
     assert np.linalg.norm(place, axis=0).max() < 6.5
     np.testing.assert_allclose(pole.depth(pole.index(np.zeros((2, 1)))), 0)
-
-
-def test_opposite_twice_is_once_around() -> None:
-    for bent in (0.0, 0.3):
-        pole = poles(sphere(bent=bent))[0]
-        i = np.linspace(-40, 80, 333)
-        np.testing.assert_allclose(pole.opposite(pole.opposite(i)), i + 36, atol=1e-9)
-        assert pole.opposite(i.astype(np.float32)).dtype == np.float32
 
 
 def test_nearest_keeps_a_path_together() -> None:
@@ -207,12 +184,3 @@ def test_one_point_has_one_velocity(end: int, turned: bool) -> None:
     np.testing.assert_allclose(speed, np.hypot(0.3, 1.1))
     along = pole.lines(field.index_velocity.components[0])[pole.line, :, pole.component]
     np.testing.assert_allclose(pole.vector(along) @ pole.plane, [0.3, -1.1, 0], atol=1e-12)
-
-
-def test_nodes_that_disagree_take_the_mean() -> None:
-    points = disc()
-    velocity = np.zeros_like(points)
-    velocity[0, :-1] = [[1.0, 0, 0], [0, 1.0, 0]] * 16
-    velocity[0, -1] = velocity[0, 0]
-    field = FlowField.from_arrays(points, velocity)
-    np.testing.assert_allclose(field.speed[0, 0], np.hypot(0.5, 0.5))

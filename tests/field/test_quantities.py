@@ -7,7 +7,6 @@ from datetime import datetime
 import numpy as np
 import pytest
 import xarray as xr
-from earth_fields import winds
 from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import Delaunay
@@ -96,18 +95,6 @@ def test_a_speed_of_the_file_keeps_its_name() -> None:
     assert field.label_of("height") == "height"
     got = values_at(field, (1, 1))
     assert (got.speed_label, got.scalars["speed"]) == ("speed in the surface", 13)
-
-
-@pytest.mark.parametrize("name", ["globe", "robinson"])
-def test_a_field_of_the_earth_tells_place_and_velocity_there(name: str) -> None:
-    got = values_at(winds(name, cells=36), (27, 40))
-    lat = 45.0 if name == "globe" else 40.0
-    assert got.lonlat == pytest.approx((20, lat), abs=0.01)
-    assert got.eastward == pytest.approx(10 * np.cos(np.radians(lat)), abs=0.05)
-    assert got.northward == pytest.approx(0, abs=0.05)
-    y, x = np.mgrid[0:3.0, 0:3.0]
-    plain = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([x, y], axis=-1))
-    assert values_at(plain, (1, 1)).lonlat is None
 
 
 def test_a_time_may_be_a_date_where_the_times_are() -> None:

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds, date_text, seconds_since
 from flowtex.field.steps import LazySteps, map_steps
-from flowtex.scene.scene import Scene
 from flowtex.trace.store import SliceStore
 
 cftime: Any = pytest.importorskip("cftime")
@@ -87,24 +85,6 @@ def test_a_series_that_is_read_late_is_traced_alike(series: FlowField, lines: st
         assert np.allclose(a.displacement, b.displacement, atol=2e-3), step
     if lines == "streamlines":
         assert set(read) <= {0, 3, 7}
-
-
-def test_scenes_and_pictures_read_what_they_show(series: FlowField, opengl: Any) -> None:
-    del opengl
-    steps, read = lazy(np.asarray(series.velocity))
-    late = replace(series, velocity=steps)
-    scene = Scene.of(late, lines="streamlines")
-    assert scene.scalar_limits[1] > 0
-    scene.time = "2000-01-03"
-    assert scene.time == 2 * 86400.0
-    picture = flowtex.render(late, time="2000-01-03", size=(60, 40), lines="streamlines")
-    assert picture.std() > 10
-    assert not {4, 5, 6} & set(read)
-    assert np.array_equal(
-        picture, flowtex.render(late, time=2 * 86400.0, size=(60, 40), lines="streamlines")
-    )
-    with pytest.raises(ValueError, match="time is 'noon'; expected a number, or a date such as"):
-        scene.time = "noon"
 
 
 def test_dates_are_those_of_their_calendar() -> None:

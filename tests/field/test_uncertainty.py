@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import xarray as xr
-from flows import gyre, scattered_gyre
-from small_tiles import shrink
+from flows import scattered_gyre
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -21,7 +20,6 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.scene.fields import read_field
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import Settings
-from flowtex.textures.tiles.pyramid import Pyramid
 from paper import quality
 
 
@@ -95,19 +93,6 @@ def test_a_scalar_on_cells_is_averaged_to_the_nodes() -> None:
     triangles = with_uncertainty(FlowField.from_pyvista(grid.cast_to_unstructured_grid()), "sigma")
     assert triangles.on_cells == () and triangles.scalars["sigma"].shape == (1, 1, 12)
     assert triangles.scalars["sigma"].max() <= 0.5
-
-
-def test_tiles_have_the_uncertainty_of_their_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    shrink(monkeypatch.setattr)
-    field = with_uncertainty(gyre(201, 101), gyre(201, 101).points[..., 0].clip(0) / 2)
-    pyramid = Pyramid(field, depth=1)
-    textures = pyramid.textures(pyramid.children(None)[0])
-    assert textures is not None
-    part = textures.layers()[3, ..., 3]
-    wanted = unknown_share(textures.geometry.field, 0)[textures.geometry.texels]
-    assert np.ptp(wanted) > 0.1
-    rows, columns = textures.grid.rows, textures.grid.columns
-    assert np.allclose(part[rows.before :, columns.before :][:60, :60], wanted[:60, :60], atol=1e-3)
 
 
 def ensemble(angles: Floats, dims: tuple[str, ...] = ("number", "lat", "lon")) -> xr.Dataset:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from flowtex import FlowField
-from flowtex.field import units
 from flowtex.field.steps import LazySteps
 from flowtex.scene.scene import Scene
 from flowtex.trace.slices import typical_speed
@@ -85,12 +84,3 @@ def test_lazy_steps_stay_lazy() -> None:
     assert isinstance(field.speed, LazySteps)
     assert field.speed[4].max() == pytest.approx(5 * 0.15 * np.hypot(20, 10))
     assert set(read) == {0, 4}
-
-
-def test_units_that_agree_need_no_pint(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(units, "registry", None)
-    field = rotation("boxes", "boxes/turn", time_unit="turn")
-    assert (field.unit_of("speed"), rotation("m", "", time_unit="s").unit_of("speed")) == (
-        "boxes/turn",
-        "m/s",
-    )

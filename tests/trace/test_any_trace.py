@@ -12,7 +12,6 @@ from strategies import field_arguments, field_of, property_test
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.trace import integrate
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import paths, trace
@@ -94,26 +93,6 @@ def test_a_change_in_time_is_not_jumped_over_on_the_way_forward() -> None:
     np.testing.assert_allclose(found.positions[0], [[3.0, 4.0]], atol=0.02)
 
 
-def test_paths_that_go_round_among_cells_of_all_sizes_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    left: list[int] = []
-    advance = integrate._Run.advance
-
-    def noted(run: Any) -> None:
-        advance(run)
-        left.append(len(run.state.which))
-
-    monkeypatch.setattr(integrate._Run, "advance", noted)
-    u, v = np.meshgrid(np.linspace(0, 1, 4), np.linspace(0, 1, 8))
-    points = np.stack([10.0 ** (-12 * u), v**4], axis=-1)
-    velocity = np.stack([-v + 0.5, u - 0.5], axis=-1)
-    field = FlowField.from_arrays(points, velocity, sign_free=True, periodic="ij")
-    slices = SliceStore(field).at(0)
-    check(slices)
-    # On both sides some go on when the rounds are over, and are ended where they are.
-    assert len(left) <= 2 * integrate.LEAST_STEPS and left[-1] > 0
-    assert (np.isfinite(slices.reach).sum() >= left[-1]).all()
-
-
 @pytest.mark.parametrize("speed", [1e-90, 1e-41, 1e-20, 1e20, 1e41, 1e90])
 @pytest.mark.parametrize("steps", [1, 3])
 def test_slices_do_not_depend_on_the_unit_of_time(speed: float, steps: int) -> None:
@@ -129,16 +108,3 @@ def test_slices_do_not_depend_on_the_unit_of_time(speed: float, steps: int) -> N
     np.testing.assert_allclose(other.displacement, one.displacement, rtol=1e-2, atol=1e-2)
     # Half precision holds the reach.
     assert 0.1 < other.lags[0] < other.lags[-1] < 1e4
-
-
-def test_a_path_of_more_cells_than_single_precision_holds_ends_before() -> None:
-    points, velocity = turning()
-    field = FlowField.from_arrays(points, velocity + 1e40)
-    for compose in (False, True):
-        check(trace(field, lags=[1.0, 2.0], parameter="time", compose=compose))
-
-
-def test_a_field_at_rest_has_lags_to_draw_with() -> None:
-    with pytest.warns(UserWarning, match="shows no flow"):
-        field = FlowField.from_arrays(plane(3, 3), np.zeros((3, 3, 2)))
-    assert len(SliceStore(field, parameter="time").lags) == 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,10 +12,7 @@ from scipy.spatial.transform import Rotation
 import flowtex
 from flowtex import FlowField, TraceSlices
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex.settings import Settings
-from flowtex.textures.texture_set import TextureSet
-from flowtex.trace.store import SliceStore
-from flowtex.trace.trace import paths, trace
+from flowtex.trace.trace import trace
 
 X, Z, TILTED = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, 0.8)
 
@@ -76,21 +72,6 @@ def test_a_rotation_goes_round_in_circles_over_the_poles(
             away = np.linalg.norm(places(field, slices, m, forward=forward) - there, axis=-1) / row
             assert np.quantile(away, 0.99) < 0.01 + 0.004 * lag / row
             assert away.max() < 0.02 + 0.01 * lag / row
-
-
-def test_by_arc_length_the_same_circles_are_followed() -> None:
-    field = rotation(X)
-    start = np.array([[9.0, 0.0], [30.3, 1.7], [7.5, 4.2], [40.1, 9.9]])
-    lags = np.linspace(0.02, 1.2, 30)
-    found = paths(field, start, lags, tolerance=1e-4)
-    assert found.polar.tolist() == [True, True, False, False]
-    assert np.isinf(found.reach).all()
-    begin = field.surface.at(start)
-    angle = -lags[:, None] / np.hypot(begin[:, 1], begin[:, 2])
-    for n in range(4):
-        turned = Rotation.from_rotvec(angle[:, n, None] * np.array(X)).apply(begin[n])
-        away = np.linalg.norm(field.surface.at(found.positions[:, n]) - turned, axis=-1)
-        assert away.max() < 0.03 * np.pi / 36
 
 
 @pytest.mark.parametrize("parameter", ["time", "arclength"])
@@ -156,68 +137,6 @@ def test_a_uniform_flow_crosses_a_disc_and_ends_at_its_rim(reverse: bool) -> Non
         )
 
 
-def test_a_path_straight_over_a_pole_has_a_continuous_index() -> None:
-    field = rotation(X)
-    lags = np.linspace(0.01, 0.5, 60)
-    for i in (18.0, 54.0):
-        found = paths(field, [[i, 3.0]], lags, parameter="time", forward=bool(i < 36))
-        np.testing.assert_allclose(found.positions[:, 0, 0], i, atol=1e-6)
-        expected = 3 - lags * 36 / np.pi
-        np.testing.assert_allclose(found.positions[:, 0, 1], expected, atol=1e-2)
-
-
-def test_paths_that_begin_beyond_a_pole_are_those_of_the_other_side() -> None:
-    field = rotation(TILTED)
-    start = np.array([[5.3, 2.4], [17.0, 9.5], [66.0, 14.0]])
-    over = start * [1, -1] + [36, 0]
-    lags = [0.05, 0.2, 0.6]
-    here, there = (
-        field.surface.at(paths(field, s, lags, parameter="time", tolerance=1e-5).positions)
-        for s in (start, over)
-    )
-    np.testing.assert_allclose(here, there, atol=1e-3)
-
-
-def test_a_wedge_that_is_not_closed_ends_its_paths() -> None:
-    r, a = np.meshgrid(np.linspace(0, 1, 17), np.linspace(0, np.pi, 25), indexing="ij")
-    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
-    field = FlowField.from_arrays(points, np.broadcast_to([0.0, 1.0], points.shape), periodic="")
-    assert field.surface.poles is None
-    slices = trace(field, lags=[0.1, 0.4, 1.6], unit=1.0, compose=False)
-    assert np.isfinite(slices.reach).all()
-
-
-# --- textures -------------------------------------------------------------------------------
-
-
-def test_all_nodes_of_a_pole_hold_the_same_slopes() -> None:
-    field = rotation(TILTED)
-    textures = TextureSet.build(SliceStore(field), Settings())
-    rows, columns = textures.grid.rows, textures.grid.columns
-    # The last layer is the velocity in cells, which turn with the meridians.
-    layers = textures.layers()[:-1]
-    for row, up in ((rows.before, 1.0), (rows.before + rows.nodes - 1, -1.0)):
-        line = layers[:, row, columns.before : columns.before + columns.nodes]
-        np.testing.assert_allclose(line, np.broadcast_to(line[:, :1], line.shape), atol=2e-3)
-        direction = np.cross(TILTED, [0, 0, up])
-        np.testing.assert_allclose(
-            line[0, 0, :3],
-            textures.geometry.frame @ direction / np.linalg.norm(direction),
-            atol=1e-6,
-        )
-
-
-def test_the_first_meridian_is_also_the_last() -> None:
-    field = rotation(TILTED)
-    slices = trace(field)
-    for moved in (slices.displacement, slices.forward):
-        assert moved is not None
-        there = field.surface.at(slices.nodes + moved[0])
-        gap = np.linalg.norm(there[:, :, 0] - there[:, :, -1], axis=-1)
-        step = np.linalg.norm(there[:, :, 1] - there[:, :, 0], axis=-1)
-        assert gap.max() < 0.02 * np.median(step)
-
-
 # --- pictures -------------------------------------------------------------------------------
 
 
@@ -237,33 +156,3 @@ def test_streaks_go_straight_through_the_pole(opengl: Any, zoom: float, up: floa
         found = streaks(picture, 0 * ones, ones, part)
         assert found["angle"] < 3.0
         assert found["coherence"] > 0.85
-
-
-def test_the_picture_does_not_depend_on_where_the_pole_is(opengl: Any) -> None:
-    """The same flow with the poles of the mesh here or a quarter of the way round."""
-    points = frames(61, 120)[0]
-    pictures = []
-    for nodes in (points, points[..., [2, 0, 1]]):
-        velocity = np.cross([0.3, 0.1, 0.2], nodes) + 0.8 * nodes[..., [2, 0, 1]] * nodes
-        field = FlowField.from_arrays(nodes, velocity)
-        pictures.append(over_the_pole(field, 4.0).mean(axis=-1).ravel())
-    assert np.corrcoef(*pictures)[0, 1] > 0.93
-
-
-def test_wind_over_a_pole(data_dir: Path, opengl: Any) -> None:
-    netcdf = pytest.importorskip("netCDF4")
-    with netcdf.Dataset(data_dir / "eraint_uvz.nc") as data:
-        data.set_auto_mask(False)
-        u, v = (data[name][0, 1][::6, ::6].astype(float) for name in "uv")
-    points, east, northward = frames(*u.shape)
-    field = FlowField.from_arrays(points, u[..., None] * east + v[..., None] * northward)
-    slices = trace(field)
-    assert (slices.reach[0, 0] > slices.lags[-2]).all()
-    picture = over_the_pole(field, 64)
-    wind = field.velocity[0, 0, :-1].mean(axis=0)
-    mask = np.zeros(picture.shape[:2], bool)
-    mask[30:-30, 30:-30] = True
-    ones = np.ones(mask.shape)
-    found = streaks(picture, wind[0] * ones, wind[1] * ones, mask)
-    assert found["angle"] < 10
-    assert found["coherence"] > 0.85

@@ -51,17 +51,6 @@ def test_steady_fields(name: str) -> None:
     assert share_of_length(composed, direct).max() < bound
 
 
-def test_reach_is_found_across_compositions() -> None:
-    composed, direct = both(airfoil_field((33, 97)))
-    last = direct.lags[-1]
-    one, two = (np.minimum(s.reach[0], last) for s in (composed, direct))
-    ended = two < last
-    assert ended.mean() > 0.5
-    assert (np.isfinite(composed.reach[0]) == np.isfinite(direct.reach[0])).mean() > 0.98
-    assert np.abs(one - two).mean() < 0.01 * last
-    assert np.median(np.abs(one / np.maximum(two, 1) - 1)[ended]) < 0.01
-
-
 def test_stretched_cells_in_which_the_unit_of_lag_varies() -> None:
     x = np.sinh(np.linspace(-3, 3, 81))
     points = np.stack(np.meshgrid(x, np.linspace(-2, 2, 41)), axis=-1)
@@ -86,21 +75,6 @@ def test_fields_that_vary_in_time(name: str) -> None:
         assert share_of_length(composed.at_step(step), direct).max() < 0.01
 
 
-def test_uniform_flow_that_varies_in_time_is_exact() -> None:
-    points = np.stack(np.meshgrid(np.arange(40.0), np.arange(30.0)), axis=-1)
-    times = np.linspace(0, 4, 9)
-    wind = np.stack([np.cos(times), np.sin(2 * times)], axis=-1)
-    velocity = np.broadcast_to(wind[:, None, None], (9, 30, 40, 2))
-    field = FlowField.from_arrays(points, velocity, times=times, periodic="")
-    lags = 0.25 * 2.0 ** np.arange(5)
-    composed = trace(field, lags=lags, compose=True)
-    direct = trace(field, lags=lags, compose=False)
-    inside = (slice(10, 20), slice(10, 30))
-    np.testing.assert_allclose(
-        composed.displacement[:, :, *inside], direct.displacement[:, :, *inside], atol=2e-3
-    )
-
-
 def test_landings_need_equal_steps_that_the_lags_reach() -> None:
     field = double_gyre_field(True, shape=(6, 11))
     unit = np.ones(field.shape)
@@ -111,17 +85,6 @@ def test_landings_need_equal_steps_that_the_lags_reach() -> None:
     assert landings(field, np.array([0.5, 0.75]), unit) is None
     assert landings(field, np.array([0.1, 0.2]), unit) is None
     assert landings(field, np.array([0.25, 0.5]), unit * np.linspace(1, 2, 11)) is None
-
-
-def test_unequal_steps_are_integrated() -> None:
-    field = double_gyre_field(True, shape=(11, 21))
-    uneven = FlowField.from_arrays(
-        field.points, field.velocity[[0, 1, 3, 8]], times=field.times[[0, 1, 3, 8]], periodic=""
-    )
-    lags = [0.25, 0.5, 1.0]
-    one = trace(uneven, lags=lags, compose=True)
-    two = trace(uneven, lags=lags, compose=False)
-    np.testing.assert_array_equal(one.displacement, two.displacement)
 
 
 def test_centre_of_a_rotation_stays_bounded() -> None:

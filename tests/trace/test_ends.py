@@ -29,14 +29,6 @@ def test_reach_is_the_lag_to_the_border() -> None:
     np.testing.assert_allclose(slices.forward_reach[0], expected[:, ::-1], atol=1e-4)
 
 
-def test_composed_reach_is_the_lag_to_the_border() -> None:
-    slices = trace(wind(11, 65, (0.8, 0.1)), lags=0.25 * 2.0 ** np.arange(9), compose=True)
-    i, j = plane(11, 65)[..., 0], plane(11, 65)[..., 1]
-    speed = np.hypot(0.8, 0.1)
-    expected = np.minimum(i / 0.8, j / 0.1) * speed
-    np.testing.assert_allclose(np.minimum(slices.reach[0], 64), np.minimum(expected, 64), atol=0.1)
-
-
 def test_a_path_that_has_left_goes_straight_on() -> None:
     points = plane(21, 21) - 10
     field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1], periodic="")
@@ -128,22 +120,6 @@ def test_nothing_moves(parameter: str, steps: int) -> None:
     assert not slices.rate.any()
     if steps == 1:
         assert not slices.reach.any()
-
-
-def test_a_single_cell() -> None:
-    slices = trace(wind(2, 2, (1.0, 0.5)))
-    assert np.isfinite(slices.displacement).all()
-    np.testing.assert_allclose(slices.reach[0, :, 0], 0, atol=1e-6)
-    np.testing.assert_allclose(slices.rate[0, 0, 0], [0.894, 0.447], atol=1e-3)
-
-
-def test_one_isolated_node_among_blanked_ones() -> None:
-    valid = np.zeros((6, 6), bool)
-    valid[:3, :3] = True
-    valid[5, 5] = True
-    slices = trace(wind(6, 6, (1.0, 0.0), valid=valid))
-    assert slices.reach[0, 5, 5] == pytest.approx(0, abs=1e-5)
-    assert np.isfinite(slices.displacement).all()
 
 
 @pytest.mark.parametrize("parameter", ["arclength", "time"])

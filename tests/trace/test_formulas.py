@@ -114,26 +114,6 @@ def test_a_small_orbit_is_not_missed_nor_one_added() -> None:
         assert radius is None or len(flowtex.closed_orbits(field)) == 1
 
 
-def test_a_period_is_exact_on_a_coarse_grid() -> None:
-    case = next(case for case in CASES if case["name"] == "van der Pol, 4")
-    (orbit,) = flowtex.closed_orbits(field_of(case, resolution=33))
-    assert orbit.period == pytest.approx(10.2035, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    "text", ["sin(x*y)", "x^3/(1 + y^2)", "hypot(x, y)^3", "atan2(y, x)", "x^y"]
-)
-def test_derivatives_are_those_of_sympy(text: str) -> None:
-    sympy = pytest.importorskip("sympy")
-    x, y = sympy.symbols("x y")
-    names = {"hypot": lambda a, b: sympy.sqrt(a * a + b * b)}
-    expression, at = sympy.sympify(text.replace("^", "**"), names), {"x": 1.3, "y": 0.7}
-    tree = parse(text, at)
-    for name, symbol in (("x", x), ("y", y)):
-        expected = float(expression.diff(symbol).subs(at))
-        assert evaluate(derivative(tree, name), at) == pytest.approx(expected, rel=1e-12)
-
-
 @pytest.mark.parametrize("name", [name for name in OPERATIONS if name.isalnum()])
 def test_each_function_has_its_derivative(name: str) -> None:
     count = OPERATIONS[name][1] or 3

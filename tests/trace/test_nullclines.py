@@ -57,11 +57,6 @@ def test_poles_and_jumps_of_a_formula_are_none(rate: str) -> None:
     assert lengths(two) == pytest.approx(np.sqrt(2) * 2.07, rel=1e-6)
 
 
-def test_a_flow_without_nullclines_is_drawn() -> None:
-    field = flowtex.formula("1/x", "1", x=(-1, 1.1), resolution=17)
-    assert flowtex.render(field, size=(60, 40), nullclines=True).shape == (40, 60, 3)
-
-
 def test_a_formula_has_its_lines_at_its_time() -> None:
     field = flowtex.formula("x - t", "1/y", x=(-2, 2), times=(0, 1))
     for step, time in enumerate(field.times):

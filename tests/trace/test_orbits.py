@@ -59,14 +59,6 @@ def test_the_radius_of_a_hopf_orbit_is_exact(speed: float) -> None:
     assert np.abs(radius - 1).max() < 2e-3
 
 
-def test_orbits_in_one_another_are_found_with_their_stability() -> None:
-    field = turning("(1 - x**2 - y**2) * (x**2 + y**2 - 2.25)")
-    found = {orbit.stable: orbit for orbit in flowtex.closed_orbits(field)}
-    assert len(found) == 2
-    for stable, radius in ((False, 1.0), (True, 1.5)):
-        assert np.linalg.norm(found[stable].points, axis=1) == pytest.approx(radius, abs=2e-3)
-
-
 def test_an_orbit_on_triangles_is_the_same() -> None:
     points = np.random.default_rng(3).uniform(-2, 2, (4000, 2))
     x, y = points.T

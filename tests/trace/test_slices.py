@@ -12,12 +12,10 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from flowtex import FlowField, TraceSlices, trace
-from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace.slices import choose_lags
 from flowtex.trace.store import SliceStore
-from flowtex.trace.trace import paths
 
 
 @pytest.fixture(scope="module")
@@ -84,34 +82,7 @@ def test_figures_3_and_4(name: str, factor: int) -> None:
     assert by_field[-1] - by_slices[-1] > 2 * (by_field[0] - by_slices[0])
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_a_coarser_field_drifts_further(name: str) -> None:
-    two, four = (compared(name, factor)["field, at nodes"] for factor in (2, 4))
-    assert (four > 1.5 * two).all()
-
-
-@pytest.mark.parametrize("factor", [2, 4])
-def test_the_error_of_averaged_slices_is_bounded_by_their_own_bend(factor: int) -> None:
-    """What averaging a block adds depends on the slice of that lag, not on those before."""
-    field, lags = vortex_field(), np.arange(1, 11) * 0.04
-    full = trace(field, lags=lags, steps=[10], compose=False)
-    small = full.downsample(factor)
-    exact = paths(field, small.nodes.reshape(-1, 2), lags, step=10).positions
-    found = (small.nodes + small.displacement[0]).reshape(len(lags), -1, 2)
-    error = np.linalg.norm(found - exact, axis=-1).mean(axis=1)
-    slices = full.displacement[0].astype(float)
-    bend = sum(np.linalg.norm(np.diff(slices, 2, axis=a), axis=-1).mean((1, 2)) for a in (1, 2))
-    # The mean over a block of f differs from f at its middle by (n^2 - 1) / 24 f'' in each axis.
-    assert (error < 1.2 * (factor**2 - 1) / 24 * bend).all()
-
-
 # --- one set of slices ----------------------------------------------------------------------
-
-
-def test_slopes_at_lag_zero_are_the_rates(slices: TraceSlices) -> None:
-    for forward, sign in ((False, -1), (True, 1)):
-        slope = (slices.positions(1e-6, forward=forward) - slices.nodes) / 1e-6
-        np.testing.assert_allclose(slope, sign * slices.rate[0], atol=1e-4)
 
 
 def test_positions_at_the_slices_are_the_slices(slices: TraceSlices) -> None:
@@ -121,15 +92,6 @@ def test_positions_at_the_slices_are_the_slices(slices: TraceSlices) -> None:
         np.testing.assert_allclose(slices.positions(lag)[inside], expected[inside], atol=1e-5)
     assert inside.sum() > 500
     np.testing.assert_array_equal(slices.positions(0.0), slices.nodes)
-
-
-def test_positions_between_the_slices_lie_on_the_path(slices: TraceSlices) -> None:
-    lag, inside = 2.0, slices.reach[0] >= 4.0
-    field = double_gyre_field(shape=(21, 41))
-    start = slices.nodes[inside]
-    exact = paths(field, start, [lag * field.surface.cell_size[0, 0]]).positions[0]
-    away = np.linalg.norm(slices.positions(lag)[inside] - exact, axis=-1)
-    assert np.median(away) < 0.05
 
 
 def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSlices) -> None:
@@ -151,14 +113,6 @@ def test_one_step_of_several() -> None:
         one = whole.at_step(step)
         np.testing.assert_array_equal(one.displacement[0], whole.displacement[step])
         assert one.times.tolist() == [whole.times[step]]
-
-
-def test_repr_tells_the_sizes(slices: TraceSlices) -> None:
-    assert re.fullmatch(
-        r"TraceSlices\(41 x 21 nodes \(I x J\), 1 destination times, 3 lags by arclength, "
-        r"backward and forward, \d\.\d MB\)",
-        repr(slices),
-    )
 
 
 # --- files ----------------------------------------------------------------------------------
@@ -225,20 +179,7 @@ def test_files_of_another_kind_are_refused(tmp_path: Path, kind: str) -> None:
     assert not (tmp_path / "sprung").exists()
 
 
-def test_a_missing_file_is_told_as_such(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError):
-        TraceSlices.open(tmp_path / "none.npz")
-
-
 # --- arguments ------------------------------------------------------------------------------
-
-
-def test_unit_scales_the_lags() -> None:
-    field = double_gyre_field(shape=(11, 21))
-    one = trace(field, lags=[1.0, 4.0], unit=0.05)
-    two = trace(field, lags=[2.0, 8.0], unit=0.025)
-    np.testing.assert_allclose(one.displacement, two.displacement, atol=1e-4)
-    np.testing.assert_allclose(one.reach, two.reach / 2, rtol=1e-4)
 
 
 def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
@@ -252,36 +193,6 @@ def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
 
 
 # --- progress, and the store ----------------------------------------------------------------
-
-
-@pytest.mark.threads
-@pytest.mark.parametrize(
-    ("seconds", "show", "has_bar"), [(0.3, True, True), (0.001, True, False), (0.3, False, False)]
-)
-def test_a_progress_bar_appears_after_a_second_where_it_is_wanted(
-    monkeypatch: pytest.MonkeyPatch, seconds: float, show: bool, has_bar: bool
-) -> None:
-    drawn: list[str] = []
-
-    class Bar:
-        def add_task(self, text: str, total: int) -> int:
-            drawn.append(text)
-            return 0
-
-        def start(self) -> None:
-            pass
-
-        def update(self, task: int, completed: int) -> None:
-            pass
-
-        def stop(self) -> None:
-            drawn.append("closed")
-
-    clock = iter(np.arange(0, 1000 * seconds, seconds))
-    monkeypatch.setattr("flowtex._util.progress.time.monotonic", lambda: float(next(clock)))
-    monkeypatch.setattr(progress, "_bar", Bar)
-    trace(double_gyre_field(True, shape=(6, 11)), progress=show)
-    assert drawn == (["Tracing", "closed"] if has_bar else [])
 
 
 def test_store_gives_each_step_once() -> None:

@@ -9,7 +9,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.trace.structure.critical_points import CriticalPoints
-from flowtex.trace.structure.separatrices import Separatrices, _turned
+from flowtex.trace.structure.separatrices import Separatrices
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {
@@ -181,8 +181,3 @@ def test_a_line_that_crosses_the_seam_ends_in_a_focus(seam: float) -> None:
     ahead = [line.points[-1] for line in lines if line.forward]
     assert len(ahead) == 2
     assert np.array(ahead) == pytest.approx(np.array([[1.0, 0, 0]] * 2), abs=0.01)
-
-
-def test_a_line_whose_points_lie_ever_denser_does_not_turn() -> None:
-    line = np.cumsum(0.8 ** np.arange(40.0))[:, None] * [1.0, 0.0, 0.0]
-    assert _turned(line, 1.0, 0.1) is None

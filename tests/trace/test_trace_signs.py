@@ -12,9 +12,6 @@ from measures import grey, streaks
 import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
-from flowtex.rendering.uniforms import ViewState, uniforms
-from flowtex.settings import Settings
-from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import paths
 
@@ -79,19 +76,6 @@ def test_lines_around_half_a_turn_are_parabolas_or_their_like(index: float, shea
         assert error[whole].max() < 0.01
 
 
-def test_turning_nodes_over_changes_the_names_of_the_sides_alone() -> None:
-    field = line_field(grid(), 0.5)
-    other = turned_over(field)
-    one, two = (trace(f, lags=[0.5, 2.0, 8.0]) for f in (field, other))
-    for m in range(3):
-        a, b = ends(field, one, m), ends(other, two, m)
-        apart = np.minimum(np.abs(a - b).max(axis=(0, -1)), np.abs(a - b[::-1]).max(axis=(0, -1)))
-        assert (apart < 1e-9).mean() > 0.999
-    sides = [np.stack([s.reach[0], s.forward_reach[0]]) for s in (one, two)]  # type: ignore[index]
-    a, b = (np.sort(np.minimum(s, 9), axis=0) for s in sides)
-    np.testing.assert_allclose(a, b, atol=1e-6)
-
-
 def test_a_field_with_a_sign_has_the_same_lines() -> None:
     points = grid(61)
     v = np.stack([np.cos(2 * points[..., 1]), np.sin(2 * points[..., 0])], axis=-1)
@@ -146,16 +130,6 @@ def test_what_tells_forward_from_backward_is_refused() -> None:
     plain = replace(field, sign_free=False)
     with pytest.raises(ValueError, match="needs both"):
         SliceStore(field, slices=trace(plain, two_sided=False))
-
-
-def test_settings_that_tell_forward_from_backward_are_left_out() -> None:
-    field = line_field(grid(11), 0.5)
-    settings = Settings(two_sided=False, kernel="ramp", motion="speed")
-    textures = TextureSet.build(SliceStore(field), settings)
-    values = uniforms(textures, settings, ViewState())
-    assert (values["u_sides"], values["u_kernel"], values["moving"]) == (2, 0, False)
-    settings.kernel = "box"
-    assert uniforms(textures, settings, ViewState())["u_kernel"] == 1
 
 
 # --- pictures -------------------------------------------------------------------------------

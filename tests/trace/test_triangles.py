@@ -10,11 +10,9 @@ import pytest
 import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
-from measures import streaks
 from scipy.spatial import ConvexHull, Delaunay
 from strategies import property_test
 
-import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
@@ -134,24 +132,6 @@ def test_reach_is_the_lag_to_the_border(along: tuple[float, float]) -> None:
     )
 
 
-def test_a_path_ends_where_it_meets_nodes_without_data() -> None:
-    points, triangles = square(3000)
-    valid = np.hypot(points[:, 0], points[:, 1]) > 0.3
-    velocity = np.where(valid[:, None], [1.0, 0.0], np.nan)
-    field = FlowField.from_triangles(points, triangles, velocity)
-    slices = trace(field, lags=[0.1, 4.0], unit=1.0)
-    x, y = field.points[0, :, 0], field.points[0, :, 1]
-    behind = (x > 0.35) & (np.abs(y) < 0.15)
-    exact = x - np.sqrt(0.09 - np.minimum(np.abs(y), 0.29) ** 2)
-    # The border is made of whole triangles.
-    assert (exact - slices.reach[0, 0])[behind].max() < 0.1
-    assert (slices.reach[0, 0] - exact)[behind].max() < 1e-5
-    beside = np.abs(y) > 0.45
-    np.testing.assert_allclose(slices.reach[0, 0, beside], x[beside] + 1, atol=1e-5)
-    assert not slices.reach[0, ~field.valid].any()
-    assert np.isfinite(slices.displacement).all()
-
-
 def test_paths_are_those_of_the_structured_tracer() -> None:
     i, j = np.meshgrid(np.linspace(-1, 1, 61), np.linspace(-1, 1, 51))
     points = np.stack([i, j, 0.2 * i * j], axis=-1)
@@ -239,16 +219,6 @@ def test_paths_come_to_rest_in_a_sink(parameter: str) -> None:
         if parameter == "arclength":
             reach = slices.forward_reach[0, 0, inside]
             np.testing.assert_allclose(reach, length[inside], atol=0.01)
-
-
-def test_a_path_goes_on_along_the_line_that_it_is_drawn_to() -> None:
-    # A thousand times as quickly as it gets on, in a triangle that it does not leave.
-    points = np.array([[0.0, -1.0], [0.0, 1.0], [4.0, 0.0]])
-    flow = np.stack([np.full(3, 1e-3), -points[:, 1]], axis=-1)
-    field = FlowField.from_triangles(points, np.array([[0, 2, 1]]), flow)
-    slices = trace(field, lags=[0.5, 3.0], unit=1.0)
-    there = found(field, slices, forward=True)
-    np.testing.assert_allclose(there[:2, :2], [[2.0, 0.0], [2.0, 0.0]], atol=0.01)
 
 
 def test_a_saddle_parts_and_a_centre_holds() -> None:
@@ -429,14 +399,6 @@ def test_composed_paths_are_those_that_are_integrated(parameter: str) -> None:
         assert same.mean() > 0.95
 
 
-def test_lags_that_do_not_double_are_integrated() -> None:
-    points, triangles = square(300)
-    field = FlowField.from_triangles(points, triangles, spin(points))
-    lags = doubled(field, 9) * [1, 1, 1, 1, 1, 1, 1, 1, 1.1]
-    one, two = (trace(field, lags=lags, unit=1.0, compose=compose) for compose in (True, False))
-    np.testing.assert_array_equal(one.displacement, two.displacement)
-
-
 @property_test(25)
 @given(
     st.integers(3, 30),
@@ -470,25 +432,12 @@ def test_any_triangles(
 
 
 @pytest.mark.parametrize("height", [0.701, 0.70001, 0.7000001])
-def test_slices_close_to_a_layer_of_nodes_have_lags_of_cells(height: float, opengl: object) -> None:
+def test_slices_close_to_a_layer_of_nodes_have_lags_of_cells(height: float) -> None:
     # A third of the triangles are slivers around the nodes of the layer at 0.7.
     grid = pv.ImageData(dimensions=(31, 21, 13), spacing=(0.1,) * 3, origin=(-1.5, -1, 0))
     x, y, _ = grid.points.T
     grid["U"] = np.stack([np.sin(2 * x) * np.cos(3 * y), np.cos(3 * x) * np.sin(2 * y), 0 * x], -1)
     tetrahedra = grid.triangulate()
-    drawn, lags = [], []
-    for z in (0.75, height):
-        options: dict[str, Any] = {"slice": f"z={z}", "vectors": "U"}
-        field = FlowField.from_pyvista(tetrahedra, **options)
-        lags.append(choose_lags(field, "time"))
-        look: dict[str, Any] = {"size": (300, 200), "margin": 0.0, "scalars": False}
-        drawn.append(flowtex.render(field, parameter="time", **look))
-    v, u = np.mgrid[0.995:-0.995:200j, -1.495:1.495:300j]
-    inside = np.zeros(u.shape, bool)
-    u, v = np.sin(2 * u) * np.cos(3 * v), np.cos(3 * u) * np.sin(2 * v)
-    inside[20:-20, 25:-25] = True
-    inside &= np.hypot(u, v) > 0.3
-    whole, close = (streaks(picture, u, v, inside) for picture in drawn)
-    assert lags[1][0] > 0.2 * lags[0][0]
-    assert close["coherence"] > whole["coherence"] - 0.005
-    assert close["angle"] < whole["angle"] + 0.3
+    fields = [FlowField.from_pyvista(tetrahedra, slice=f"z={z}") for z in (0.75, height)]
+    far, close = (choose_lags(field, "time")[0] for field in fields)
+    assert close > 0.2 * far

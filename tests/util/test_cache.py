@@ -48,17 +48,6 @@ def test_a_value_with_an_owner_lives_as_long_as_the_owner() -> None:
     assert cache.get("key", Thing, owner=Thing()) is not held
 
 
-def test_a_failure_to_compute_is_raised_and_the_next_call_tries_again() -> None:
-    cache: WeakCache[Thing] = WeakCache()
-
-    def fail() -> Thing:
-        raise KeyError
-
-    with pytest.raises(KeyError):
-        cache.get("key", fail)
-    assert isinstance(cache.get("key", Thing), Thing)
-
-
 @pytest.mark.parametrize("kind", ["weak", "bytes"])
 def test_threads_that_ask_together_get_one_value_and_other_keys_do_not_wait(kind: str) -> None:
     cache: WeakCache[Thing] | ByteCache[str, Thing]
@@ -105,15 +94,6 @@ def test_a_count_bounds_the_values_as_well() -> None:
     assert [n for n in range(5) if n in cache] == [3, 4]
     cache.clear()
     assert len(cache) == 0
-
-
-def test_values_that_grew_count_with_their_present_size() -> None:
-    cache: ByteCache[int, Thing] = ByteCache(10)
-    growing = Thing(1)
-    cache.put(0, growing)
-    growing.nbytes = 20
-    cache.put(1, Thing(1))
-    assert 0 not in cache
 
 
 def test_a_digest_tells_values_types_shapes_and_words_apart() -> None:

@@ -43,12 +43,6 @@ def test_without_threads_the_caller_does_it_at_once() -> None:
             wrong.result()
 
 
-@pytest.mark.threads
-def test_threads_have_the_name_of_their_pool() -> None:
-    with progress.pool(2, "some") as pool:
-        assert pool.submit(lambda: threading.current_thread().name).result().startswith("some")
-
-
 def test_whatever_a_browser_runs_asks_here_for_threads() -> None:
     files = [path for path in PACKAGE.rglob("*.py")]
     made = {

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import ast
 from pathlib import Path
 
 import pytest
@@ -9,7 +8,6 @@ from hypothesis import strategies as st
 from rich.table import Table
 from strategies import property_test
 
-import flowtex
 from flowtex._util.terminal import plain_text, terminal
 from flowtex.cli import main
 from flowtex.cli.console import complain, say
@@ -59,20 +57,3 @@ def test_units_of_a_file_do_not_crash_info(
     assert "hPa[/dim]" in out
     assert r"missing\x1b[2J.nc" in err
     assert "\x1b" not in out + err
-
-
-def test_there_is_one_console() -> None:
-    package = Path(flowtex.__file__).parent
-    makers = []
-    for path in package.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            module = node.module if isinstance(node, ast.ImportFrom) else ""
-            names = (
-                [name.name for name in node.names]
-                if isinstance(node, (ast.Import, ast.ImportFrom))
-                else []
-            )
-            if (module == "rich.console" and "Console" in names) or "rich" in names:
-                makers.append(str(path.relative_to(package)))
-    # One for types, and the one that it is made from.
-    assert set(makers) == {"_util/terminal.py"}

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import flowtex
 from flowtex._util.whole_file import WholeFile, whole_file
@@ -128,29 +127,6 @@ def test_a_movie_that_libraries_cannot_write_leaves_the_old_file_alone(
     command = [sys.executable, "-c", LIMITED, str(path), limits, str(Path(__file__).parent)]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
-
-
-def test_a_render_that_cannot_be_written_leaves_the_old_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    from flowtex.cli import main
-
-    monkeypatch.setattr("flowtex.rendering.diagnostics.require_opengl", lambda: None)
-    monkeypatch.setattr("flowtex.render", lambda field, **options: pictures()[0])
-    mesh, path = tmp_path / "gyre.vts", tmp_path / "gyre.png"
-    flowtex.examples.double_gyre().save(mesh)
-    command = ["render", str(mesh), "-o", str(path)]
-    assert main(command) == 0
-    with Image.open(path) as picture:
-        assert np.array_equal(np.asarray(picture), pictures()[0])
-    path.write_bytes(OLD)
-    monkeypatch.setattr("flowtex._util.whole_file.io.FileIO", Disk)
-    Disk.free = 100
-    assert main(command) == 2
-    assert "gyre.png: cannot be written (No space left on device)" in " ".join(
-        capsys.readouterr().err.split()
-    )
-    assert path.read_bytes() == OLD and sorted(tmp_path.iterdir()) == [path, mesh]
 
 
 @posix

@@ -9,9 +9,9 @@ import scipy
 from packing import LATITUDE, LONGITUDE, save_dataset
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex.examples._shipped import DATA, DEGREE, TURNING
+from flowtex.examples._shipped import DATA, TURNING
 from flowtex.examples._shipped import OCEAN as FILE
-from flowtex.field.earth import EARTH_RADIUS, Projection, coastlines
+from flowtex.field.earth import DEGREE, EARTH_RADIUS, Projection, coastlines
 
 #: Seconds of a day.
 DAY = 86400.0

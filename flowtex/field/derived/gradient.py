@@ -25,8 +25,8 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
-#: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.
-QUADRATIC_NEIGHBOURS, REGULARISATION = 5, 1e-12
+QUADRATIC_NEIGHBOURS = 5  #: Neighbours that a quadratic fit needs.
+REGULARISATION = 1e-12  #: Regularisation of a fit, as a share of the largest entry.
 #: Determinant of the correlations of the terms of a fit, at least.
 LEAST_INDEPENDENCE = 1e-9
 #: Approximate number of nodes by which the side of a surface is determined.

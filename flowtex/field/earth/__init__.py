@@ -47,21 +47,23 @@ METHODS = {
     "Robinson": "robinson",
     "Equal Earth": "equalearth",
 }
-#: Steps in degrees for derivatives, and the nearest distance to a pole. The pieces of PROJ's
-#: Robinson differ by a metre where they meet: shorter steps turned directions by up to 3 degrees.
-STEP, NEAREST_POLE = 0.02, 0.5
+#: Step in degrees for derivatives. The pieces of PROJ's Robinson differ by a metre where they meet:
+#: shorter steps turned directions by up to 3 degrees.
+STEP = 0.02
+NEAREST_POLE = 0.5  #: Nearest distance to a pole at which derivatives are computed, in degrees.
 #: A step that is longer than the opposite one by this factor crosses a tear.
 TORN = 2.0
 #: Factor by which a position outside the map is moved towards its middle.
 INSIDE = 1 - 1e-7
+#: File of the coasts.
 COASTS = Path(__file__).with_name("coastlines.npz")
 #: Stored steps of a degree, as in tools/coastlines.py.
 STEPS_PER_DEGREE = 100
 #: Longest piece of a line in degrees.
 LONGEST_PIECE = 1.0
-#: A piece may be torn if its middle is farther than the first share of it from the middle of its
-#: ends, and is so from the second one on, as where it leads along the outline of a map.
-BENT, MOST_BENT = 0.05, 0.2
+#: Share of a piece from which on it may be torn, if its middle is so far from that of its ends.
+BENT = 0.05
+MOST_BENT = 0.2  #: Share from which on it is torn, as where it leads along the outline of a map.
 #: Share of a torn piece that its tear is wide, at least.
 LEAST_TEAR = 0.02
 #: Scale beyond which a map has no lines: they go to infinity, as at a pole.
@@ -70,9 +72,9 @@ MOST_STRETCHED = 20.0
 FEWEST_SPACINGS = 4
 #: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
 HALVINGS = 14
-
-#: Possible degrees between the lines of a graticule, and most lines that cross a map.
+#: Possible degrees between the lines of a graticule.
 STEPS = (30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+#: Most lines that cross a map.
 MOST_LINES = 6
 #: Least pieces of a line between two that cross it.
 FEWEST_PIECES = 8

@@ -68,9 +68,8 @@ BINDING = {
     **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
 }
 SIGN_BINDING = 4
-#: Most letters of a formula, and levels of nesting.
-MOST_LETTERS, MOST_DEPTH = 2000, 60
-
+MOST_LETTERS = 2000  #: Most letters of a formula.
+MOST_DEPTH = 60  #: Most levels of nesting.
 _TOKEN = re.compile(
     r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)"
     r"|(?P<sign>\*\*|<=|>=|[-+*/^(),<>]))"

@@ -19,17 +19,17 @@ from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.formula import KNOWN, Formula
 
-#: Nodes along the longer side of a plane, and of a surface, whose poles slow down tracing.
-NODES, SURFACE_NODES = 257, 129
-#: Least nodes along the shorter side, and most nodes that may be requested.
-LEAST_NODES, MOST_NODES = 33, 10_000
+NODES = 257  #: Nodes along the longer side of a plane.
+SURFACE_NODES = 129  #: The same of a surface, whose poles slow down tracing.
+LEAST_NODES = 33  #: Least nodes along the shorter side.
+MOST_NODES = 10_000  #: Most nodes that may be requested.
 #: Share of the size of a surface within which places are the same.
 SAME_PLACE = 1e-9
 #: Letters of a caption.
 MOST_TITLE = 60
+MOST_LETTERS = 4000  #: Most letters of a line.
+MOST_TIMES = 200  #: Most steps of a line.
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
-#: Most letters of a line, and most steps.
-MOST_LETTERS, MOST_TIMES = 4000, 200
 
 
 def formula(

@@ -1,11 +1,9 @@
 """A structured surface in space: nodes, tangents, and positions between the nodes.
 
-The surface is a map from index space, (i, j) in cells, to space. Its tangents at the nodes are
-central differences, and :meth:`GridSurface.at` interpolates with Catmull-Rom cubics whose slopes at
-the nodes are those same tangents, so a displacement in index space and the corresponding
-displacement in space agree to second order however much the cells are stretched. Both work on a
-copy of the nodes with one ghost line on each side: the periodic image where the axis closes on
-itself, the far side of a pole, a quadratic extrapolation where the axis ends.
+Tangents at the nodes are central differences, and :meth:`GridSurface.at` interpolates with
+Catmull-Rom cubics of the same slopes, so displacements in index space and in space agree to second
+order however much the cells are stretched. Both use ghost lines of nodes on each side: the periodic
+image, the far side of a pole, or a quadratic extrapolation where the axis ends.
 """
 
 from __future__ import annotations

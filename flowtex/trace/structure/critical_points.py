@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink", "degenerate")
-#: Real or imaginary part of an eigenvalue that is zero, as a share of the eigenvalue, and growth as
-#: a share of the rotation from which a point on a grid is a spiral whatever the grid.
-ROUNDING, REAL_SHARE, SPIRAL_SHARE = 1e-9, 1e-6, 0.25
+ROUNDING = 1e-9  #: Eigenvalue that is zero, as a share of the other one.
+REAL_SHARE = 1e-6  #: Imaginary part that is zero, as a share of the eigenvalue.
+#: Growth as a share of the rotation from which a point is a spiral whatever the grid.
+SPIRAL_SHARE = 0.25
 #: Error of the velocity's gradient, in its change over a cell: in a cell the interpolated gradient
 #: is that of its middle, half a cell away.
 ERROR_CELLS = 0.5

@@ -21,43 +21,47 @@ from flowtex.field.formula import Rates
 from flowtex.trace.integrate import Paths
 from flowtex.trace.trace import paths
 
-#: Search cells along the longer side, and along the other one at least.
-CELLS, LEAST_CELLS = 160, 8
-#: Steps of Newton's method, their greatest length, and how far they may lead.
-STEPS, FAR = 100, 3.0
-#: Last step and remaining rate of a zero, and how far beyond the border it may lie.
-LAST_STEP, LEFT, BEYOND = 1e-6, 1e-11, 1e-6
-#: Distance from which zeros are different ones; a degenerate one is less precise.
-SAME, SAME_DEGENERATE = 1e-6, 0.05
-#: Step of the change of the determinant, and distance of its zero at a degenerate point.
-CHANGE, DEGENERATE = 1e-2, 1e-5
-#: Determinants and traces that are zero, as a share of the gradient.
-SINGULAR, ROUNDING = 1e-13, 1e-9
-#: Distance around a degenerate point at which others show that it lies on a line of rest.
-AROUND, ON_LINE = 0.1, 0.02
+CELLS = 160  #: Search cells along the longer side.
+LEAST_CELLS = 8  #: Search cells along the other side, at least.
+STEPS = 100  #: Steps of Newton's method.
+FAR = 3.0  #: How far they may lead.
+LAST_STEP = 1e-6  #: Last step of a zero.
+LEFT = 1e-11  #: Remaining rate of a zero.
+BEYOND = 1e-6  #: How far beyond the border a zero may lie.
+SAME = 1e-6  #: Distance from which zeros are different ones.
+SAME_DEGENERATE = 0.05  #: The same for degenerate ones, which are less precise.
+CHANGE = 1e-2  #: Step of the change of the determinant.
+DEGENERATE = 1e-5  #: Distance of the determinant's zero at a degenerate point.
+SINGULAR = 1e-13  #: Determinants that are zero, as a share of the gradient.
+ROUNDING = 1e-9  #: Traces that are zero, as a share of the gradient.
+AROUND = 0.1  #: Distance around a degenerate point at which others are searched for.
+ON_LINE = 0.02  #: Distance of another one from which on the point lies on a line of rest.
 #: Area of a cell of a surface at its poles, as a share of that in the middle.
 POLE_AREA = 1e-6
-#: Radius of the circle on which an index is counted, points of it, and its most directions.
-RADIUS, CIRCLE, MOST_DIRECTIONS = 0.05, 720, 24
-#: Radius and steps of a turn around a possible centre, and the change of the radius that counts.
-TURN_RADIUS, TURN_STEPS, RETURNED = 2.0, 400, 1e-7
+RADIUS = 0.05  #: Radius of the circle on which an index is counted.
+CIRCLE = 720  #: Points of that circle.
+MOST_DIRECTIONS = 24  #: Most directions of a degenerate point.
+TURN_RADIUS = 2.0  #: Radius of a turn around a possible centre.
+TURN_STEPS = 400  #: Steps of that turn.
+RETURNED = 1e-7  #: Change of the radius that counts.
 _SIDES = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], float)
 #: Longest step along a line, as a share of the diagonal.
 STEP = 1 / 700
-#: Share of the period after which an orbit is at its section again at the earliest; turns until it
-#: closes; its greatest remaining displacement, as a share of the diagonal; points of it.
-ALMOST, TURNS, CLOSED, POINTS = 0.8, 12, 1e-7, 4000
-#: Tolerance of the integration, and least growth in a turn beside an orbit, as an exponent.
-TOLERANCE, LEAST_GROWTH = 1e-10, 1e-6
-#: A component is zero up to this share of its quantile at the other: beside a pole it is huge.
-ZERO_SHARE, USUAL_SHARE = 1e-12, 0.9
-#: Halvings of a side of a triangle that a line crosses, and the greatest remaining share of a value
-#: that goes to zero there; at a pole and at a jump more remains.
-HALVINGS, LEFT_SHARE = 12, 0.25
-#: Cells along the longer side of what is searched in a formula, and along the other one at least.
-LINE_CELLS, LEAST_LINE_CELLS = 256, 8
-#: Size of a window over that of the view, at least, and steps of its middle over its size.
-WINDOW_VIEWS, WINDOW_STEPS = 2.0, 4
+ALMOST = 0.8  #: Share of the period after which an orbit is at its section again at the earliest.
+TURNS = 12  #: Turns until it closes.
+CLOSED = 1e-7  #: Its greatest remaining displacement, as a share of the diagonal.
+POINTS = 4000  #: Points of an orbit as it is integrated.
+TOLERANCE = 1e-10  #: Tolerance of that integration.
+LEAST_GROWTH = 1e-6  #: Least growth in a turn beside an orbit, as an exponent.
+#: A component is zero up to this share of its quantile: beside a pole it is huge.
+ZERO_SHARE = 1e-12
+USUAL_SHARE = 0.9  #: That quantile.
+HALVINGS = 12  #: Halvings of a side of a triangle that a line crosses.
+#: Greatest remaining share of a value that goes to zero there; at a pole or a jump more remains.
+LEFT_SHARE = 0.25
+LINE_CELLS = 256  #: Cells along the longer side of what is searched for lines in a formula.
+WINDOW_VIEWS = 2.0  #: Size of a window over that of the view, at least.
+WINDOW_STEPS = 4  #: Steps of its middle over its size.
 
 
 def formula_rates(field: FlowField) -> Rates | None:
@@ -445,7 +449,7 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
 
 def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     sides = np.ptp(window, axis=1)
-    counts = np.maximum(np.round(LINE_CELLS * sides / sides.max()), LEAST_LINE_CELLS).astype(int)
+    counts = np.maximum(np.round(LINE_CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
     x, y = (np.linspace(window[k, 0], window[k, 1], counts[k] + 1) for k in range(2))
     nodes = np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1)
     number = np.arange(len(x) * len(y)).reshape(len(y), len(x))

@@ -29,21 +29,22 @@ from flowtex.trace.structure.critical_points import (
 )
 from flowtex.trace.structure.formula_lines import follower, formula_orbit, plane_rates
 
-#: Distance between the points of a line in cells, points that are followed at once, and greatest
-#: length of a turn, as a share of the surface's extent and in points.
-POINT_CELLS, CHUNK, TURN_EXTENTS, MOST_POINTS = 0.5, 50, 3.0, 3000
-#: Points of a ray: the first one in cells, the ratio of successive distances, and the greatest
-#: distance of two, as a share of the extent.
-FIRST_CELLS, RATIO, EXTENT_SHARE = 1.0, 1.2, 0.03
-#: Least radial displacement by a turn, in cells and as a share of the distance from the middle; and
-#: greatest distance of the end of an orbit from its beginning, in cells.
-MOVED_CELLS, MOVED_SHARE, CLOSED_CELLS = 0.05, 0.05, 0.1
+POINT_CELLS = 0.5  #: Distance between the points of a line in cells.
+CHUNK = 50  #: Points that are followed at once.
+TURN_EXTENTS = 3.0  #: Greatest length of a turn, as a share of the surface's extent.
+MOST_POINTS = 3000  #: Most points of a turn.
+FIRST_CELLS = 1.0  #: First point of a ray, in cells.
+RATIO = 1.2  #: Ratio of successive distances on a ray.
+EXTENT_SHARE = 0.03  #: Greatest distance of two points of a ray, as a share of the extent.
+MOVED_CELLS = 0.05  #: Least radial displacement by a turn, in cells.
+MOVED_SHARE = 0.05  #: The same as a share of the distance from the middle.
 #: The same share where lines are those of a formula.
 MOVED_EXACT = 1e-6
-#: Parts into which a stretch of a ray with an orbit is divided, and how often.
-PARTS, ROUNDS = 64, 2
-#: Distances from a critical point and from a wall, in cells, at which a line ends.
-REST_CELLS, WALL_CELLS = 0.25, 0.05
+CLOSED_CELLS = 0.1  #: Greatest distance of the end of an orbit from its beginning, in cells.
+PARTS = 64  #: Parts into which a stretch of a ray with an orbit is divided.
+ROUNDS = 2  #: How often it is divided.
+REST_CELLS = 0.25  #: Distance from a critical point, in cells, at which a line ends.
+WALL_CELLS = 0.05  #: The same from a wall.
 #: Critical points around which orbits are searched for, the strongest ones.
 MOST_RAYS = 8
 

@@ -27,19 +27,18 @@ from flowtex.trace.structure.orbits import Isolation
 if TYPE_CHECKING:
     import pyvista as pv
 
-#: Distance from the saddle at which a line begins, and between its points, in cells.
-BEGIN_CELLS, POINT_CELLS = 0.05, 0.5
-#: Length of a line, as a share of the surface's extent, and most points of one.
-LENGTH_EXTENTS, MOST_POINTS = 3.0, 4000
-#: Points of a line before a critical point may end it, and distance in cells from such a point at
-#: which it is followed no longer.
-FIRST_POINTS, REST_CELLS = 4, 0.25
+BEGIN_CELLS = 0.05  #: Distance from the saddle at which a line begins, in cells.
+POINT_CELLS = 0.5  #: Distance between its points, in cells.
+LENGTH_EXTENTS = 3.0  #: Length of a line, as a share of the surface's extent.
+MOST_POINTS = 4000  #: Most points of a line.
+FIRST_POINTS = 4  #: Points of a line before a critical point may end it.
+REST_CELLS = 0.25  #: Distance in cells from such a point at which it is followed no longer.
 #: Distance in cells between two turns of a line at which it is a closed orbit.
 CLOSED_CELLS = 0.02
 #: The same where it winds up, in distances of its points.
 WOUND_POINTS = 2.0
-#: Distance in cells at which a line ends at a critical point, and least points of a turn.
-END_CELLS, LEAST_TURN = 0.75, 8
+END_CELLS = 0.75  #: Distance in cells at which a line ends at a critical point.
+LEAST_TURN = 8  #: Least points of a turn.
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,12 +96,6 @@ def test_no_line_shoots_across_a_map(name: str, center: tuple[float, float]) -> 
             assert lengths[known].max() < reach
 
 
-def test_lines_reach_the_tear_on_both_sides() -> None:
-    x = graticule(Projection("platecarree", (37.0, 0.0))).points[:, 0]
-    half = np.pi * EARTH_RADIUS
-    assert [x.min(), x.max()] == pytest.approx([-half, half], abs=100)
-
-
 def test_a_globe_has_whole_rings() -> None:
     lines = coastlines(Projection("globe"))
     assert np.linalg.norm(lines.points, axis=1) == pytest.approx(
@@ -146,13 +140,6 @@ def test_a_graticule_has_round_steps(width: float, step: float) -> None:
         assert values / step == pytest.approx(np.round(values / step), abs=1e-9)
 
 
-def test_a_point_alone_is_nowhere() -> None:
-    projection = Projection("robinson")
-    beside = np.array([[3e7, 3e7, 0.0], [3.1e7, 3.1e7, 0.0]])
-    assert len(graticule(projection, beside).points) == 0
-    assert len(coastlines(projection, beside).points) == 0
-
-
 def test_thinned_lines_keep_their_ends_and_lose_the_short_ones() -> None:
     lines = coastlines(Projection("globe"))
     thin = lines.thinned(50e3)
@@ -161,10 +148,3 @@ def test_thinned_lines_keep_their_ends_and_lose_the_short_ones() -> None:
     kept = {tuple(p) for p in lines.points[lines.starts[:-1]]}
     assert {tuple(p) for p in thin.points[thin.starts[:-1]]} <= kept
     assert np.diff(thin.starts).min() >= 2
-
-
-def test_pieces_within_are_those_with_an_end_there() -> None:
-    lines = MapLines(np.arange(18.0).reshape(6, 3), np.array([0, 4, 6]))
-    some = lines.within(np.array([False, False, True, False, False, False]))
-    assert some.points == pytest.approx(lines.points[1:4])
-    assert some.starts.tolist() == [0, 3]

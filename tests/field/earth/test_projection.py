@@ -97,13 +97,6 @@ def test_a_pole_is_a_point_or_nowhere(name: str, lat: float) -> None:
         assert np.linalg.norm(vectors, axis=-1) == pytest.approx(np.full(9, np.sqrt(2)))
 
 
-@pytest.mark.parametrize("name", REACH)
-def test_both_sides_of_the_date_line_are_one_place_on_the_earth(name: str) -> None:
-    projection = PROJECTIONS[name]
-    either = projection.positions(np.array([180.0, -180.0]), np.array([20.0, 20.0]))
-    assert either[0] == pytest.approx(either[1], abs=1e-3)
-
-
 def test_the_scale_is_that_of_the_map() -> None:
     assert PROJECTIONS["globe"].scale(np.array([EARTH_RADIUS, 0, 0])) == 1.0
     mercator = PROJECTIONS["mercator"]

@@ -160,16 +160,6 @@ def test_sympy_and_functions_make_the_same_field() -> None:
         flowtex.formula(y, x * sympy.I)
 
 
-def test_a_field_keeps_what_it_was_made_from() -> None:
-    field = flowtex.formula("y", "-sin(x) - b*y", x=(-7, 7), y=(-4, 4), b=(0.2, 0, 1))
-    assert field.shape == (147, 257) and field.name == "x' = y, y' = -sin(x) - b*y"
-    formula = field.at_step(0).formula
-    assert formula is not None and formula.texts == ("y", "-sin(x) - b*y")
-    assert vars(formula.parameters["b"]) == {"value": 0.2, "low": 0, "high": 1}
-    x, y = field.points[..., 0], field.points[..., 1]
-    assert_allclose(field.velocity[0, ..., 1], -np.sin(x) - 0.2 * y, atol=1e-14)
-
-
 def test_the_time_is_a_name_where_there_are_times() -> None:
     times = np.linspace(0, 3, 7)
     field = flowtex.formula("cos(t)", "sin(t)", times=times, resolution=9)

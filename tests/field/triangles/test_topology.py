@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from triangle_meshes import cube, random_plane, soup, sphere
+from triangle_meshes import random_plane, soup, sphere
 
 from flowtex.field.triangles.triangle_nodes import (
     flipped,
@@ -27,14 +27,6 @@ def test_neighbours_share_the_edge_opposite_to_a_corner(rng: np.random.Generator
     border = int((beside < 0).sum())
     sides = (3 * len(triangles) + border) // 2
     assert len(points) - sides + len(triangles) == 1
-
-
-def test_a_closed_surface_has_no_border(rng: np.random.Generator) -> None:
-    points, triangles = soup(rng, cube(4))
-    same = merged_nodes(points, triangles)
-    joined = same[triangles]
-    assert len(np.unique(joined)) == len(cube(4)[0])
-    assert (neighbours(points, joined) >= 0).all()
 
 
 def test_nodes_that_rounding_moved_are_one() -> None:

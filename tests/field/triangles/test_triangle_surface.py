@@ -36,13 +36,6 @@ def test_a_sphere_is_known(rng: np.random.Generator) -> None:
         assert field.shape == (1, len(sphere(4)[0]))
 
 
-def test_what_points_out_of_the_surface_is_told() -> None:
-    points, triangles = sphere(3)
-    field = FlowField.from_triangles(points, triangles, np.tile([1.0, 0.0, 0.0], (len(points), 1)))
-    # The mean of x^2 over the sphere is a third.
-    assert field.normal_share == pytest.approx(np.sqrt(1 / 3), rel=0.01)
-
-
 def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
     points, triangles = random_plane(rng, 200, grading=1000)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
@@ -71,15 +64,6 @@ def test_a_point_of_the_surface_is_found_again(seed: int) -> None:
     found, distance = locator(field).nearest(points)
     assert distance.max() < 1e-7
     np.testing.assert_allclose(surface.at(found[:, ::-1]), points, atol=1e-7)
-
-
-def test_a_point_beside_the_surface_is_none() -> None:
-    field = rotating(sphere(3))
-    assert locate(field, [0.0, 0.0, 2.0]) is None
-    at = locate(field, [0.0, 0.0, 1.0])
-    assert at is not None
-    place = surface_point(field.surface, at)
-    np.testing.assert_allclose(place.interpolate(field.points), [0, 0, 1], atol=1e-6)
 
 
 def test_values_at_a_point_are_linear(rng: np.random.Generator) -> None:
