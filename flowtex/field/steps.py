@@ -84,7 +84,7 @@ class LazySteps:
         if isinstance(first, (int, np.integer)):
             return self.step(int(first))[rest] if rest else self.step(int(first))
         numbers = np.arange(self._count)[first]
-        if numbers.ndim != 1:
+        if first is Ellipsis or numbers.ndim != 1:
             return np.asarray(self)[key]
         if isinstance(first, slice) and not rest and len(numbers) == self._count:
             return self

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flowtex import FlowField
+from flowtex import FlowField, trace
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds, date_text, seconds_since
@@ -45,6 +45,7 @@ def test_steps_are_indexed_as_an_array() -> None:
         (slice(1, 3), 2),
         (3, 2, 1),
         (slice(None), slice(1, 3), slice(2, None), 0),
+        (..., 1),
     ]
     for key in keys:
         assert np.array_equal(np.asarray(steps[key]), values[key]), key
@@ -85,6 +86,8 @@ def test_a_series_that_is_read_late_is_traced_alike(series: FlowField, lines: st
         assert np.allclose(a.displacement, b.displacement, atol=2e-3), step
     if lines == "streamlines":
         assert set(read) <= {0, 3, 7}
+        whole, part = (trace(each, lags=[1.0, 4.0], steps=[3]) for each in (series, late))
+        np.testing.assert_array_equal(whole.displacement, part.displacement)
 
 
 def test_dates_are_those_of_their_calendar() -> None:
