@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from numpy.typing import ArrayLike
-
 from flowtex.errors import require_pyvista
 from flowtex.field.field_arrays import FieldArrays
+from flowtex.field.options import OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+#: Arguments for files, which have times.
+OF_FILES = tuple(name for name in (*OF_DATASETS, *OF_MESHES) if name != "times")
 
 
 class FieldConstructors:
@@ -24,20 +27,13 @@ class FieldConstructors:
         raise NotImplementedError
 
     @classmethod
+    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES), settings=False)
     def from_pyvista(
         cls,
         mesh: Any,
         *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        slice: Any = None,
-        contour: Any = None,
-        times: ArrayLike | None = None,
-        periodic: str | None = None,
         name: str = "",
-        sign_free: bool = False,
-        block: int | str | None = None,
-        preference: str | None = None,
+        **options: Any,
     ) -> Self:
         """Make a field from a PyVista mesh, or from a series of them.
 
@@ -126,33 +122,16 @@ class FieldConstructors:
         from flowtex.sources.meshes.read import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
-        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
-        options |= {"plane": plane, "slice": slice, "contour": contour, "times": times}
-        options["preference"] = preference
-        return cls.of(read_meshes(mesh, vectors=vectors, name=name, **options))
+        return cls.of(read_meshes(mesh, FieldOptions(**options), name=name))
 
     @classmethod
+    @accepts_options(FieldOptions, names=OF_FILES, settings=False)
     def from_file(
         cls,
         path: str | Path | Sequence[str | Path],
         *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        slice: Any = None,
-        contour: Any = None,
-        periodic: str | None = None,
         time: float | str | None = None,
-        block: int | str | None = None,
-        sign_free: bool = False,
-        preference: str | None = None,
-        projection: str | None = None,
-        globe: bool = False,
-        level: float | str | None = None,
-        sel: Mapping[str, Any] | None = None,
-        isel: Mapping[str, Any] | None = None,
-        uncertainty: Any = None,
-        mask: str | bool | None = None,
-        components: str | None = None,
+        **options: Any,
     ) -> Self:
         """Make a field from a file, or from several that belong together.
 
@@ -202,31 +181,20 @@ class FieldConstructors:
         """
         from flowtex.sources.files import errors_of, read_files
 
-        options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
-        options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
-        options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
-        options |= {"mask": mask, "components": components, "preference": preference}
+        chosen = FieldOptions(**options)
         with errors_of(path):
-            arrays = read_files(
-                path, vectors=vectors, time=time, uncertainty=uncertainty, **options
-            )
-            return _with_uncertainty(cls.of(cast("FieldArrays", arrays)), uncertainty)
+            arrays = read_files(path, chosen, time=time)
+            return _with_uncertainty(cls.of(cast("FieldArrays", arrays)), chosen.uncertainty)
 
     @classmethod
+    @accepts_options(FieldOptions, names=OF_DATASETS[1:], settings=False)
     def from_xarray(
         cls,
         data: xr.Dataset | xr.DataTree | xr.DataArray | Sequence[Any] | Any,
         u: str | None = None,
         v: str | None = None,
         *,
-        projection: str | None = None,
-        globe: bool = False,
         name: str = "",
-        sel: Mapping[str, Any] | None = None,
-        isel: Mapping[str, Any] | None = None,
-        uncertainty: Any = None,
-        mask: str | bool | None = None,
-        components: str | None = None,
         **selection: Any,
     ) -> Self:
         """Make a field from xarray datasets, arrays or tables, such as the output of a model.
@@ -313,11 +281,9 @@ class FieldConstructors:
         """
         from flowtex.sources.datasets.read import read_datasets
 
-        options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
-        options |= {"sel": sel, "isel": isel, "uncertainty": uncertainty, **selection}
-        options |= {"mask": mask, "components": components}
-        field = cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
-        return _with_uncertainty(field, uncertainty)
+        options = FieldOptions.of_dataset({"u": u, "v": v, **selection})
+        field = cls.of(cast("FieldArrays", read_datasets(data, options, name=name)))
+        return _with_uncertainty(field, options.uncertainty)
 
 
 def _with_uncertainty(field: Any, uncertainty: Any) -> Any:

@@ -23,6 +23,9 @@ SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25
 OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
 
+#: Arguments for data of the Earth.
+OF_DATASETS = ("vectors", *OF_EARTH, "uncertainty")
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -112,6 +115,15 @@ class FieldOptions:
         for name in "uvw":
             object.__setattr__(self, name, None)
 
+    @classmethod
+    def of_dataset(cls, given: Mapping[str, Any]) -> FieldOptions:
+        """Return the options of a dataset; other names are those of axes to select along."""
+        known = {name: value for name, value in given.items() if name in (*OF_DATASETS, *"uvw")}
+        axes = {name: value for name, value in given.items() if name not in known}
+        if axes:
+            known["sel"] = {**(known.get("sel") or {}), **axes}
+        return cls(**known)
+
     @property
     def given(self) -> dict[str, Any]:
         """Values by name, without those that are ``None``."""
@@ -132,23 +144,24 @@ def accepts_options(
 ) -> Callable[[Function], Function]:
     """Show the fields of option classes as arguments of a function that takes ``**options``.
 
-    The line ``{options}`` of its docstring becomes their description. Of the fields only those with
-    ``names`` are shown, if these are given; ``settings`` are shown as further arguments.
+    Further arguments, as ``**selection``, are shown after them. The line ``{options}`` of its
+    docstring becomes their description. Of the fields only those with ``names`` are shown, if these
+    are given; ``settings`` are shown as further arguments.
     """
 
     def complete(function: Function) -> Function:
         options = [f for kind in kinds for f in fields(kind) if not names or f.name in names]
         signature = inspect.signature(function)
         parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        rest = [p for n, p in signature.parameters.items() if n == "selection"]
         parameters += [
             inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
             for f in options
             if f.name not in signature.parameters
         ]
         if settings:
-            rest = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
-            parameters.append(rest)
-        changed = signature.replace(parameters=parameters)
+            rest = [inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)]
+        changed = signature.replace(parameters=[*parameters, *rest])
         function.__signature__ = changed  # type: ignore[attr-defined]
         if function.__doc__:
             function.__doc__ = _described(function.__doc__, options, settings=settings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ from flowtex._util.cache import digest
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
 from flowtex.field.field_arrays import FieldArrays
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.pyramid.places import (
@@ -31,9 +32,9 @@ from flowtex.pyramid.places import (
 )
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.read import read_datasets
-from flowtex.sources.datasets.select import find_pairs
+from flowtex.sources.datasets.select import find_pairs, two_names
 from flowtex.sources.datasets.values import Regions
-from flowtex.sources.files import OF_MESHES, errors_of, read_files, refuse
+from flowtex.sources.files import errors_of, read_files
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group, is_dataset_file
@@ -216,41 +217,45 @@ class RegionSource(Source):
                 yield file.resolve(), file.stat()
 
 
-def source_of(data: Any, uncertainty: Any = None, **options: Any) -> Source:
+def source_of(data: Any, **options: Any) -> Source:
     """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
-    source = _source_of(data, uncertainty, **options)
+    source, uncertainty = _source_of(data, **options), options.get("uncertainty")
     return source if uncertainty is None else source.with_uncertainty(uncertainty)
 
 
-def _source_of(data: Any, uncertainty: Any, **options: Any) -> Source:
-    # An array has a value for each node; a name may be a dimension to average over.
-    regions = uncertainty is None or isinstance(uncertainty, str)
-    read: dict[str, Any] = {"regions": regions, "uncertainty": uncertainty}
+def _source_of(data: Any, *, name: str = "", **given: Any) -> Source:
     if isinstance(data, (FlowField, Source)):
-        refuse(options, "the data of a field")
+        if names := [key for key, value in given.items() if key != "uncertainty" and value]:
+            raise FieldError(f"{', '.join(names)} applies to the data of a field; omit it")
         return data if isinstance(data, Source) else FieldSource(data)
     if is_store(data):
         raise FieldError(f"{data} is already a pyramid; give the data from which one is built")
+    options = FieldOptions.of_dataset(given)
+    # An array has a value for each node; a name may be a dimension to average over.
+    regions = options.uncertainty is None or isinstance(options.uncertainty, str)
     if is_dataset(data):
-        return _source_from(read_datasets(data, **read, **options))
+        return _source_from(read_datasets(data, options, name=name, regions=regions))
     items = data if isinstance(data, (list, tuple)) else [data]
     if not all(isinstance(each, (str, Path)) for each in items):
-        names = (*OF_MESHES, "vectors", "times", "name")
-        others = {name: value for name, value in options.items() if name not in names}
-        refuse(others, "datasets, but this is a mesh")
-        return FieldSource(FlowField.from_pyvista(data, **options))
+        given.pop("uncertainty", None)
+        return FieldSource(FlowField.from_pyvista(data, name=name, **given))
     files: str | Path | Sequence[str | Path] = data
     if isinstance(files, (str, Path)) and has_parts(files):
         place = place_text(files)
         finest, *_ = datasets_at(place, options)
-        source = _source_from(read_datasets(finest, name=Path(place).stem, **read, **options))
+        arrays = read_datasets(finest, options, name=Path(place).stem, regions=regions)
+        source = _source_from(arrays)
         paths = [] if is_remote(files) else [Path(place)]
     else:
         with errors_of(files):
-            source = _source_from(read_files(files, **read, **options))
+            time = None
+            if not dataset_paths(files):
+                time = given.pop("time", None)
+                options = FieldOptions(**given)
+            source = _source_from(read_files(files, options, time=time, regions=regions))
         paths = [file_and_group(path)[0] for path in dataset_paths(files)]
     if isinstance(source, RegionSource):
-        source.files, source.choice = paths, repr(sorted(options.items()))
+        source.files, source.choice = paths, repr(options)
     return source
 
 
@@ -278,13 +283,13 @@ def has_parts(place: object) -> bool:
     return large or "multiscales" in group.attrs
 
 
-def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
+def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     """Return the datasets of a store of others that have a velocity, the finest first."""
     from flowtex.pyramid.objects import OthersObjects, level_names
 
     xarray = import_extra("xarray", "xarray")
     zarr = import_extra("zarr", "store")
-    components = {str(options[name]) for name in "uv" if options.get(name)}
+    components = {name for name in two_names(options.vectors) if name}
     if not is_remote(place):
         with errors_of(place):
             inspect_file(Path(place))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, Notice, notify
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.field.uncertainty import spread_name
 from flowtex.pyramid.layout import VELOCITY_BITS, About
@@ -87,7 +89,8 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     (21, 41)
     """
     if not is_store(store):
-        others = levels_of_others(place_text(store), options, uncertainty)
+        given = {**options, "uncertainty": uncertainty}
+        others = levels_of_others(place_text(store), FieldOptions.of_dataset(given))
         return others if isinstance(others, FlowField) else _field_of(others)
     if options:
         raise FieldError(f"{', '.join(options)} applies to the source of a pyramid; omit it")
@@ -216,20 +219,21 @@ def _agree(values: AnyArray, reference: AnyArray) -> bool:
     return bool(np.allclose(values, reference, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))
 
 
-def levels_of_others(
-    place: str, options: Mapping[str, Any], uncertainty: Any = None
-) -> OtherLevels | FlowField:
+def levels_of_others(place: str, options: FieldOptions) -> OtherLevels | FlowField:
     """Open a store of others; one that is small, or on curved lines, is a whole field."""
     datasets = datasets_at(place, options)
-    arguments = {"name": Path(place).stem, **options}
-    finest = source_of(datasets[0], uncertainty, **arguments)
+    name, arguments = Path(place).stem, options.given
+    finest = source_of(datasets[0], name=name, **arguments)
     if not isinstance(finest, RegionSource):
         return finest.field
     if math.prod(finest.shape) <= WHOLE_NODES:
-        return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **arguments)
+        return FlowField.from_xarray(datasets[0], name=name, **arguments)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # those of the finest level were issued
-        coarser = [read_datasets(d, regions=True, **arguments) for d in datasets[1:]]
+        coarser = [
+            read_datasets(d, replace(options, uncertainty=None), name=name, regions=True)
+            for d in datasets[1:]
+        ]
     sources = [RegionSource(part) for part in coarser if isinstance(part, Regions)]
     if len(sources) < len(coarser):
         raise FieldError(

@@ -13,11 +13,10 @@ from flowtex._util.cache import WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import DERIVED, with_vector_scalar
-from flowtex.field.options import OF_EARTH, OF_MESHES, FieldOptions
+from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.datasets.select import two_names
 from flowtex.sources.meshes.vectors import with_array
 from flowtex.textures.tiles.shared import has_pyramid
 
@@ -79,15 +78,13 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
         return stored
     choices = options.given
     if is_dataset(mesh):
-        return FlowField.from_xarray(mesh, **_of_dataset(options))
+        options.refuse(OF_MESHES, "meshes, but this is a dataset")
+        return FlowField.from_xarray(mesh, **choices)
     meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
     if all(isinstance(item, (str, Path)) for item in meshes):
-        if "times" in choices:
-            raise FieldError(f"times is given, but {str(mesh)!r} already has times; omit it")
         return FlowField.from_file(mesh, time=time, **choices)
     choices.pop("uncertainty", None)
     if not isinstance(mesh, FlowField):
-        options.refuse(OF_EARTH, "datasets, but this is a mesh")
         return FlowField.from_pyvista(mesh, **choices)
     if choices:
         raise FieldError(
@@ -110,13 +107,8 @@ def _stored(place: Any, options: FieldOptions, time: float | str | None) -> Flow
         names = [name for name in options.given if name != "uncertainty"]
         if names := names if time is None else [*names, "time"]:
             raise FieldError(f"{', '.join(names)} applies to the source of a pyramid; omit it")
-    choices = _of_dataset(options)
+    options.refuse(OF_MESHES, "meshes, but this is a dataset")
+    choices = options.given
     if time is not None:
         choices["sel"] = {**choices.get("sel", {}), "time": time}
     return open_store(place, **choices)
-
-
-def _of_dataset(options: FieldOptions) -> dict[str, Any]:
-    options.refuse(OF_MESHES, "meshes, but this is a dataset")
-    choices = options.given
-    return {**two_names(choices.pop("vectors", None)), **choices}

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -19,8 +19,8 @@ import numpy as np
 
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
+from flowtex.field.options import OF_EARTH, FieldOptions
 from flowtex.sources.datasets.read import read_datasets
-from flowtex.sources.datasets.select import two_names
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.meshes import plot3d
@@ -114,8 +114,6 @@ _KNOWN_FORMATS = (
 )
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
-#: Arguments for meshes; the others are for datasets.
-OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free", "preference")
 
 
 @dataclass(frozen=True)
@@ -214,27 +212,23 @@ def _at_time(source: Any, time: float) -> Any:
 
 def read_files(
     path: str | Path | Sequence[str | Path],
+    options: FieldOptions,
     *,
-    vectors: str | None = None,
     time: float | str | None = None,
     regions: bool = False,
-    uncertainty: Any = None,
-    **options: Any,
 ) -> GridArrays | TriangleArrays | Regions:
     """Read the arrays of a field; callers name errors by :func:`errors_of`."""
-    paths = dataset_paths(path)
-    of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
-    chosen = {name: value for name, value in options.items() if value is not None}
-    if paths:
-        refuse(of_meshes, "meshes, but this is a dataset")
+    if paths := dataset_paths(path):
         if time is not None:
-            chosen["sel"] = {**chosen.get("sel", {}), "time": time}
-        chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
-        return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
+            options = replace(options, sel={**(options.sel or {}), "time": time})
+        name = common_name(paths)
+        return read_datasets(open_datasets(paths), options, name=name, regions=regions)
     file = one_path(path)
     if problem := _path_problem(file):
         raise FieldError(problem)
-    refuse(chosen, "datasets, but this is a mesh")
+    options.refuse(OF_EARTH, "datasets, but this is a mesh")
+    if options.times is not None:
+        raise FieldError("times is given, but the file already has times; omit it")
     if isinstance(time, str):
         raise FieldError(f"time is {time!r}; expected a number, one of the times of the file")
     opened = open_file(file)
@@ -242,9 +236,10 @@ def read_files(
         raise FieldError(opened.problem)
     source = opened.source
     if time is not None:
-        source, of_meshes["times"] = _at_time(source, time), [time]
-    name = vectors if vectors is not None else opened.velocity
-    return read_meshes(source, vectors=name, name=file.stem, **of_meshes)
+        source, options = _at_time(source, time), replace(options, times=[time])
+    if options.vectors is None:
+        options = replace(options, vectors=opened.velocity)
+    return read_meshes(source, options, name=file.stem)
 
 
 def one_path(path: str | Path | Sequence[str | Path]) -> Path:
@@ -265,12 +260,6 @@ def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager
     """Name a file, or the first of several, in errors until its field is made."""
     first = next(iter(dataset_paths(path)), path)
     return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
-
-
-def refuse(choices: Mapping[str, Any], subject: str) -> None:
-    """Raise a FieldError for options that apply to other data."""
-    if names := [name for name, value in choices.items() if value not in (None, False)]:
-        raise FieldError(f"{', '.join(names)} applies to {subject}; omit it")
 
 
 def file_identity(paths: Iterable[Path]) -> Identity:

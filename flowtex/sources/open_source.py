@@ -19,6 +19,7 @@ import numpy as np
 from flowtex.errors import FieldError, Notice
 from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
+from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
@@ -305,11 +306,11 @@ class DatasetSource(Source):
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
         pair = likely[0] if pairs else None
-        u, v = (None, None) if pair is None else (str(pair.u.name), str(pair.v.name))
-        flow = read_flow(self._datasets, u, v, Record())
+        flow = read_flow(
+            self._datasets, FieldOptions(vectors=pair.names if pair else None), Record()
+        )
         first = variable(self._datasets, str(flow.pair.u.name))
-        names = (f"{pair.u.name},{pair.v.name}" for pair in (flow.pair, *pairs))
-        self.vectors = tuple(dict.fromkeys(names))
+        self.vectors = tuple(dict.fromkeys(pair.names for pair in (flow.pair, *pairs)))
         if flow.places.is_earth:
             flat = projection_of(flow.places, None).name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
@@ -322,8 +323,7 @@ class DatasetSource(Source):
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, as :meth:`Source.plane_of` does."""
-        names = two_names(self.vectors[0])
-        array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
+        array = variable(self._datasets, str(two_names(self.vectors[0])[0]))
         drawn = choose(array, Choice({LEVEL: level}), Record())
         self._datasets.close()
         return f"{LEVEL}={drawn.numbers.get(LEVEL, 0)}"
@@ -337,16 +337,21 @@ class DatasetSource(Source):
     def _field(
         self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        names: dict[str, Any] = two_names(vectors or self.vectors[0])
+        vectors = vectors or self.vectors[0]
+        u, _ = two_names(vectors)
         axis, _, number = (plane or self.default_plane).partition("=")
-        array = next((ds[names["u"]] for ds in self._datasets if names["u"] in ds), None)
+        array = next((ds[u] for ds in self._datasets if u in ds), None)
         if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
         with warnings.catch_warnings():
             # The page shows the choices.
             warnings.simplefilter("ignore", DatasetNotice)
             return FlowField.from_xarray(
-                self._datasets, **names, projection=block or None, name=self.name, **options
+                self._datasets,
+                vectors=vectors,
+                projection=block or None,
+                name=self.name,
+                **options,
             )
 
 

@@ -113,7 +113,7 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
         field = read_field(file, FieldOptions())
         assert field.name == "gyre"
         assert field.shape == (101, 201)
-    with pytest.raises(FieldError, match=r"^times is given, but '.*gyre.vts' already has times"):
+    with pytest.raises(FieldError, match=r"gyre\.vts: times is given, but the file already"):
         read_field(path, FieldOptions(times=[1.0]))
     with pytest.raises(FieldError, match=r"none\.vts: the file does not exist"):
         read_field(str(tmp_path / "none.vts"), FieldOptions())

@@ -14,6 +14,7 @@ from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
+from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets import labels
 from flowtex.sources.notices import Record
 
@@ -53,6 +54,12 @@ class Choice:
     sel: Mapping[str, Any] = field(default_factory=dict)
     isel: Mapping[str, Any] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
+
+    @classmethod
+    def of(cls, options: FieldOptions) -> Choice:
+        """Return the choices among options."""
+        level = {} if options.level is None else {LEVEL: options.level}
+        return cls({**(options.sel or {}), **level}, dict(options.isel or {}))
 
     def check(self, names: set[str], drawn: set[str]) -> None:
         """Raise for a name that no axis has, or one of those that are drawn."""

@@ -20,7 +20,7 @@ unknown, a curvilinear grid of the Earth    along the grid, as WRF, ROMS, NEMO a
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,6 +29,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import typical_steps
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import align
@@ -55,6 +56,7 @@ from flowtex.sources.datasets.select import (
     TOWARDS,
     Pair,
     choose_pair,
+    two_names,
     velocity_unit,
 )
 from flowtex.sources.datasets.staggered import Grid, find_grid, unrepeated
@@ -253,22 +255,11 @@ class Flow:
         return u.sizes[horizontal_dims(u)[0]], v.sizes[horizontal_dims(v)[-1]]
 
 
-def read_flow(
-    data: Any,
-    u: str | None,
-    v: str | None,
-    record: Record,
-    *,
-    sel: Mapping[str, Any] | None = None,
-    isel: Mapping[str, Any] | None = None,
-    mask: Any = None,
-    components: str | None = None,
-) -> Flow:
+def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
-    datasets = as_datasets(data, record)
-    pair = choose_pair(datasets, u, v)
-    choice = Choice(dict(sel or {}), dict(isel or {}))
-    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, components)
+    datasets, choice = as_datasets(data, record), Choice.of(options)
+    pair = choose_pair(datasets, *two_names(options.vectors))
+    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
     if joined is not None:
         datasets = Datasets(joined, datasets.closers)
         pair = choose_pair(datasets, str(pair.u.name), str(pair.v.name))
@@ -297,12 +288,12 @@ def read_flow(
         else _on_faces(mesh, pair, datasets, drawn, record)
     )
     found = orientation(
-        pair, flow.places, staggered=flow.staggered, wanted=components, record=record
+        pair, flow.places, staggered=flow.staggered, wanted=options.components, record=record
     )
     if found.why == UNKNOWN and _is_turned(flow):
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
         record("components", text + "north; components='earth' if they are not", notable=True)
-    return _masked(replace(flow, unit=unit, orientation=found), factors, mask)
+    return _masked(replace(flow, unit=unit, orientation=found), factors, options.mask)
 
 
 def _is_turned(flow: Flow) -> bool:

@@ -23,18 +23,26 @@ from flowtex.field import units
 from flowtex.field.dates import as_seconds
 from flowtex.field.earth import GLOBE
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
+from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import NODES, TIME, axis_kind, axis_values, horizontal_dims
+from flowtex.sources.datasets.axes import (
+    NODES,
+    TIME,
+    Choice,
+    axis_kind,
+    axis_values,
+    horizontal_dims,
+)
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
 from flowtex.sources.datasets.select import (
-    Pair,
     choose_pair,
     find_pairs,
     other_velocities,
+    two_names,
     variable,
 )
 from flowtex.sources.datasets.values import Regions, read_step, region_lines
@@ -60,42 +68,27 @@ MOST_SEARCHED = 200
 
 
 def read_datasets(
-    data: Any,
-    u: str | None = None,
-    v: str | None = None,
-    *,
-    projection: str | None = None,
-    globe: bool = False,
-    name: str = "",
-    sel: Mapping[str, Any] | None = None,
-    isel: Mapping[str, Any] | None = None,
-    regions: bool = False,
-    uncertainty: Any = None,
-    mask: Any = None,
-    components: str | None = None,
-    **selection: Any,
+    data: Any, options: FieldOptions, *, name: str = "", regions: bool = False
 ) -> GridArrays | TriangleArrays | Regions:
     """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself."""
-    if globe and projection not in (None, GLOBE):
+    options.refuse(OF_MESHES, "meshes, but this is a dataset")
+    projection, uncertainty, record = options.projection, options.uncertainty, Record()
+    if options.globe and projection not in (None, GLOBE):
         raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
-    projection = GLOBE if globe else projection
-    sel, record = {**(sel or {}), **selection}, Record()
+    projection = GLOBE if options.globe else projection
+    u, v = two_names(options.vectors)
     datasets = as_datasets(data, record)
     with record.explain():
         if u is not None and v is not None and is_section(datasets, v):
-            chosen: dict[str, Any] = {"name": name, "sel": sel, "isel": isel or {}}
-            section = read_section(datasets, u, v, record, datasets.close, **chosen)
+            section = read_section(datasets, options, record, datasets.close, name=name)
             record.notify()
             datasets.close()
             return section
-        options: dict[str, Any] = {"mask": mask, "components": components}
-        options |= {"sel": sel, "isel": isel}
         spread: Callable[[int], Floats] | None = None
         if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
-            pair = choose_pair(datasets, u, v)
-            flow, spread = _averaged(datasets, pair, uncertainty, record, options)
+            flow, spread = _averaged(datasets, uncertainty, record, options)
         else:
-            flow = read_flow(datasets, u, v, record, **options)
+            flow = read_flow(datasets, options, record)
         for note in other_velocities(datasets, flow.pair) if u is None else ():
             record("select", note, notable=True)
         if not flow.places.is_earth and projection is not None:
@@ -191,11 +184,11 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
 
 
 def _averaged(
-    datasets: Datasets, pair: Pair, dim: str, record: Record, options: Mapping[str, Any]
+    datasets: Datasets, dim: str, record: Record, options: FieldOptions
 ) -> tuple[Flow, Callable[[int], Floats]]:
     """Return the mean over a dimension, and a reader of the spread."""
-    u, v, isel = pair.u, pair.v, options["isel"] or {}
-    chosen = {**options["sel"], **isel}
+    pair, choice = choose_pair(datasets, *two_names(options.vectors)), Choice.of(options)
+    u, v, chosen = pair.u, pair.v, {**choice.sel, **choice.isel}
     if dim in horizontal_dims(u) or dim not in {*u.dims} & {*v.dims}:
         names = [str(d) for d in u.dims if d not in horizontal_dims(u)]
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
@@ -205,9 +198,7 @@ def _averaged(
             f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
         )
     members = [
-        read_flow(
-            datasets, str(u.name), str(v.name), record, **{**options, "isel": {**isel, dim: number}}
-        )
+        read_flow(datasets, replace(options, isel={**choice.isel, dim: number}), record)
         for number in range(u.sizes[dim])
     ]
     sums = LazySteps(
@@ -357,8 +348,7 @@ def recognised(data: Any) -> dict[str, str]:
     record = Record()
     datasets = as_datasets(data, record)
     pairs = find_pairs(datasets)
-    first = (str(pairs[0].u.name), str(pairs[0].v.name)) if pairs else (None, None)
-    flow = read_flow(datasets, first[0], first[1], record)
+    flow = read_flow(datasets, FieldOptions(vectors=pairs[0].names if pairs else None), record)
     rows = {"velocity": str(flow.pair)}
     if others := [pair for pair in pairs if pair.u.name != flow.pair.u.name]:
         rows["also"] = "; ".join(map(str, others))

@@ -71,11 +71,14 @@ class Pair:
     def __str__(self) -> str:
         return f"{self.u.name}, {self.v.name} ({self.why})"
 
+    @property
+    def names(self) -> str:
+        """Names of both, with a comma between."""
+        return f"{self.u.name},{self.v.name}"
+
 
 def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
     """Return the velocity that is named, or the only one that is likely."""
-    if (u is None) != (v is None):
-        raise FieldError(f"u is {u!r} and v is {v!r}; name both components, or neither")
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
         one, other = (variable(datasets, name) for name in (u, v))
@@ -100,16 +103,16 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     return likely[0]
 
 
-def two_names(vectors: str | None) -> dict[str, str]:
-    """Return the arguments u and v for names with a comma between, as ``"uo,vo"``."""
+def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
+    """Return the names of two components with a comma between, as ``"uo,vo"``."""
     if vectors is None:
-        return {}
+        return None, None
     names = [word.strip() for word in vectors.split(",")]
     if len(names) != 2 or not all(names):
         raise FieldError(
             f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
         )
-    return dict(zip("uv", names, strict=True))
+    return names[0], names[1]
 
 
 def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.earth import DEGREE
 from flowtex.field.field_arrays import GridArrays, SectionAxes
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.axes import (
@@ -32,7 +33,7 @@ from flowtex.sources.datasets.axes import (
     line_of,
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
-from flowtex.sources.datasets.select import variable, velocity_unit
+from flowtex.sources.datasets.select import two_names, variable, velocity_unit
 from flowtex.sources.datasets.values import Component, checked_component, numbers_in
 from flowtex.sources.notices import Record
 
@@ -60,31 +61,28 @@ def is_section(datasets: Sequence[xr.Dataset], v: str) -> bool:
 
 def read_section(
     datasets: Sequence[xr.Dataset],
-    u: str,
-    v: str,
+    options: FieldOptions,
     record: Record,
     close: Callable[[], None],
     *,
     name: str,
-    sel: Mapping[str, Any],
-    isel: Mapping[str, Any],
 ) -> GridArrays:
     """Read a vertical section, from the names of a component along it and a vertical one."""
-    one, two = variable(datasets, u), variable(datasets, v)
+    one, two = (variable(datasets, str(name)) for name in two_names(options.vectors))
+    u, v, choice = str(one.name), str(two.name), Choice.of(options)
     if set(one.dims) != set(two.dims):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
         raise FieldError(
             f"the components have different axes: {listed}. Interpolate one to the levels of the "
             "other, as in ds.w.interp(...)"
         )
-    level, along = _axes(one, {*sel, *isel})
+    level, along = _axes(one, {*choice.sel, *choice.isel})
     for dim in (level, along):
         lines = line_of(one, dim), line_of(two, dim)
         if lines[0] is not None and lines[1] is not None:
             found = common(one, two, dim, lines[0], lines[1], record)
             one, two = one.isel({dim: found.one}), two.isel({dim: found.other})
     across, up = _coordinate(one, along), _coordinate(one, level)
-    choice = Choice(dict(sel), dict(isel))
     flat = [
         a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
         .swap_dims({level: SECTION[0], along: SECTION[1]})

@@ -20,6 +20,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.derived import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
+from flowtex.field.options import OF_EARTH, FieldOptions
 from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
 from flowtex.sources.meshes.parts import (
     TimeStep,
@@ -55,34 +56,23 @@ from flowtex.sources.notices import Record
 FLAT = 1e-10
 
 
-def read_meshes(
-    mesh: Any,
-    *,
-    vectors: str | None = None,
-    plane: str | None = None,
-    slice: Any = None,
-    contour: Any = None,
-    times: ArrayLike | None = None,
-    periodic: str | None = None,
-    sign_free: bool = False,
-    block: int | str | None = None,
-    preference: str | None = None,
-    name: str = "",
-) -> GridArrays | TriangleArrays:
+def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArrays | TriangleArrays:
     """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
     record = Record()
-    if preference not in (None, "point", "cell"):
+    options.refuse(OF_EARTH, "datasets, but this is a mesh")
+    plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
+    if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
-    cut = find_cut(slice, contour)
+    cut = find_cut(options.slice, options.contour)
     if cut is not None and plane is not None:
-        option = "slice" if slice is not None else "contour"
+        option = "slice" if options.slice is not None else "contour"
         raise FieldError(f"plane is {plane!r} and {option} is {cut.text}; choose one of the two")
-    steps = time_steps(mesh, block, cut=cut is not None, record=record)
+    steps = time_steps(mesh, options.block, cut=cut is not None, record=record)
     first = next(steps)
     on_grid = is_structured(first.grid) and cut is None
     if not on_grid:
         _refuse({"plane": plane, "periodic": periodic, "sign_free": sign_free or None})
-    velocity, chosen = choose(first.grid, vectors, plane, cut, record)
+    velocity, chosen = choose(first.grid, options.vectors, plane, cut, record)
 
     def draw(grid: Any) -> Sheet:
         if chosen is not None:
@@ -90,9 +80,10 @@ def read_meshes(
         return surface_sheet(grid, cut, velocity, record)
 
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(times_of(mesh))
-    preference = preference or "point"
     volume = VolumeValues(velocity, chosen or cut, count, preference)
-    arrays = _stacked(chain([first], steps), velocity, draw, times, preference, record, volume)
+    arrays = _stacked(
+        chain([first], steps), velocity, draw, options.times, preference, record, volume
+    )
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
     arrays["volume_values"] = volume.values()

@@ -18,6 +18,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.sources.datasets.flow import read_flow
@@ -82,7 +83,7 @@ def test_the_levels_of_icon_count_down_and_its_dates_are_numbers() -> None:
     field = FlowField.from_xarray(icon(globe(200)), globe=True)
     assert str(field.start).startswith("2024-01-01 12:00") or "12:00" in str(field.start)
     (ds,) = mpas(globe(200))
-    known = read_flow(ds, None, None, Record())
+    known = read_flow(ds, FieldOptions(), Record())
     assert known.pair.u.name == "uReconstructZonal" and "2024-01-01T06" in str(known.drawn.times)
 
 

@@ -16,6 +16,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
+from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.notices import DatasetNotice, Record
 
@@ -66,7 +67,7 @@ def test_a_model_is_recognised(name: str) -> None:
     u, v, along, grid = KNOWN[name]
     ds = models()[name]
     face = {"tile": 0} if "tile" in ds.dims else None
-    known = read_flow(ds, None, None, Record(), isel=face)
+    known = read_flow(ds, FieldOptions(isel=face), Record())
     assert (known.pair.u.name, known.pair.v.name, known.pair.along) == (u, v, along)
     assert re.match(grid, known.grid), known.grid
     with warnings.catch_warnings():
@@ -87,7 +88,7 @@ def test_a_model_without_a_velocity_is_refused_with_the_reason(name: str) -> Non
 
 def test_the_two_files_of_nemo_are_one_field() -> None:
     pair = [models()["ds_NEMO_MOI_U"], models()["ds_NEMO_MOI_V"]]
-    known = read_flow(pair, None, None, Record())
+    known = read_flow(pair, FieldOptions(), Record())
     assert known.grid.startswith("Arakawa C, sides after")
     with pytest.warns(DatasetNotice, match="deptht is 1 m, the nearest to the surface of 5"):
         field = FlowField.from_xarray(pair, globe=True)

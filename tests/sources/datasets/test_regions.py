@@ -12,6 +12,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex._util.arrays import even_runs
 from flowtex.field.field_arrays import GridArrays
+from flowtex.field.options import FieldOptions
 from flowtex.field.validation import NO_DATA
 from flowtex.sources.datasets.read import read_datasets
 from flowtex.sources.datasets.values import Regions
@@ -62,9 +63,11 @@ LATITUDES = {"north": np.linspace(-78, 80, 61), "south": np.linspace(90, -90, 61
 
 def both(data: Any, **options: Any) -> tuple[FlowField, Regions]:
     """Return a field, and its regions as they come to a worker."""
-    regions = read_datasets(data, regions=True, **options)
+    field = FlowField.from_xarray(data, **options)
+    name = options.pop("name", "")
+    regions = read_datasets(data, FieldOptions.of_dataset(options), name=name, regions=True)
     assert isinstance(regions, Regions)
-    return FlowField.from_xarray(data, **options), pickle.loads(pickle.dumps(regions))
+    return field, pickle.loads(pickle.dumps(regions))
 
 
 def assert_same(field: FlowField, regions: Regions) -> None:
@@ -133,7 +136,9 @@ def test_levels_are_chosen_as_in_a_field() -> None:
 @pytest.mark.parametrize("projection", ["north", "robinson", "lambert"])
 def test_maps_that_end_where_all_nodes_tell_are_read_whole(projection: str) -> None:
     data = dataset(LONGITUDES["region"], LATITUDES["north"])
-    assert isinstance(read_datasets(data, projection=projection, regions=True), GridArrays)
+    assert isinstance(
+        read_datasets(data, FieldOptions(projection=projection), regions=True), GridArrays
+    )
 
 
 def test_grids_that_are_no_lines_are_read_whole() -> None:
@@ -144,10 +149,10 @@ def test_grids_that_are_no_lines_are_read_whole() -> None:
         lon=(("j", "i"), lon, {"units": "degrees_east"}),
         lat=(("j", "i"), lat, {"units": "degrees_north"}),
     )
-    assert isinstance(read_datasets(curved, regions=True), GridArrays)
+    assert isinstance(read_datasets(curved, FieldOptions(), regions=True), GridArrays)
     flat = dataset(np.arange(0.0, 360, 1.5), LATITUDES["north"], plane=True)
     assert isinstance(
-        read_datasets(flat, regions=True), GridArrays
+        read_datasets(flat, FieldOptions(), regions=True), GridArrays
     )  # it may close, as longitude does
 
 
@@ -171,7 +176,7 @@ def test_the_largest_models_are_recognised_by_their_lines() -> None:
             "lat": ("lat", np.linspace(-80, 80, 50_000), {"units": "degrees_north"}),
         },
     )
-    regions = read_datasets(data, regions=True)
+    regions = read_datasets(data, FieldOptions(), regions=True)
     assert isinstance(regions, Regions)
     assert regions.lines.shape == (50_000, 200_001) and regions.lines.periodic == "i"
     nodes = regions.nodes(0, slice(49_000, 49_100), slice(199_990, 200_001))

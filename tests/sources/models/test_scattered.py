@@ -13,6 +13,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.options import FieldOptions
 from flowtex.field.units import factor
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.models.conventions import healpix_centres
@@ -302,7 +303,7 @@ def test_grid_is_described() -> None:
     ds = along(*reduced())
     for name in "uv":
         ds[name].attrs = {}
-    known = read_flow(ds, None, None, Record())
+    known = read_flow(ds, FieldOptions(), Record())
     assert known.grid == "1,600 points joined by 3,196 triangles; velocity at nodes"
     assert known.orientation.along == "earth"
 
