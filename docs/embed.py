@@ -11,14 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from flowtex._util.whole_file import whole_file
-from flowtex.host.export import headers_text, json_text, page_data
+from flowtex.host.export import contents_of, headers_text, json_text
 from flowtex.host.view import WebView
-from flowtex.rendering.webgl.protocol import part_info, part_text
 
 #: Letters from which on a part has a script of its own, which scenes of the same flow share.
 LETTERS_APART = 50_000
@@ -50,32 +48,19 @@ def _script(
     undo: ExitStack,
 ) -> Iterator[str]:
     """Give the text of a scene; ``undo`` removes the parts that were written beside it."""
-    scenes = page_data(views)
-    headers = [
-        scene.header(view.scene.settings, camera=camera)
-        for view, scene in zip(views, scenes, strict=True)
-    ]
-    if len(views) > 1:
-        for header in headers:
-            header["differs"] = list(views[1].own_settings)
-    yield f'flowtexScene({json_text(name)}, {{"headers": {headers_text(headers)}, "parts": ['
-    written: dict[str, dict[str, Any]] = {}
-    for n, scene in enumerate(scenes):
-        steps = (part for step in range(scene.steps) for part in scene.step(step).items())
-        for part, array in chain(scene.surface().items(), steps):
-            info, text = part_info(part, array), ""
-            if info["digest"] not in written:
-                written[info["digest"]], text = part_text(array)
-            info |= written[info["digest"]]
-            if len(text) > LETTERS_APART:
-                digest = json_text(info["digest"])
-                apart = folder / f"{info['digest']}.js"
-                is_new = not apart.exists()
-                with whole_file(apart) as file:
-                    file.write(f'flowtexPart({digest}, "{text}")\n'.encode())
-                if is_new:
-                    undo.callback(apart.unlink)
-                yield f"[{n}, {json_text(info)}, null],\n"
-            else:
-                yield f'[{n}, {json_text(info)}, "{text}"],\n'
+    contents = contents_of(views, camera=camera)
+    headers = headers_text(contents.headers)
+    yield f'flowtexScene({json_text(name)}, {{"headers": {headers}, "parts": ['
+    for n, info, text in contents.parts:
+        if len(text) > LETTERS_APART:
+            digest = json_text(info["digest"])
+            apart = folder / f"{info['digest']}.js"
+            is_new = not apart.exists()
+            with whole_file(apart) as file:
+                file.write(f'flowtexPart({digest}, "{text}")\n'.encode())
+            if is_new:
+                undo.callback(apart.unlink)
+            yield f"[{n}, {json_text(info)}, null],\n"
+        else:
+            yield f'[{n}, {json_text(info)}, "{text}"],\n'
     yield "]})\n"

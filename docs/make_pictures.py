@@ -467,7 +467,8 @@ def webmap() -> Picture:
     def answer(route: Route) -> None:
         name = route.request.url.split("?")[0].rsplit("/", 1)[-1]
         path = (modules if MAPLIBRE in route.request.url else Path()) / name
-        route.fulfill(path=path, content_type=kinds.get(path.suffix))
+        kind = kinds.get(path.suffix, "application/json")
+        route.fulfill(path=path, headers={"Access-Control-Allow-Origin": "*", "Content-Type": kind})
 
     currents, winds = flowtex.examples.ocean().isel(time=0), flowtex.examples.weather()
     look: dict[str, Any] = {"projection": "mercator", "samples": 25}

@@ -49,8 +49,10 @@ from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
 
-#: Size of slices and of values after packing, over that before, base64 included.
-PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
+#: Size of slices after packing, over that before, base64 included.
+PACKED_SHARE = 0.45
+#: The same of values.
+VALUES_SHARE = 0.75
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
@@ -68,6 +70,14 @@ EXPECTED = (
 )
 #: Address from which pages load MapLibre.
 MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist"
+#: Its files, the style after the modules, and their digests, without which a browser refuses them.
+MAPLIBRE_DIGESTS = {
+    "maplibre-gl.mjs": "sha384-pghUwrZY2q/5xc+bZCYbeUP4JsNuZEmG8j+ZvzJMC1DOy3Rdj5AhRNThLRAiEjSb",
+    "maplibre-gl-worker.mjs": (
+        "sha384-3TQUOa/0LGT7Cx/33YaLIs5RPzqGBCUAlmA8ht2ofWIP6UugFoidHfikpRijBozF"
+    ),
+    "maplibre-gl.css": "sha384-S+OnE5M4U3Qc2nR0RgljGrVs06xqfRg8L7uFk/pOF5+sRuSDG4oKkqKZmFrx7w09",
+}
 
 
 @dataclass(frozen=True)
@@ -207,20 +217,16 @@ def page_text(views: Sequence[WebView], *, store: str | None = None, **options: 
     return "".join(page_pieces(contents_of(views, store, **options)))
 
 
-def page_data(views: Sequence[WebView]) -> list[ClientData]:
-    """Return the data of views in a page, with as many levels of tiles as fit."""
-    scenes = []
-    for view in views:
-        scene = view.page_data()
-        pyramid, finest = scene.pyramid, 0
-        if pyramid is not None:
-            finest, room = pyramid.depth, float(TILE_BYTES)
-            root = _arrays_bytes(scene) / math.prod(pyramid.shape(pyramid.depth))
-            while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
-                finest -= 1
-            pyramid = pyramid if finest < pyramid.depth else None
-        scenes.append(replace(scene, pyramid=pyramid, finest=finest))
-    return scenes
+def _with_tiles(scene: ClientData) -> ClientData:
+    """Return the data of a page with as many levels of tiles as fit."""
+    pyramid = scene.pyramid
+    if pyramid is None:
+        return scene
+    finest, room = pyramid.depth, float(TILE_BYTES)
+    root = _arrays_bytes(scene) / math.prod(pyramid.shape(pyramid.depth))
+    while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
+        finest -= 1
+    return replace(scene, pyramid=pyramid if finest < pyramid.depth else None, finest=finest)
 
 
 def _arrays_bytes(scene: ClientData) -> float:
@@ -244,15 +250,19 @@ class Contents:
     headers: list[Header]
     parts: Iterator[tuple[int, Header, str]]
     steps: int
-    title: str
     time: float | None
-    link: StoreLink | None
+    source: str  #: Source of the store in a page's policy; empty without a store.
     picture: bytes | None
+
+    @property
+    def title(self) -> str:
+        """Title of a page as HTML."""
+        return html.escape(self.headers[0]["name"] or "Flow")
 
 
 def contents_of(
     views: Sequence[WebView],
-    store: str | None,
+    store: str | None = None,
     *,
     title: str | None = None,
     axes: str | None = None,
@@ -266,41 +276,70 @@ def contents_of(
     those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
     has drawn, by default a preview. ``store`` is the address of the store that has the rest.
     """
-    link = None if store is None else StoreLink.of(store)
-    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
-    headers = []
-    for view, scene in zip(views, scenes, strict=True):
+    source = "" if store is None else source_of(store)
+    headers, scenes = [], []
+    for view in views:
+        stored = None if store is None else _stored(view)
+        scene = _with_tiles(view.page_data()) if stored is None else linked_data(view, stored)
         header = scene.header(view.scene.settings, time=time, **shown)
         header["name"] = str(title or "") or header["name"]
-        if axes is not None:
-            header["axes"] = axes
-        if link is not None:
-            header["store"] = store_header(view, scene, link)
+        header |= {} if axes is None else {"axes": axes}
+        if stored is not None:
+            header["store"] = store_header(stored, scene, store)
         if len(views) > 1:
             header["differs"] = list(views[1].own_settings)
         headers.append(header)
-    name, parts = headers[0]["name"] or "Flow", _packed(scenes, link, time)
-    return Contents(views[0], headers, parts, scenes[0].steps, name, time, link, picture)
+        scenes.append(scene)
+    parts = _packed(scenes, time, is_linked=store is not None)
+    return Contents(views[0], headers, parts, scenes[0].steps, time, source, picture)
 
 
 def page_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a page piece by piece."""
+    headers, source, picture = contents.headers, contents.source, contents.picture
+    ground = headers[0]["background"]
+    if picture is None:
+        picture = still.preview_png(
+            contents.view, PREVIEW, camera=headers[0]["camera"], time=contents.time, coarser=1
+        )
+    # A browser has its own colour for light and for dark pages.
+    background = (
+        "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
+    )
+    opened = "flowtexStore.open" if source else ""
+    client = f"\n{client_script(with_store=bool(source))}\nflowtex.openPage({opened});\n"
     parts = (
         f'<script type="text/plain" data-view="{n}" data-part="{html.escape(json.dumps(info))}">'
         f"{text}</script>\n"
         for n, info, text in contents.parts
     )
-    yield from _filled("page.html", parts, _values(contents))
+    look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
+    yield from _page(
+        "page.html",
+        contents,
+        parts,
+        client,
+        # Inline styles, and at most a store's server.
+        allowed="style-src 'unsafe-inline'; "
+        + (f"connect-src {source}; " if source else "")
+        + "img-src data: blob:",
+        style=look,
+        # Browsers recognise JPEG.
+        preview="data:image/png;base64," + base64.b64encode(picture).decode(),
+        headers=zipped(headers_text(headers).encode()),
+    )
 
 
 def module_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a module piece by piece."""
-    values = {
-        "script": client_script(with_store=contents.link is not None),
-        "headers": headers_text(contents.headers),
-        "store": "" if contents.link is None else ", flowtexStore.open",
-    }
-    yield from _filled("scene.mjs", (json_text(part) + ",\n" for part in contents.parts), values)
+    parts = (json_text(part) + ",\n" for part in contents.parts)
+    yield from _filled(
+        "scene.mjs",
+        parts,
+        script=client_script(with_store=bool(contents.source)),
+        headers=headers_text(contents.headers),
+        store=", flowtexStore.open" if contents.source else "",
+    )
 
 
 def scene_pieces(contents: Contents) -> Iterator[str]:
@@ -313,18 +352,55 @@ def scene_pieces(contents: Contents) -> Iterator[str]:
 
 def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Iterator[str]:
     """Yield the text of the page of a web map in pieces."""
-    layer = asset("maplibre.js").read_text("utf-8")
-    values = {
-        "version": __version__,
-        "title": html.escape(contents.title),
-        "maplibre": MAPLIBRE,
-        "script": layer.replace("</script", r"<\/script").replace("<!--", r"<\!--"),
-        "style": json.dumps(basemap, allow_nan=False).replace("<", r"\u003c"),
-    }
-    yield from _filled("map.html", scene_pieces(contents), values)
+    loaded = [
+        f'href="{MAPLIBRE}/{name}" integrity="{digest}" crossorigin="anonymous">'
+        for name, digest in MAPLIBRE_DIGESTS.items()
+    ]
+    kinds = ('preload" as="fetch" data-module=""',) * 2 + ('stylesheet"',)
+    anywhere = "'self' https: http: data: blob:"  # a style names servers of its own
+    yield from _page(
+        "map.html",
+        contents,
+        scene_pieces(contents),
+        asset("map.mjs").read_text("utf-8"),
+        # MapLibre and the layer are run from copies whose digests were compared.
+        scripts=" blob:",
+        allowed=f"worker-src data: blob:; style-src 'unsafe-inline' {MAPLIBRE}/; "
+        f"connect-src {anywhere}; img-src {anywhere}",
+        links="\n".join(
+            f'<link rel="{kind} {rest}' for kind, rest in zip(kinds, loaded, strict=True)
+        ),
+        layer=_inline(asset("maplibre.js").read_text("utf-8")),
+        basemap=json_text(basemap),
+    )
 
 
-def _filled(name: str, parts: Iterator[str], values: Mapping[str, str]) -> Iterator[str]:
+def _page(
+    name: str,
+    contents: Contents,
+    parts: Iterator[str],
+    script: str,
+    *,
+    allowed: str,
+    scripts: str = "",
+    **values: str,
+) -> Iterator[str]:
+    """Yield the text of a page whose policy allows one script, by its digest."""
+    script = _inline(script)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    policy = (
+        f"default-src 'none'; script-src 'sha256-{digest}'{scripts}; {allowed}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    fixed = {"version": __version__, "title": contents.title, "policy": policy, "script": script}
+    yield from _filled(name, parts, **fixed, **values)
+
+
+def _inline(script: str) -> str:
+    return script.replace("</script", r"<\/script").replace("<!--", r"<\!--")
+
+
+def _filled(name: str, parts: Iterator[str], **values: str) -> Iterator[str]:
     """Yield the text of a template with these parts, where it has a line for them."""
     before, after = re.split(r"\$(?:parts|scene)\n", asset(name).read_text("utf-8"))
     yield string.Template(before).substitute(values)
@@ -338,41 +414,6 @@ def headers_text(headers: Sequence[Header]) -> str:
     return json_text([first, *({n: v for n, v in h.items() if v != first[n]} for h in others)])
 
 
-def _values(contents: Contents) -> dict[str, str]:
-    """Return the values of the placeholders in the page's template."""
-    headers, link, picture = contents.headers, contents.link, contents.picture
-    ground = headers[0]["background"]
-    if picture is None:
-        picture = still.preview_png(
-            contents.view, PREVIEW, camera=headers[0]["camera"], time=contents.time, coarser=1
-        )
-    # A browser has its own colour for light and for dark pages.
-    background = (
-        "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
-    )
-    opened = "" if link is None else "flowtexStore.open"
-    client = f"{client_script(with_store=link is not None)}\nflowtex.openPage({opened});\n"
-    script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
-    # One script by its digest, inline styles, and at most a store's server.
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    policy = (
-        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
-        + ("" if link is None else f"connect-src {link.source}; ")
-        + "img-src data: blob:; base-uri 'none'; form-action 'none'"
-    )
-    look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
-    return {
-        "policy": policy,
-        "version": __version__,
-        "title": html.escape(contents.title),
-        "style": look,
-        # Browsers recognise JPEG.
-        "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": zipped(headers_text(headers).encode()),
-        "script": script,
-    }
-
-
 def json_text(value: object) -> str:
     """Return JSON in which nothing can end a script element."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
@@ -380,18 +421,18 @@ def json_text(value: object) -> str:
 
 
 def _packed(
-    scenes: Sequence[ClientData], link: StoreLink | None, time: float | None
+    scenes: Sequence[ClientData], time: float | None, *, is_linked: bool
 ) -> Iterator[tuple[int, Header, str]]:
     """Yield view, description and text of the parts of all views; equal arrays once."""
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
-        if link is None:
+        if is_linked:
+            parts = iter([first_parts(scene, scene.times[0] if time is None else time)])
+        else:
             steps = track(range(scene.steps), scene.steps, "Packing time steps")
             tiles = TileSource(scene, budget=0).tiles()
             parts = chain([scene.surface()], map(scene.step, steps), tiles)
-        else:
-            parts = chain([first_parts(scene, scene.times[0] if time is None else time)])
         for name, array in chain.from_iterable(part.items() for part in parts):
             if name in names:  # values of all times are parts of each step
                 continue
@@ -402,42 +443,35 @@ def _packed(
             yield n, info | written[info["digest"]], text
 
 
-@dataclass(frozen=True)
-class StoreLink:
-    """Where a page finds its store."""
+def source_of(store: str) -> str:
+    """Return the source to which the policy of a page allows connections for its store.
 
-    address: str  #: A URL, whole or from the page on.
-    source: str  #: Source to which the page's policy allows connections.
-
-    @classmethod
-    def of(cls, text: str) -> StoreLink:
-        """Return the link of an address; a FieldError if it is unreadable or contains secrets."""
-        if not isinstance(text, str):
-            raise FieldError(f"store is {text!r}; expected an address, such as './flow.zarr'")
-        parts = urlsplit(text)
-        if parts.query or parts.fragment or "@" in parts.netloc:
-            raise FieldError(
-                "the address of the store contains a name, a password, a signature or another "
-                "query, which everyone could read in the page; give the address alone, and grant "
-                "read access to everyone who may see the page"
-            )
-        if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", text):
-            return cls(text, "'self'")
-        try:
-            host, port = parts.hostname or "", parts.port
-        except ValueError:
-            host, port = "", None
-        if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
-            hint = (
-                "; s3:// and other object storage have such an address too" if "://" in text else ""
-            )
-            raise FieldError(f"store is {text!r}; {EXPECTED}{hint}")
-        return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
+    Raises a FieldError if the address is unreadable or contains secrets.
+    """
+    if not isinstance(store, str):
+        raise FieldError(f"store is {store!r}; expected an address, such as './flow.zarr'")
+    parts = urlsplit(store)
+    if parts.query or parts.fragment or "@" in parts.netloc:
+        raise FieldError(
+            "the address of the store contains a name, a password, a signature or another query, "
+            "which everyone could read in the page; give the address alone, and grant read access "
+            "to everyone who may see the page"
+        )
+    if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", store):
+        return "'self'"
+    try:
+        host, port = parts.hostname or "", parts.port
+    except ValueError:
+        host, port = "", None
+    if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
+        hint = "; s3:// and other object storage have such an address too" if "://" in store else ""
+        raise FieldError(f"store is {store!r}; {EXPECTED}{hint}")
+    return f"{parts.scheme}://{host}" + (f":{port}" if port else "")
 
 
-def linked_data(view: WebView) -> ClientData:
-    """Return the data of a page for a view whose tiles are in a store, which must be the same."""
-    stored, data = _stored(view), view.page_data()
+def linked_data(view: WebView, stored: StoredPyramid) -> ClientData:
+    """Return the data of a page for a view whose tiles are in a store."""
+    data = view.page_data()
     if not stored.about.get("complete"):
         notify("the store is incomplete; missing tiles are shown coarse", UserWarning)
     return replace(
@@ -445,11 +479,10 @@ def linked_data(view: WebView) -> ClientData:
     )
 
 
-def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
+def store_header(stored: StoredPyramid, scene: ClientData, address: str | None) -> Header:
     """Return the part of the header about the store."""
-    stored = _stored(view)
     return {
-        "url": link.address,
+        "url": address,
         **{name: stored.about[name] for name in ("format", "fingerprint", "parameter", "lines")},
         "depth": stored.depth,
         "derivesSpeed": "speed" not in stored.about["scalars"],
@@ -458,6 +491,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
 
 
 def _stored(view: WebView) -> StoredPyramid:
+    """Return the store of a view; a FieldError if it has none with the same tiles."""
     scene = view.scene
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":

@@ -276,7 +276,7 @@ def test_tiles_around_a_pole_are_those_of_numpy(
     path = tmp_path / "page.html"
     assert data.traced and len(data.surface()["rays"]) == 1
     monkeypatch.setattr(view, "page_data", lambda: data)
-    path.write_text("".join(page_pieces(contents_of([view], None, picture=b""))), encoding="utf-8")
+    path.write_text("".join(page_pieces(contents_of([view], picture=b""))), encoding="utf-8")
     agree(textures, texels(browser, path), textures.layers(0).astype("<f2").astype(float))
 
 

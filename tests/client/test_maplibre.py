@@ -21,6 +21,7 @@ from scipy.ndimage import map_coordinates
 
 import flowtex
 from flowtex.field.earth import EARTH_RADIUS
+from flowtex.host.export import MAPLIBRE_DIGESTS
 from flowtex.host.view import asset
 from flowtex.pyramid import build
 
@@ -107,7 +108,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Itera
     flowtex.export(around(), folder / "around.json", projection="mercator", **LOOK)
     text = (ROOT / "docs" / "howto" / "webmaps.md").read_text(encoding="utf-8")
     (page,) = re.findall(r"^```html\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-    page = page.replace("https://unpkg.com/maplibre-gl@6/dist/", "./maplibre/")
+    page = page.replace("https://unpkg.com/maplibre-gl@6.17.0/dist/", "./maplibre/")
     page = page.replace('"https://demotiles.maplibre.org/style.json"', "window.mapStyle")
     page = page.replace("map.addLayer(flow)", "map.addLayer((window.flow = flow))")
     page += "<style>.maplibregl-control-container { display: none }</style>"
@@ -447,7 +448,7 @@ def test_colours_are_those_of_pictures_that_come_later(shown: Shown) -> None:
 def test_a_page_with_a_map_is_written_whole(
     browser: Browser, server: RangeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.host.export.MAPLIBRE", "./maplibre")
+    monkeypatch.setattr("flowtex.host.export.MAPLIBRE", f"{server.address}maplibre")
     page, own = server.folder / "own.html", str(server.folder / "flow.zarr")
     made = flowtex.export(own, page, store="./flow.zarr", basemap=STYLE, title="<Eddies>", **LOOK)
     assert made.nbytes == page.stat().st_size
@@ -463,6 +464,29 @@ def test_a_page_with_a_map_is_written_whole(
         opened.mouse.click(WIDTH / 2, HEIGHT / 2)
         opened.locator(".maplibregl-popup", has_text="speed").wait_for()
         assert opened.locator("#fault").is_hidden()
+        # Nothing else can be run.
+        refused = opened.evaluate("""() => new Promise((resolve) => {
+          document.onsecuritypolicyviolation = (event) => resolve(event.effectiveDirective);
+          const script = document.createElement("script");
+          script.textContent = "window.ran = true";
+          document.body.append(script);
+        })""")
+        assert refused.startswith("script-src") and opened.evaluate("() => window.ran") is None
+
+
+@pytest.mark.parametrize("name", ["maplibre-gl.mjs", "maplibre-gl-worker.mjs"])
+def test_page_refuses_another_maplibre(
+    page: Page, server: RangeServer, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setattr("flowtex.host.export.MAPLIBRE", f"{server.address}maplibre")
+    monkeypatch.setitem(MAPLIBRE_DIGESTS, name, f"sha384-{'A' * 64}")
+    own = server.folder / "other.html"
+    flowtex.export(
+        str(server.folder / "flow.zarr"), own, store="./flow.zarr", basemap=STYLE, **LOOK
+    )
+    page.goto(f"{server.address}other.html")
+    page.locator("#fault", has_text="Failed to fetch").wait_for()
+    assert page.evaluate("() => window.map instanceof HTMLElement")
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from page_reader import Reader
 from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.field import FieldError
-from flowtex.host.export import StoreLink, export, page_text
+from flowtex.host.export import export, page_text, source_of
 from flowtex.host.view import web_views
 from flowtex.pyramid import build, open_store
 from flowtex.pyramid.layout import sealed
@@ -63,7 +63,7 @@ def text_of(store: Path, link: str = BUCKET, **options: Any) -> str:
     ],
 )
 def test_the_policy_names_the_server_of_the_store(address: str, source: str) -> None:
-    assert StoreLink.of(address) == StoreLink(address, source)
+    assert source_of(address) == source
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_what_no_browser_reads_is_refused(address: str) -> None:
     with pytest.raises(
         FieldError, match="expected the address from which a browser reads the store"
     ):
-        StoreLink.of(address)
+        source_of(address)
 
 
 @pytest.mark.parametrize(
