@@ -98,7 +98,7 @@ def across_lines(
 def _lines(field: flowtex.FlowField, options: Any, size: tuple[int, int], axis: int) -> Floats:
     """Index along an axis of what each pixel shows, (H, W), from the renderer in NumPy."""
     settings = flowtex.Settings(samples=1)
-    textures = TextureSet.build(SliceStore(field), settings)
+    textures = TextureSet.build(SliceStore(field))
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
     if "camera" in options:
         plotter.camera_position = options["camera"]

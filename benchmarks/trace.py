@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import rlic
 
-from flowtex import FlowField, Settings, TraceSlices, examples, trace
+from flowtex import FlowField, TraceSlices, examples, trace
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 
@@ -132,7 +132,7 @@ def main(columns: list[int]) -> None:
         metric = time.perf_counter() - started
         vorticity = best(lambda field=field: field.at_step(0).derive("vorticity"))
         whole, composed = composing(field)
-        textures = TextureSet.build(SliceStore(field, slices=trace(field)), Settings())
+        textures = TextureSet.build(SliceStore(field, slices=trace(field)))
         layers, taps = best(textures.layers), convolution(field)
         size = trace(field).nbytes / 1e6
         rows, count = field.shape

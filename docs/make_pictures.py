@@ -205,20 +205,6 @@ def levels() -> Picture:
     )
 
 
-def correction() -> Picture:
-    """Draw the paper's noise texture with the correction of its distribution, and without."""
-    s, t = np.meshgrid(np.linspace(0, 1, 81), np.linspace(0, 1, 61))
-    x, y = 2 * s**2.5, t**2
-    flow = [np.sin(np.pi * x) * np.cos(np.pi * y), -np.cos(np.pi * x) * np.sin(np.pi * y)]
-    return flowtex.render(
-        flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(flow, -1)),
-        size=(1200, 340),
-        scalars=False,
-        noise="texture",
-        beside={"noise_correction": False},
-    )
-
-
 def kernels() -> Picture:
     """Draw the three kernels; the ramp shows the direction in a still."""
     field = flowtex.examples.double_gyre_field()
@@ -523,7 +509,7 @@ def _coasts(color: str) -> dict[str, Any]:
 
 STILLS = (
     *(wake, globe, cartopy, ocean, zooms, critical, vortices, sphere, torus, level_of_detail),
-    *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre, nine),
+    *(grain, levels, kernels, arrows, structure, patterns, half_turns, gyre, nine),
     *(polar, webmap),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}

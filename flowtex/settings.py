@@ -26,16 +26,14 @@ Control = Literal["checkbox", "choice", "slider", "number"]
 Condition = tuple[str, Literal["==", "!="], Any]
 
 #: Settings that have an effect only if one of these conditions holds.
-_NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
 _NEEDS_DENSE: tuple[Condition] = (("texture", "==", "dense"),)
 _NEEDS_MOTION: tuple[Condition] = (("motion", "!=", "off"),)
 NEEDS: dict[str, tuple[Condition, ...]] = {
     "texture": (("noise", "==", "procedural"),),
     "kernel": _NEEDS_DENSE,
     "two_sided": _NEEDS_DENSE,
-    "tiles": (_NEEDS_TEXTURE,),
-    "noise_correction": (_NEEDS_TEXTURE,),
-    "resolution": (_NEEDS_TEXTURE, ("fixed_grain", "==", True), ("lod", "==", False)),
+    "tiles": (("noise", "==", "image"),),
+    "resolution": (("fixed_grain", "==", True), ("lod", "==", False)),
     "arrows": (("noise", "==", "procedural"),),
     "arrow_length": (("arrows", "!=", 0.0),),
     "arrow_color": (("arrows", "!=", 0.0),),
@@ -229,22 +227,15 @@ class Settings:
         default=True,
     )
     noise: str = _row(
-        "Noise that is even in space, the paper's noise texture, or an image instead.",
+        "Noise that is even in space, or an image instead.",
         default="procedural",
         affects="shader",
-        choices=("procedural", "texture", "image"),
+        choices=("procedural", "image"),
     )
     tiles: int = _row("Repeats of an image along each side.", default=1, span=(1, 64))
-    noise_correction: bool = _row(
-        "Spread the noise texture evenly over the surface, not over its cells (figure 6 of the "
-        "paper).",
-        default=True,
-        affects="textures",
-    )
     resolution: int = _row(
-        "Texels of the noise texture along the surface; they set the size of a fixed grain.",
+        "Number of grains along the surface where their size is fixed.",
         default=1024,
-        affects="textures",
         span=(16, 8192),
     )
     grain: float = _row("Size of a grain of noise, in pixels.", default=1.5, span=(0.25, 32))

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from flowtex.field import FlowField
+from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.settings import Settings
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 from paper import data_sets
+from paper.noise_texture import NoiseImages, NoiseTextures
 
 T = TypeVar("T")
 
 #: The paper's own method: its noise texture and step texture, ten even contributions, backward.
+#: That texture, and ``noise_correction``, are of :mod:`paper.noise_texture` and no settings.
 PAPER: dict[str, Any] = {
     "noise": "texture",
     "samples": 10,
@@ -98,18 +101,33 @@ class Bench:
 
     def settings(self, **values: Any) -> Settings:
         """Return settings with the seed of the run."""
-        return Settings(**{"seed": self.seed % 65536, **values})
+        own = {k: v for k, v in values.items() if k not in ("noise", "noise_correction")}
+        return Settings(**{"seed": self.seed % 65536, **own})
 
-    def textures(self, flow: FlowField, settings: Settings) -> TextureSet:
+    def textures(self, flow: FlowField, **values: Any) -> TextureSet:
         """Textures of a field, each kind built once; the field must be one of this bench."""
+        settings = self.settings(**values)
         store = self.once(
             ("store", id(flow), settings.parameter),
             lambda: SliceStore(
                 flow, parameter=settings.parameter, compose=self.quick and flow.steady
             ),
         )
-        kind = (settings.noise, settings.noise_correction, settings.resolution, settings.seed)
-        if settings.noise == "procedural":
-            kind = (settings.noise, True, 0, 0)
-        key = ("textures", id(flow), settings.parameter, *kind)
-        return self.once(key, lambda: TextureSet.build(store, settings))
+        key = ("textures", id(flow), settings.parameter)
+        plain = self.once(key, lambda: TextureSet.build(store))
+        if values.get("noise") != "texture":
+            return plain
+        resolution, corrected = settings.resolution, values.get("noise_correction", True)
+
+        def make() -> TextureSet:
+            noise = NoiseTextures.of(store, resolution, settings.seed, corrected=corrected)
+            return replace(plain, image=noise)
+
+        return self.once((*key, resolution, corrected, settings.seed), make)
+
+    def lookup(self, textures: TextureSet) -> LookupMaker | None:
+        """Return the look-up of the paper's noise; ``None`` for textures without it."""
+        noise = textures.image
+        if not isinstance(noise, NoiseTextures):
+            return None
+        return self.once(("lookup", id(noise)), lambda: NoiseImages(noise).lookup)

@@ -51,15 +51,15 @@ class View:
         self, lookup: LookupMaker | None = None, *, density: float = 1.0, **settings: Any
     ) -> Picture:
         """Draw it; ``lookup`` takes the place of the noise."""
-        values = self.bench.settings(**settings)
+        textures = self.bench.textures(self.field, **settings)
         return render(
-            self.bench.textures(self.field, values),
-            values,
+            textures,
+            self.bench.settings(**settings),
             self.camera,
             self.size,
             view=ViewState(density=density),
             steps=(self.step, self.step),
-            lookup=lookup,
+            lookup=lookup or self.bench.lookup(textures),
         )
 
     def reference(self, times: int, **settings: Any) -> Floats:

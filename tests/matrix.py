@@ -67,8 +67,7 @@ IMAGE = np.zeros((30, 50, 4))
 IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
 IMAGE[5:25, 10:40, 3] = 1.0
 
-#: The paper's textures, of a size that is made soon.
-TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
+LAID: dict[str, Any] = {"noise": "image", "strength": 1.0}
 MOTION = {"motion": "speed"}
 STREAKLETS = {"texture": "streaklets"}
 
@@ -187,16 +186,13 @@ VIEWS: dict[str, View] = {
     "uncertain, between two steps": View(
         lambda: uncertain(swinging()), MIDDLE, {"lines": "pathlines"}, time=0.55
     ),
-    "uncertain, texture": View(uncertain_gyre, settings=TEXTURE),
-    "uncertain, image": View(uncertain_gyre, settings={"noise": "image", "strength": 1.0}),
+    "uncertain, image": View(uncertain_gyre, settings=LAID),
     "fading": View(settings={"fade": 0.9}),
-    "texture": View(settings=TEXTURE),
-    "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
-    "texture, curved": View(torus, ASIDE, TEXTURE),
-    "texture, no lod": View(settings=TEXTURE | {"lod": False}),
-    "texture in time": View(swinging, MIDDLE, TEXTURE, time=0.55),
-    "image": View(settings={"noise": "image", "tiles": 3, "strength": 1.0}),
-    "image, mixed": View(camera=TILTED, settings={"noise": "image", "strength": 0.5}),
+    "image": View(settings=LAID | {"tiles": 3}),
+    "image, mixed": View(camera=TILTED, settings=LAID | {"strength": 0.5}),
+    "image, curved": View(torus, ASIDE, LAID),
+    "image, no lod": View(settings=LAID | {"lod": False, "kernel": "box"}),
+    "image in time": View(swinging, MIDDLE, LAID, time=0.55),
 }
 
 

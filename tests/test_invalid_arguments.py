@@ -94,7 +94,7 @@ def render(**given: Any) -> object:
 
 
 def textures(field: FlowField, slices: TraceSlices) -> TextureSet:
-    return TextureSet.build(SliceStore(field, slices=slices), flowtex.Settings())
+    return TextureSet.build(SliceStore(field, slices=slices))
 
 
 def movie(path: str = "flow.mp4", **given: Any) -> None:
@@ -348,14 +348,13 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"scalars": "p", "log_scale": True}, "log_scale is True, but "),
         ({"image": np.zeros((2, 2, 7))}, "the image has shape (2, 2, 7)"),
         ({"noise": "image"}, "noise is 'image', but no image is given; pass"),
-        ({"noise": "texture", "image": np.ones((2, 2))}, "'texture', but an image is given; omit"),
+        ({"noise": "procedural", "image": np.ones((2, 2))}, "but an image is given; omit"),
     ],
     partial(Scene.of, sign_free()): [
         ({"separatrices": True}, "separatrices is 25; expected 0, because the field is sign"),
         ({"critical_points": 7}, "critical_points is 7; expected 0"),
     ],
     partial(Scene.of, triangles()): [
-        ({"noise": "texture"}, "noise is 'texture' ... triangles; expected noise='pr"),
         ({"image": np.ones((4, 4, 3))}, "noise is 'image' ... triangles; expected noise="),
     ],
     partial(Scene.of, torus()): [
@@ -412,7 +411,7 @@ TABLE_OF_DRAWING: dict[Callable[..., object], list[tuple[Any, str]]] = {
     ],
     movie: [
         ({"motion": "off"}, "motion is 'off'; expected 'speed' or 'uniform'"),
-        ({"noise": "texture"}, "noise is 'texture', which cannot move"),
+        ({"image": np.ones((2, 2))}, "noise is 'image', which cannot move"),
         ({"seconds": 0.0}, "seconds is 0.0; expected a number from 0.1 to 600"),
         ({"fps": 500.0}, "fps is 500.0; expected more than 0 and at most 120"),
         ({"fps": 100.0, "seconds": 600.0}, "60,000 frames; expected at most"),

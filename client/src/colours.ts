@@ -166,8 +166,7 @@ export function rampOf(map: Data, header: Header, settings: Settings, stops: num
   const shown = (n: number) => {
     const colour = [...map.slice(4 * n, 4 * n + 3)];
     // An image on the surface has colours of its own.
-    const own = header.paper?.picture ?? false;
-    return `rgb(${(own ? colour : meanColour(colour, settings, header.constants.shading)).map(Math.round).join(" ")})`;
+    return `rgb(${(header.image ? colour : meanColour(colour, settings, header.constants.shading)).map(Math.round).join(" ")})`;
   };
   // Few colours have borders.
   const runs = runsOf(map);

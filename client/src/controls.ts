@@ -9,8 +9,8 @@ import { clamp } from "./vectors.ts";
 const SLIDER_STOPS = 400;
 
 /** Whether the flow streams by a clock. */
-export function hasStreaming({ slices, paper, variant }: Header): boolean {
-  return slices.steps === 1 && !paper && !isSignFree({ variant });
+export function hasStreaming({ slices, image, variant }: Header): boolean {
+  return slices.steps === 1 && !image && !isSignFree({ variant });
 }
 
 /** Where a setting changes anything; `rebuild` says whether textures can be made again. */
@@ -19,14 +19,12 @@ const USES: Record<string, (header: Header, rebuild: boolean) => boolean> = {
   speed: hasStreaming,
   speed_in: hasStreaming,
   period: hasStreaming,
-  grain: ({ paper }) => !paper,
-  fixed_grain: ({ paper }) => !paper,
+  grain: ({ image }) => !image,
+  fixed_grain: ({ image }) => !image,
   two_sided: ({ slices }) => slices.sides === 2,
-  seed: ({ paper }, rebuild) => !paper || (rebuild && !paper.picture),
-  resolution: ({ paper }, rebuild) => !paper || rebuild,
-  tiles: ({ paper, settings }, rebuild) =>
-    Boolean(paper?.picture) && (settings.noise === "image" || rebuild),
-  noise_correction: ({ paper }, rebuild) => Boolean(paper) && rebuild,
+  seed: ({ image }) => !image,
+  resolution: ({ image }) => !image,
+  tiles: ({ image }) => Boolean(image),
   lines: ({ slices }, rebuild) => slices.steps > 1 && rebuild,
   parameter: ({ slices, settings }, rebuild) =>
     rebuild && (slices.steps === 1 || settings.lines !== "pathlines"),

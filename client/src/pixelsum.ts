@@ -120,11 +120,11 @@ function greyOf(value: number, contrast: number, c: Constants): number {
   return 1 / (1 + Math.exp(-c.TONE_SLOPE[0] * contrast * value));
 }
 
-/** The sum at a point; null where the noise is that of a texture or moves. */
+/** The sum at a point; null where an image takes the place of the noise, or it moves. */
 export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum | null {
   const { header } = at.scene;
   const { geometry, slices, shaders } = header;
-  if (header.paper || isMoving(header, settings, true)) return null;
+  if (header.image || isMoving(header, settings, true)) return null;
   const c = constantsOf(shaders.fragment);
   const focus = camera.state.focal_point;
   const still = { eye: camera.eye, between: at.moment[2], time: slices.times[0], clock: 0, still: true };

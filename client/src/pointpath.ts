@@ -21,7 +21,7 @@ const LEAST_FACING = 0.05;
 const LEAST_ROUND = 0.25;
 /** Slope below which nothing moves. */
 const LEAST_SLOPE = 1e-6;
-/** Part of a cell over which a direction in the noise's coordinates is one in space. */
+/** Part of a cell over which a direction in image coordinates is one in space. */
 const SMALL = 1e-3;
 
 /** A path in the mesh's coordinates, downstream. */
@@ -125,11 +125,11 @@ function sideOf(layers: Layers, lags: number[], first: number, sign: number, by:
   return result;
 }
 
-/** What takes displacements to space; null beyond the border of the noise. */
+/** What takes displacements to space; null beyond the border of the image. */
 export function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector | null {
-  const { paper, geometry } = scene.header;
-  if (!paper) return (moved) => add(position, fromFrame(geometry.frame, moved));
-  const { alongI, alongJ } = paper;
+  const { image, geometry } = scene.header;
+  if (!image) return (moved) => add(position, fromFrame(geometry.frame, moved));
+  const { alongI, alongJ } = image;
   const here = [between(alongI, place[0]), between(alongJ, place[1])];
   const start = pointAt(scene, place);
   return ([u, v]) => {
@@ -194,21 +194,21 @@ function indexOf(values: number[], value: number): number {
 
 /**
  * Length of a grain at a point: of the pixel's mean side as it lies on the surface, or of a texel of
- * the noise's level, which is that of the pixel unless its own texels are larger.
+ * the step texture's level, which is that of the pixel unless its own texels are larger.
  */
 export function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
-  const { geometry, paper } = scene.header;
+  const { geometry, image } = scene.header;
   const normal = cross(...sidesAt(scene, place));
   const { height, ray } = camera.at(position);
   const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
   const pixel = (2 * height) / rows;
-  if (paper) {
-    const [across, up] = [paper.alongI, paper.alongJ].map((along, axis) => {
+  if (image) {
+    const [across, up] = [image.alongI, image.alongJ].map((along, axis) => {
       const n = Math.min(Math.floor(place[axis]), along.length - 2);
-      return (along[n + 1] - along[n]) * paper.size[axis];
+      return (along[n + 1] - along[n]) * image.stepSize[axis];
     });
     const texel = Math.sqrt(length(normal) / (across * up));
-    return paper.grain * (settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel);
+    return settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel;
   }
   const texel = geometry.extent / Number(settings.resolution);
   // Towards the corners of a view in perspective, pixels cover less across the ray.
@@ -239,11 +239,11 @@ function upTo(start: Vector, side: Vector[], most: number): Vector[] {
 /** Velocity in the surface. */
 export function velocityAt(at: PathPlace): Vector {
   const { scene, position } = at;
-  const { slices, paper, speed } = scene.header;
+  const { slices, image, speed } = scene.header;
   const layers = layersAt(at);
   const [x, y, z] = layers(0);
   const slope: Vector = [x, y, z];
-  const small = scale(slope, (SMALL * (paper ? 1 / paper.size[0] : slices.cell)) / (length(slope) || 1));
+  const small = scale(slope, (SMALL * (image ? 1 / image.stepSize[0] : slices.cell)) / (length(slope) || 1));
   const along = length(slope) > LEAST_SLOPE ? subtract(mover(at)(small) ?? position, position) : slope;
   return scale(unit(along), layers(2)[3] * speed.typical);
 }
@@ -251,7 +251,7 @@ export function velocityAt(at: PathPlace): Vector {
 /** The path through a point as the picture has it that is so many of the page's pixels high. */
 export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, rows: number): PointPath {
   const { scene, position } = at;
-  const { slices, paper } = scene.header;
+  const { slices, image } = scene.header;
   const layers = layersAt(at);
   const directed = !isSignFree(scene.header);
   const base = layers(0);
@@ -260,7 +260,7 @@ export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, r
   const whole: Vector[][] = [];
   const sides = settings.two_sided || !directed ? slices.sides : 1;
   for (let side = 0; side < sides && length(slope) > LEAST_SLOPE; side += 1) {
-    const by = paper ? 1 : base[3] * slices.unit;
+    const by = image ? 1 : base[3] * slices.unit;
     const ways = sideOf(layers, slices.lags, side * slices.lags.length, side ? 1 : -1, by);
     const points = ways.map(moved);
     const end = points.findIndex((point) => point === null);

@@ -15,7 +15,7 @@ const ATTRIBUTES = [
 ];
 /** Samplers, each in the texture unit of its place. */
 export const SAMPLERS = [
-  ...["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap", "u_shares", "u_along", "u_nodes"],
+  ...["u_slices", "u_slicesNext", "u_image", "u_stepImage", "u_cmap", "u_shares", "u_along", "u_nodes"],
   ...["u_corners", "u_open", "u_places", "u_depths", "u_colours", "u_strides"],
 ];
 

@@ -381,7 +381,7 @@ export class ProgressiveRenderer {
 
   /** All uniforms of a picture. */
   private values(
-    { header, parts }: Scene,
+    { header }: Scene,
     { bodies }: Scene,
     camera: Camera,
     view: ViewState,
@@ -390,10 +390,9 @@ export class ProgressiveRenderer {
   ) {
     const { settings } = this.viewer;
     const { columns, rows } = header.geometry;
-    const noise = parts.get("noise")?.shape ?? null;
     const plain = header.scalars.name !== null && hasArrows(header, settings) && settings.arrow_color === "scalars";
     return {
-      ...uniforms(header, { ...settings, samples }, view, noise),
+      ...uniforms(header, { ...settings, samples }, view),
       ...(draft ? draftUniforms(settings, samples, view.density) : {}),
       u_matrix: projection(header.geometry, camera, view.anchor),
       u_mapped: header.scalars.name !== null && !plain,

@@ -60,13 +60,13 @@ export interface Row {
   choices: string[];
 }
 
-export interface Paper {
+/** An image in place of the noise. */
+export interface ImageTextures {
+  /** Columns and rows of its texels, and of those of the step texture. */
   size: [number, number];
-  grain: number;
-  corrected: boolean;
-  deviations: number[];
+  stepSize: [number, number];
   repeat: [boolean, boolean];
-  picture: boolean;
+  /** Coordinates of columns and rows of nodes in it. */
   alongI: number[];
   alongJ: number[];
 }
@@ -355,7 +355,7 @@ export interface Header {
   background: number[] | null;
   lighting: boolean;
   opacity: number;
-  paper: Paper | null;
+  image: ImageTextures | null;
   /** Numbers of flowtex/rendering/uniforms.py. */
   constants: {
     noiseDoublings: number;

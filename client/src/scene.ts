@@ -24,7 +24,7 @@ const USERS: Record<string, string[]> = {
   triangles: ["nodes", "cells", "scalar"],
   blocks: ["cells"],
   cmap: ["cmap"],
-  noise: ["noise"],
+  image: ["image"],
   step: ["step"],
   scalars: ["scalar"],
 };
@@ -41,7 +41,7 @@ const TEXEL_BYTES = 8 * (4 / 3);
 /** Triangles in a row of the texture of their corners. */
 const CORNERS_WIDTH = 2048;
 /** Samplers of textures with layers. */
-const ARRAYS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_nodes"];
+const ARRAYS = ["u_slices", "u_slicesNext", "u_image", "u_stepImage", "u_nodes"];
 /** Number of all scenes. */
 let count = 0;
 
@@ -86,7 +86,7 @@ export class Scene {
 
   /** Names of the parts that a moment needs and that are not there. */
   missing(before: number, after: number): string[] {
-    const { geometry, slices, scalars, paper, pyramid, formula } = this.header;
+    const { geometry, slices, scalars, image, pyramid, formula } = this.header;
     const { trace } = slices;
     const names = ["mesh", ...(trace?.parts ?? ["position", ...(geometry.planar ? [] : ["normal"])])];
     if (pyramid && !formula) names.push("places");
@@ -99,7 +99,7 @@ export class Scene {
     }
     names.push(...this.scalarParts(before, after));
     if (scalars.name !== null) names.push("cmap");
-    if (paper) names.push("noise", "step");
+    if (image) names.push("image", "step");
     return [...new Set(names)].filter((name) => !this.fits(name));
   }
 
@@ -122,7 +122,7 @@ export class Scene {
   private fits(name: string): boolean {
     const part = this.parts.get(name);
     if (!part) return false;
-    const { geometry, slices, paper, mesh } = this.header;
+    const { geometry, slices, image, mesh } = this.header;
     const blocks = geometry.shape.map((n) => Math.max(Math.ceil((n - 1) / mesh.tileCells), 1));
     const nodes = slices.trace?.nodes ?? [];
     const shapes: Record<string, number[]> = {
@@ -132,7 +132,7 @@ export class Scene {
       slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
       position: [...geometry.shape, 3],
       mesh: geometry.triangles ? part.shape : [...blocks, part.shape[2]],
-      step: paper ? [paper.size[1], paper.size[0]] : [],
+      step: image ? [...image.stepSize].reverse() : [],
     };
     const shape = shapes[name.split("/")[0]];
     return !shape || String(shape) === String(part.shape);
@@ -480,22 +480,21 @@ export class Scene {
   /** Have the slices of a moment, colours and images in their units. */
   bindTextures(before: number, after: number): void {
     const gl = this.graphics.context;
-    const { paper, scalars } = this.header;
-    const repeat = paper?.repeat ?? [false, false];
+    const { image, scalars } = this.header;
     const steps = String(this.scalarParts(before, after));
     if (steps !== this.scalarSteps) this.drop("scalar");
     this.scalarSteps = steps;
     this.dropSlices(before, after);
     this.bind("u_slices", this.slices(before));
     this.bind("u_slicesNext", after === before ? null : this.slices(after));
-    this.bind("u_noiseImage", paper && this.image("noise", paper.picture ? [true, true] : repeat));
-    this.bind("u_stepImage", paper && this.image("step", repeat));
+    this.bind("u_image", image && this.image("image", [true, true]));
+    this.bind("u_stepImage", image && this.image("step", image.repeat));
     const colours = texelsOf(this.parts.get("cmap")?.data ?? new Uint8Array(4), scalars);
     this.bind("u_cmap", this.table("cmap", this.key(["cmap"], scalars.beyond), gl.RGBA32F, colours.length / 4, () => colours));
     const [key, values] = this.shares(before, after);
     this.bind("u_shares", scalars.name === null ? null : this.table("scalar", key, gl.RG32F, this.nodesSize[1], values));
-    const along = () => alongAxes(paper?.alongI ?? [], paper?.alongJ ?? []);
-    this.bind("u_along", paper && this.table("along", "", gl.RG32F, Math.max(paper.alongI.length, paper.alongJ.length), along));
+    const along = () => alongAxes(image?.alongI ?? [], image?.alongJ ?? []);
+    this.bind("u_along", image && this.table("along", "", gl.RG32F, Math.max(image.alongI.length, image.alongJ.length), along));
   }
 }
 

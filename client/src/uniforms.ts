@@ -1,7 +1,7 @@
 // The uniforms of the shaders, by name, as flowtex/rendering/uniforms.py computes them; one
 // fixture holds both to the same values. They depend on the view, so all is in double precision.
 
-import { isSignFree, type Header, type Paper, type Settings } from "./protocol.ts";
+import { isSignFree, type Header, type ImageTextures, type Settings } from "./protocol.ts";
 import { clamp, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
 export type Uniform = boolean | number | readonly number[] | Float32Array;
@@ -22,18 +22,13 @@ export interface ViewState {
 }
 
 /** The table's settings with the types that they have there. */
-type Numbers = Record<"kernel" | "texture" | "noise" | "motion" | "speed_in", string> &
+type Numbers = Record<"kernel" | "texture" | "motion" | "speed_in", string> &
   Record<"two_sided" | "lod" | "fixed_grain" | "show_level", boolean> &
   Record<"samples" | "spacing" | "grain" | "contrast" | "strength" | "fade" | "seed", number> &
   Record<"tiles" | "resolution" | "speed" | "period", number>;
 
-/** Uniforms of shaders/common/uniforms.glsl; `noiseShape` is that of the noise's part. */
-export function uniforms(
-  header: Header,
-  settings: Settings,
-  view: ViewState,
-  noiseShape: readonly number[] | null = null,
-): Record<string, Uniform> {
+/** Uniforms of shaders/common/uniforms.glsl. */
+export function uniforms(header: Header, settings: Settings, view: ViewState): Record<string, Uniform> {
   const { geometry, slices, constants } = header;
   const s = settings as unknown as Numbers;
   const signFree = isSignFree(header);
@@ -73,24 +68,24 @@ export function uniforms(
     u_bySpeed: settings.arrow_length === "speed",
     u_arrowSides: slices.sides,
     u_pieces: constants.arrows.pieces,
-    ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
+    ...(header.image ? imageUniforms(header.image, s.tiles, view.density) : {}),
   };
 }
 
 /** Whether the grains change in time, which is a variant of the shader. */
 export function isMoving(header: Header, settings: Settings, still = false): boolean {
   const streams = settings.motion !== "off" && !isSignFree(header);
-  return !header.paper && (streams || (header.slices.steps > 1 && !still));
+  return !header.image && (streams || (header.slices.steps > 1 && !still));
 }
 
 /** Whether the texture is one of streaklets, which is a variant too. */
 export function isSparse(header: Header, settings: Settings): boolean {
-  return !header.paper && settings.texture === "streaklets";
+  return !header.image && settings.texture === "streaklets";
 }
 
-/** Whether arrows are drawn: a sign-free field has none, nor has a noise texture. */
+/** Whether arrows are drawn: a sign-free field has none, nor has an image. */
 export function hasArrows(header: Header, settings: Settings): boolean {
-  return Number(settings.arrows) > 0 && !isSignFree(header) && !header.paper;
+  return Number(settings.arrows) > 0 && !isSignFree(header) && !header.image;
 }
 
 /** Pixels of the page from an arrow to the next at least. */
@@ -161,21 +156,12 @@ function noiseOrigin(header: Header, view: ViewState, finest: number): Record<st
   };
 }
 
-/**
- * Sizes of the noise texture, or of the picture that lies in its place: what is drawn more densely
- * takes its level from so many times more texels.
- */
-function paperUniforms(paper: Paper, s: Numbers, noiseShape: readonly number[], density: number) {
-  const tiles = s.noise === "image" ? s.tiles : 1;
-  const [rows, columns] = noiseShape;
+/** Sizes of an image: what is drawn more densely takes its level from so many times more texels. */
+function imageUniforms({ size, stepSize, repeat }: ImageTextures, tiles: number, density: number) {
   return {
-    u_noiseSize: paper.size.map((n) => n * density),
-    u_noiseGrain: paper.grain,
-    u_noiseDeviation: paper.deviations,
-    u_noiseCorrected: paper.corrected,
-    u_pictureSize: [columns * density * tiles, rows * density * tiles],
-    u_pictureRound: [Number(paper.repeat[1]), Number(paper.repeat[0])],
-    u_pictureGrey: noiseShape.length === 2,
+    u_stepSize: stepSize.map((n) => n * density),
+    u_imageSize: size.map((n) => n * density * tiles),
+    u_imageRound: [Number(repeat[1]), Number(repeat[0])],
     u_tiles: tiles,
   };
 }

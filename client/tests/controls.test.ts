@@ -53,7 +53,7 @@ function sheetOf(table: Row[], rebuild?: boolean) {
   const choose = (name: string, value: Value) => void chosen.push([name, value]);
   const sheet: Sheet = new Controls({ lifetime, options: { rebuild }, settings, choose } satisfies ControlsHost);
   const slices = { sides: 1, steps: 1 };
-  sheet.build({ table, variant: [], paper: null, slices, settings: {} } as unknown as Header);
+  sheet.build({ table, variant: [], image: null, slices, settings: {} } as unknown as Header);
   const rows = (sheet.element as unknown as MadeElement).children as MadeElement[];
   const inputs = rows.map(({ children }) => children[children.length - 1] as MadeElement);
   return { chosen, settings, lifetime, sheet, rows, inputs };
@@ -100,7 +100,7 @@ test("what has to be traced anew waits until the hand lets go", () => {
 
 test("a sheet that is built again has nothing of the one before", () => {
   const { sheet, settings, chosen, inputs, lifetime } = sheetOf([row("grain")]);
-  sheet.build({ table: [row("noise", { affects: "shader" })], variant: [], paper: null } as unknown as Header);
+  sheet.build({ table: [row("noise", { affects: "shader" })], variant: [], image: null } as unknown as Header);
   assert.equal((sheet.element as unknown as MadeElement).children.length, 0);
   settings.grain = 0.5;
   sheet.update();
@@ -111,30 +111,23 @@ test("a sheet that is built again has nothing of the one before", () => {
 });
 
 test("a setting is offered where it changes the picture", () => {
-  const of = (paper: object | null, noise: string, steps = 1, lines = "") =>
-    ({ variant: [], paper, slices: { sides: 2, steps }, settings: { noise, lines } }) as unknown as Header;
-  const [whole, image, paper] = [of(null, "spots"), of({ picture: true }, "image"), of({ picture: false }, "spots")];
+  const of = (image: object | null, steps = 1, lines = "") =>
+    ({ variant: [], image, slices: { sides: 2, steps }, settings: { lines } }) as unknown as Header;
+  const [whole, image] = [of(null), of({})];
   const cases: [name: string, header: Header, rebuild: boolean, useful: boolean][] = [
     ["grain", whole, false, true],
-    ["fixed_grain", paper, true, false],
+    ["fixed_grain", image, true, false],
     ["two_sided", whole, false, true],
     ["seed", whole, false, true],
-    ["seed", paper, false, false],
-    ["seed", paper, true, true],
     ["seed", image, true, false],
-    ["resolution", paper, false, false],
-    ["resolution", paper, true, true],
+    ["resolution", image, true, false],
     ["tiles", whole, true, false],
     ["tiles", image, false, true],
-    ["tiles", of({ picture: true }, "spots"), false, false],
-    ["tiles", of({ picture: true }, "spots"), true, true],
-    ["noise_correction", paper, true, true],
-    ["noise_correction", whole, true, false],
-    ["lines", of(null, "", 3), true, true],
+    ["lines", of(null, 3), true, true],
     ["lines", whole, true, false],
     ["parameter", whole, true, true],
-    ["parameter", of(null, "", 3, "pathlines"), true, false],
-    ["parameter", of(null, "", 3), true, true],
+    ["parameter", of(null, 3, "pathlines"), true, false],
+    ["parameter", of(null, 3), true, true],
     ["show_level", whole, true, false],
   ];
   for (const [name, header, rebuild, useful] of cases) {

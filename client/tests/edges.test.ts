@@ -124,7 +124,7 @@ function placed(speed: number, more: object = {}, flip: number[] = []): PathPlac
     slices: { lags, sides: 2, channels: 4, extra: [], unit: 0.1, cell: 0.5 },
     speed: { typical: 1 },
     variant: flip.length ? ["FLOWTEX_SIGNFREE"] : [],
-    paper: null,
+    image: null,
     ...more,
   };
   const parts: Record<string, { data: ArrayLike<number> }> = {
@@ -171,21 +171,20 @@ test("without a sign nodes that point the other way are turned", () => {
   assertClose(turned.sampled, straight.sampled, 1e-6);
 });
 
-const paper = { alongI: [0, 1], alongJ: [0, 1], size: [10, 10], grain: 0.5 };
+const image = { alongI: [0, 1], alongJ: [0, 1], stepSize: [20, 20] };
 
-test("beyond the border of the noise there is no place", () => {
-  const moved = mover(placed(1, { paper }));
+test("beyond the border of an image there is no place", () => {
+  const moved = mover(placed(1, { image }));
   assertClose(moved([0.25, 0, 0]), [0.75, 0.5, 0], 1e-6);
   assertClose(moved([-0.5, 0, 0]), [0, 0.5, 0], 1e-6);
   assert.equal(moved([0.75, 0, 0]), null);
   assert.equal(moved([0, -0.75, 0]), null);
 });
 
-test("a grain is as long as a pixel or a texel of the noise", () => {
+test("a grain is as long as a pixel or a texel of the image's steps", () => {
   const grain = (more: object, lines = {}) => grainAt(placed(1, lines), { ...settings, ...more }, above, 100);
   assertClose(grain({}), 0.02);
   assertClose(grain({ lod: false }), 0.01);
   assertClose(grain({ fixed_grain: true, resolution: 10 }), 0.1);
-  // Texels are a tenth of the square, and pixels a hundredth.
-  assertClose([grain({}, { paper }), grain({ lod: false }, { paper })], [0.05, 0.05]);
+  assertClose([grain({}, { image }), grain({ lod: false }, { image })], [0.05, 0.05]);
 });

@@ -8,7 +8,6 @@ import { assertClose } from "./close.ts";
 interface Case {
   header: Header;
   view: ViewState;
-  noise: number[] | null;
   moving: boolean;
   near: boolean;
   uniforms: Record<string, Uniform>;
@@ -18,18 +17,18 @@ interface Case {
 const file = new URL("uniforms.json", import.meta.url);
 const cases: Record<string, Case> = JSON.parse(readFileSync(file, "utf8"));
 
-for (const [name, { header, view, noise, moving, near, uniforms: expected }] of Object.entries(cases)) {
+for (const [name, { header, view, moving, near, uniforms: expected }] of Object.entries(cases)) {
   test(`uniforms are those of Python: ${name}`, () => {
-    assertClose(uniforms(header, header.settings, view, noise), expected, 1e-12);
+    assertClose(uniforms(header, header.settings, view), expected, 1e-12);
     assert.equal(isMoving(header, header.settings), moving);
     assert.equal(isNear(header, header.settings, view), near);
   });
 }
 
-test("the paper's noise takes its level from as many more texels as pixels are drawn", () => {
-  const { header, view, noise } = cases["finer paper"];
+test("an image takes its level from as many more texels as pixels are drawn", () => {
+  const { header, view } = cases["finer image"];
   const sizeAt = (density: number) =>
-    uniforms(header, header.settings, { ...view, density }, noise).u_noiseSize as number[];
+    uniforms(header, header.settings, { ...view, density }).u_imageSize as number[];
   assert.deepEqual(
     sizeAt(2),
     sizeAt(1).map((n) => 2 * n),

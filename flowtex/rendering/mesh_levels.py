@@ -382,6 +382,6 @@ def mesh_levels_of(textures: TextureSet) -> MeshLevels | TriangleBlocks:
     geometry = textures.geometry
     if isinstance(geometry, TriangleGeometry):
         return TriangleBlocks(geometry)
-    # A noise that lies on the nodes moves with them; any other is looked up between them.
-    shares = (PLACED_SHARE, HEIGHT_SHARE) if textures.paper is None else (1.0, 1.0)
+    # An image lies on the nodes and moves with them; noise is looked up between them.
+    shares = (PLACED_SHARE, HEIGHT_SHARE) if textures.image is None else (1.0, 1.0)
     return MeshLevels(geometry.points, geometry.cells, geometry.periodic, *shares)

@@ -17,7 +17,7 @@ from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
-from flowtex.textures.paper import PaperTextures
+from flowtex.textures.images import ImageTextures
 from flowtex.textures.texture_set import TextureSet
 
 #: Uniforms by name: bool, int, float, tuples of float, or lists for arrays.
@@ -78,13 +78,12 @@ def variants(
     The grains may change in time and be sparse, and the view may be so near that paths stay in
     their cells.
     """
-    paper, flow = textures.paper, textures.geometry.field
+    flow = textures.geometry.field
     conditions = {
         "FLOWTEX_SPARSE": sparse,
         "FLOWTEX_MOVING": moving,
         "FLOWTEX_CELLS": near,
-        "FLOWTEX_PAPER": paper is not None,
-        "FLOWTEX_PICTURE": paper is not None and paper.picture,
+        "FLOWTEX_IMAGE": textures.image is not None,
         "FLOWTEX_PLANAR": textures.geometry.planar,
         "FLOWTEX_SIGNFREE": flow.sign_free,
         "FLOWTEX_TRIANGLES": flow.triangles is not None,
@@ -170,31 +169,31 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_arrowSides": textures.sides,
         "u_pieces": ARROW_PIECES,
     }
-    if textures.paper is not None:
-        values |= _paper(textures.paper, settings, view.density)
+    if textures.image is not None:
+        values |= _image(textures.image, settings, view.density)
     return values
 
 
 def is_moving(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
     """Return whether the grains change in time: with a field that varies, or by the clock.
 
-    A sign-free field has no forward, so nothing streams; the paper's textures stand still.
+    A sign-free field has no forward, so nothing streams; images stand still.
     """
-    if textures.paper is not None:
+    if textures.image is not None:
         return False
     streams = settings.motion != "off" and not textures.geometry.field.sign_free
     return streams or (textures.store.steps > 1 and not view.still)
 
 
 def is_sparse(textures: TextureSet, settings: Settings) -> bool:
-    """Return whether the texture consists of streaklets, which a noise texture cannot."""
-    return settings.texture == "streaklets" and textures.paper is None
+    """Return whether the texture consists of streaklets, which an image cannot."""
+    return settings.texture == "streaklets" and textures.image is None
 
 
 def has_arrows(textures: TextureSet, settings: Settings) -> bool:
-    """Return whether arrows are drawn, which sign-free fields and noise textures lack."""
+    """Return whether arrows are drawn, which sign-free fields and images lack."""
     signed = not textures.geometry.field.sign_free
-    return settings.arrows > 0 and signed and textures.paper is None
+    return settings.arrows > 0 and signed and textures.image is None
 
 
 def arrow_distance(settings: Settings) -> float:
@@ -282,18 +281,13 @@ def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
     }
 
 
-def _paper(paper: PaperTextures, settings: Settings, density: float) -> Values:
-    """Return sizes of the noise texture or picture, which grow with the density of pixels."""
-    height, width = (n * density for n in paper.step.shape)
-    rows, columns = (n * density for n in paper.noise.shape[:2])
-    tiles = settings.tiles if settings.noise == "image" else 1
+def _image(image: ImageTextures, settings: Settings, density: float) -> Values:
+    """Return sizes of the image and of the step texture, which grow with the density of pixels."""
+    height, width = (n * density for n in image.step.shape)
+    rows, columns = (n * density * settings.tiles for n in image.texels.shape[:2])
     return {
-        "u_noiseSize": (float(width), float(height)),
-        "u_noiseGrain": paper.grain,
-        "u_noiseDeviation": paper.deviations,
-        "u_noiseCorrected": paper.corrected,
-        "u_pictureSize": (float(columns * tiles), float(rows * tiles)),
-        "u_pictureRound": (float(paper.repeat[1]), float(paper.repeat[0])),
-        "u_pictureGrey": paper.noise.ndim == 2,
-        "u_tiles": float(tiles),
+        "u_stepSize": (float(width), float(height)),
+        "u_imageSize": (float(columns), float(rows)),
+        "u_imageRound": (float(image.repeat[1]), float(image.repeat[0])),
+        "u_tiles": float(settings.tiles),
     }

@@ -82,11 +82,11 @@ class Probe:
         Noise at each sample, (K,), with mean 0 and standard deviation 1; for an image instead of
         noise, red, green and blue times opacity, and opacity, (K, 4).
     noise_coordinates
-        Positions of the samples in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
-        for procedural noise.
+        Positions of the samples in an image instead of noise, (K, 2) as (u, v), 0 to 1 across it;
+        ``None`` for noise.
     level
-        Level of detail; each level is twice as coarse as the previous one. For a noise texture, its
-        mip level.
+        Level of detail; each level is twice as coarse as the previous one. For an image, its mip
+        level.
     pixel
         Longer side of the area of a pixel on the surface, in the mesh's units.
     grain
@@ -234,8 +234,8 @@ class _Pixel:
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
         self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
-        paper = textures.paper is not None
-        self._summing = Summing(self._slices, values, self._lookup, paper=paper)
+        by_lag = textures.image is not None
+        self._summing = Summing(self._slices, values, self._lookup, by_lag=by_lag)
         self._base = self._slices.layer(fragments.place, 0, self._level)
         #: One unit of lag at the fragment.
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
@@ -310,32 +310,32 @@ class _Pixel:
     def _places(
         self, displacement: Floats, *, coordinates: bool = True
     ) -> tuple[Floats, Floats, Floats | None]:
-        """Return points, coordinates as (j, i), and noise coordinates of displacements (N, 3)."""
-        geometry, paper = self._textures.geometry, self._textures.paper
-        noise = self._fragments.noise
+        """Return points, coordinates as (j, i), and image coordinates of displacements (N, 3)."""
+        geometry, image = self._textures.geometry, self._textures.image
+        place = self._fragments.image
         # Relative to the place in double precision, as renderers have the nodes in single.
         start, surface = self._field_values.position, geometry.field.surface
-        if paper is None or noise is None:
+        if image is None or place is None:
             points = start + displacement @ geometry.frame
             nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
             return points, nearest, None
-        coordinate = noise.value + displacement[:, :2]
-        first, index = (paper.index(places) for places in (noise.value, coordinate))
+        coordinate = place.value + displacement[:, :2]
+        first, index = (image.index(places) for places in (place.value, coordinate))
         points = start + surface.at(index) - surface.at(first)
         return points, surface.wrap(index)[:, ::-1], coordinate
 
     def _sizes(self) -> tuple[float, float]:
         """Return the longer side of the pixel, and the size of a grain."""
-        values, paper, noise = self._values, self._textures.paper, self._fragments.noise
+        values, image, textures = self._values, self._fragments.image, self._textures.image
         position = self._fragments.position
         sides = [float(side[0]) for side in footprint(position.dx, position.dy)]
         width = 2.0 ** float(self._lookup.level[0])
-        if paper is None or noise is None:
+        if image is None or textures is None:
             return sides[0], width * values["u_texel"]
-        size = np.array(paper.noise.shape[1::-1]) * (values["u_tiles"] if paper.picture else 1)
-        texels = [float(side[0]) for side in footprint(noise.dx * size, noise.dy * size)]
+        size = np.array(textures.texels.shape[1::-1]) * values["u_tiles"]
+        texels = [float(side[0]) for side in footprint(image.dx * size, image.dy * size)]
         texel = np.sqrt(sides[0] * sides[1] / max(texels[0] * texels[1], 1e-30))
-        return sides[0], float(width * paper.grain * texel)
+        return sides[0], float(width * texel)
 
 
 def cover_place(

@@ -55,9 +55,6 @@ __all__ = ["NO_IMAGE", "Change", "Scene", "TracedFlow", "follow", "lay_image", "
 Change = Affects | Literal["appearance"]
 Notice = Callable[[Change], None]
 
-#: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
-SETTINGS_IN_TEXTURES = {"seed": ("texture",), "tiles": (), "resolution": ("texture", "image")}
-
 #: Memory of a field with what is derived of it, over that of its arrays.
 DERIVED_FACTOR = 4
 
@@ -251,7 +248,8 @@ class Scene:
         """The texture set for the current settings."""
         textures, version = self._textures, self._version
         if textures is None:
-            textures = _shared_textures(self.store, self.settings.copy(), self.image, self.pyramid)
+            image = self.image if self.settings.noise == "image" else None
+            textures = _shared_textures(self.store, image, self.pyramid)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
@@ -479,9 +477,6 @@ class Scene:
                 raise
             self._noise = value
         affects = TABLE[name].affects
-        if name in SETTINGS_IN_TEXTURES:
-            in_textures = self.settings.noise in SETTINGS_IN_TEXTURES[name]
-            affects = "textures" if in_textures else "uniform"
         if affects == "trace":
             self._store = self._pyramid = None
             self._sliced = False
@@ -571,15 +566,11 @@ class TracedFlow:
 
 
 def _shared_textures(
-    store: SliceStore, settings: Settings, image: Floats32 | None, pyramid: Pyramid | None
+    store: SliceStore, image: Floats32 | None, pyramid: Pyramid | None
 ) -> TextureSet:
-    """Return :meth:`TextureSet.build` of a store and settings, cached."""
+    """Return :meth:`TextureSet.build` of a store, cached."""
     # Textures keep their store alive, so its id is unique while they live.
-    key: tuple[object, ...] = (id(store),)
-    if settings.noise != "procedural":
-        names = "noise", "resolution", "noise_correction", "seed", "tiles"
-        key += tuple(getattr(settings, name) for name in names)
-        key += () if image is None or settings.noise != "image" else (digest(image),)
+    key = (id(store), None if image is None else digest(image))
     if pyramid is not None:
         return _textures.get(key, lambda: pyramid.root_textures(store))
-    return _textures.get(key, lambda: TextureSet.build(store, settings, image))
+    return _textures.get(key, lambda: TextureSet.build(store, image))

@@ -1,20 +1,30 @@
-"""A user's image as texels that a shader can average: colour times opacity, and opacity.
+"""A user's image in place of the noise, and the step size of the paths through it.
 
-Averages of colours that were multiplied by their opacity keep the colour of a transparent pixel out
-of its neighbours, so dye has clean edges at every level of detail. Files are PNG, JPEG and all
-others that Pillow, which comes with PyVista, can read.
+Texels are colours times opacity, and opacity. Averages of colours that were multiplied by their
+opacity keep the colour of a transparent pixel out of its neighbours, so dye has clean edges at
+every level of detail. Files are PNG, JPEG and all others that Pillow, which comes with PyVista, can
+read.
+
+The image lies on the parameters of the surface; its coordinates grow with the mean length of the
+grid lines. The step texture holds, for every texel, the lag in which the flow crosses it. Level n
+of it counts 2^n times as much, because its texels are twice as wide at every level.
 """
 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bytes, Floats32
+from flowtex._util.array_types import AnyArray, Bytes, Floats, Floats32
+from flowtex.field import FlowField
+from flowtex.field.interpolation import along_line, between_nodes, fill_blanked, inverse_along_line
 from flowtex.settings import SettingsError
+from flowtex.trace.store import SliceStore
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -23,6 +33,11 @@ if TYPE_CHECKING:
 LARGEST = 4096
 #: Rounding by which a float may lie outside 0 to 1.
 SLACK = 1e-3
+
+#: Longest step in units of lag: half precision ends soon after.
+LONGEST_STEP = 6e4
+#: Texels of the step texture along the longer side of the surface.
+STEP_TEXELS = 1024
 
 SHAPES = "(H, W) for grey, (H, W, 3) for colours, or (H, W, 4) with opacity"
 
@@ -159,3 +174,104 @@ def pixels_of(picture: Image) -> AnyArray:
         return np.asarray(picture)
     see_through = "A" in picture.getbands() or "transparency" in picture.info
     return np.asarray(picture.convert("RGBA" if see_through else "RGB"))
+
+
+@dataclass(frozen=True, eq=False)
+class ImageTextures:
+    """An image over the parameters of a surface, and the step size with it."""
+
+    #: Texels as from :func:`as_picture`, (H, W, 4), or grey, (H, W); row 0 is at j = 0.
+    texels: Floats32
+    #: Lag in which the flow crosses a texel of this texture, in multiples of the unit of lag.
+    step: Floats32
+    along_i: Floats  #: Image coordinates of the lines of nodes, (I,) and (J,), from 0 to 1.
+    along_j: Floats
+    repeat: tuple[bool, bool]  #: Whether the surface goes around along (v, u).
+
+    @classmethod
+    def build(cls, store: SliceStore, texels: Floats32, size: int = STEP_TEXELS) -> ImageTextures:
+        """Lay an image on the surface of a flow, with a step texture of a size."""
+        field = store.field
+        along_i, along_j = lines = coordinates(field)
+        step = steps_of(store, *texel_places(field, lines, size))
+        return cls(texels, step, along_i, along_j, field.periodic)
+
+    @property
+    def coordinate(self) -> Floats32:
+        """Image coordinates of the nodes, (J, I, 2)."""
+        return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)
+
+    def at(self, index: Floats) -> Floats:
+        """Return image coordinates of positions in index space, (..., 2), linear beyond ends."""
+        return self._by_axis(along_line, index)
+
+    def index(self, coordinate: Floats) -> Floats:
+        """Return positions in index space of image coordinates, (..., 2), inverse to :meth:`at`."""
+        return self._by_axis(inverse_along_line, coordinate)
+
+    def _by_axis(self, function: Callable[..., Floats], places: Floats) -> Floats:
+        i = function(self.along_i, places[..., 0], periodic=self.repeat[1])
+        j = function(self.along_j, places[..., 1], periodic=self.repeat[0])
+        return np.stack([i, j], axis=-1)
+
+    def by_cell(self) -> Floats:
+        """Return derivatives of the image coordinates by index at the nodes, (J, I, 2)."""
+        slopes = [np.gradient(line) for line in (self.along_i, self.along_j)]
+        return np.stack(np.meshgrid(*slopes), axis=-1)
+
+
+def coordinates(field: FlowField, *, even: bool = True) -> tuple[Floats, Floats]:
+    """Return the image coordinate of each line of nodes along i and along j.
+
+    It grows with the mean length of the lines, or with their number where it is not ``even``.
+    """
+    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
+    lines = []
+    for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
+        steps = (lengths[1:] + lengths[:-1]) / 2
+        if not (even and steps.any()):
+            steps = np.ones(len(steps))
+        ends = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-9 * steps.max()))])
+        lines.append(ends / ends[-1])
+    return lines[0], lines[1]
+
+
+def texel_places(
+    field: FlowField, lines: tuple[Floats, Floats], size: int
+) -> tuple[Floats, Floats]:
+    """Return positions in index space and sizes in cells, (H, W, 2), of texels over a surface.
+
+    There are ``size`` along its longer side, and powers of two in about its proportion.
+    """
+    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
+    lengths = [t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)]
+    shares = np.maximum(lengths / np.max(lengths), 1 / 8) * size
+    counts = [int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares]
+    middles = [
+        np.interp((np.arange(count) + 0.5) / count, line, np.arange(len(line)))
+        for line, count in zip(lines, counts, strict=True)
+    ]
+    index = np.stack(np.meshgrid(*middles), axis=-1)
+    cells = np.empty_like(index)
+    for axis, (line, count) in enumerate(zip(lines, counts, strict=True)):
+        cell = np.clip(index[..., axis].astype(np.intp), 0, len(line) - 2)
+        cells[..., axis] = 1 / (np.diff(line)[cell] * count)
+    return index, cells
+
+
+def steps_of(store: SliceStore, index: Floats, texel: Floats) -> Floats32:
+    """Return the lag in which the flow crosses texels of a size in cells (equation 3)."""
+    field = store.field
+    speed = np.abs(field.index_velocity.components).max(axis=0)
+    if store.parameter == "arclength":
+        # Cells crossed in a unit of length; nodes at rest take that of the nearest one.
+        pace = field.index_velocity.speed[0]
+        moving = field.valid & (pace > 1e-7 * pace.max())
+        by_length = speed / np.where(moving, pace, 1.0)[..., None]
+        speed = fill_blanked(by_length, moving) if moving.any() else np.zeros_like(speed)
+    speed = speed * store.unit[..., None]
+    crossed = (
+        np.stack([between_nodes(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
+    )
+    steps = 1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1]))
+    return np.asarray(np.minimum(steps, LONGEST_STEP), np.float32)

@@ -18,7 +18,7 @@ The fourth channels of layers 3 and M + 3 hold the uncertainty of the direction,
 field has one.
 A surface of triangles has no cells that are counted: the first channels of its last layer are not
 read. Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
-procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
+procedural noise; in image coordinates per unit of lag for an image in its place.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
-from flowtex.settings import Settings, SettingsError
+from flowtex.settings import SettingsError
 from flowtex.textures.geometry import SurfaceGeometry
-from flowtex.textures.paper import PaperTextures
+from flowtex.textures.images import ImageTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.slices import TraceSlices, typical_speed
 from flowtex.trace.store import SliceStore
@@ -63,28 +63,23 @@ AGREED = 0.99
 class TextureSet:
     """The data of a flow that a renderer needs, beside the settings.
 
-    Slopes are in noise coordinates with ``paper``, the noise texture and the step texture, and in
-    space otherwise.
+    Slopes are in image coordinates with an ``image``, and in space otherwise.
     """
 
     geometry: SurfaceGeometry | TriangleGeometry
     store: SliceStore
-    paper: PaperTextures | None = None
+    image: ImageTextures | None = None
     #: In a tile, the typical speed of the whole flow, and how long its paths have to be.
     whole_speed: float | None = None
     longest: float = np.inf
 
     @classmethod
-    def build(
-        cls,
-        store: SliceStore,
-        settings: Settings,
-        image: Floats32 | None = None,
-        geometry: SurfaceGeometry | TriangleGeometry | None = None,
-    ) -> TextureSet:
-        """Make the textures that the settings ask for; a FieldError where slices do not fit."""
+    def build(cls, store: SliceStore, image: Floats32 | None = None) -> TextureSet:
+        """Make the textures, with an image in place of the noise or without.
+
+        Raises a FieldError where slices do not fit.
+        """
         field = store.field
-        check_noise(field, settings.noise)
         if store.unit.shape != field.shape:
             raise FieldError(
                 f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
@@ -95,25 +90,21 @@ class TextureSet:
             raise FieldError(
                 f"{len(store.lags)} lags were traced; drawing needs {least} to {MOST_LAGS}"
             )
-        if geometry is None:
-            kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
-            geometry = kind.of(field)
-        if settings.noise == "procedural":
-            return cls(geometry, store)
-        return cls(geometry, store, PaperTextures.build(store, settings, image))
+        kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
+        textures = cls(kind.of(field), store)
+        if image is None:
+            return textures
+        check_noise(field, "image")
+        return replace(textures, image=ImageTextures.build(store, image))
 
     def with_image(self, image: Floats32) -> TextureSet:
-        """Return the same with another picture in place of the noise texture."""
-        if self.paper is None:
-            raise FieldError(
-                "an image replaces a noise texture, but this texture set has none; expected "
-                "noise='image'"
-            )
-        return replace(self, paper=self.paper.with_image(image))
+        """Return the same with another image."""
+        assert self.image is not None
+        return replace(self, image=replace(self.image, texels=image))
 
     def same_paths(self, other: TextureSet) -> bool:
-        """Return whether only the image instead of the noise differs."""
-        steps = [None if t.paper is None else t.paper.step for t in (self, other)]
+        """Return whether only the image differs."""
+        steps = [None if t.image is None else t.image.step for t in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property
@@ -156,7 +147,7 @@ class TextureSet:
     def in_cells(self) -> bool:
         """Whether the last layer holds the velocity in cells."""
         has_direction = self.store.streamlines and not self.geometry.field.sign_free
-        return has_direction and self.paper is None
+        return has_direction and self.image is None
 
     @cached_property
     def least_unit(self) -> float:
@@ -237,8 +228,8 @@ class TextureSet:
         if side and slices.forward is not None and slices.forward_reach is not None:
             sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
         scale = sign / float(slices.lags[m])
-        if self.paper is not None:
-            moved = self.paper.at(slices.nodes + displacement[0, m]) - self.paper.coordinate
+        if self.image is not None:
+            moved = self.image.at(slices.nodes + displacement[0, m]) - self.image.coordinate
             result[..., :2] = moved * scale
         else:
             by_length = np.float32(scale) / self._length[..., 0]
@@ -268,8 +259,8 @@ class TextureSet:
     def _tangent(self, slices: TraceSlices) -> AnyArray:
         """Return slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
         rate, texels = slices.rate[0], self.geometry.texels
-        if self.paper is not None:
-            return three_components(rate * self.paper.by_cell())
+        if self.image is not None:
+            return three_components(rate * self.image.by_cell())
         surface = self.geometry.field.surface
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j

@@ -18,7 +18,7 @@ class TexelDensity:
     texels
         Texels per cell of the mesh: one number, a pair for i and j, or (J, I, 2) at the entries
         of the slices. For a noise texture, its texels over the cells that it covers:
-        ``textures.paper.by_cell() * [width, height]`` where cells differ. For noise in space,
+        ``textures.image.by_cell() * [width, height]`` where cells differ. For noise in space,
         the lengths of the cells along both axes over the grain.
     slices
         The slices whose errors are to be judged.

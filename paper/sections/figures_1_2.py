@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex._util.arrays import block_means
-from flowtex.field import FlowField
-from flowtex.scene.probe import Probe, probe
-from flowtex.scene.scene import Scene
+from flowtex.field.interpolation import bracket
+from flowtex.field.locate import surface_point
+from flowtex.rendering.cpu.fragments import Fragments, slice_level
+from flowtex.rendering.cpu.render import slices_at, view_state
+from flowtex.rendering.cpu.texture import Summing
+from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.scene.probe import Recorder, camera_facing, cover_place
 from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Plot, Section, Table
+from paper.findings import Claim, Finding, Plot, Section, Table
+from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
 
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
@@ -103,50 +108,83 @@ def _say(axes: Any, m: int, position: Floats, level: float) -> None:
     axes.annotate(what, at - [0.78, 0.09], color=SOFT, fontsize=9.5, annotation_clip=False)
 
 
-def _probed(bench: Bench) -> tuple[Scene, Probe]:
-    field: FlowField = bench.gyre
-    settings = bench.settings(**PAPER, resolution=RESOLUTION)
-    view = Scene(field, settings)
-    pixel = TEXELS_PER_PIXEL * field.surface.extent / RESOLUTION
-    return view, probe(view, FIGURE2_POINT, pixel=pixel)
+class _Looked(NamedTuple):
+    """What a fragment looks up, by contribution from the nearest to the farthest."""
+
+    level: float  #: Of the noise, and of the slices.
+    slice_level: float
+    lags: Floats
+    slices: Indices  #: Numbers of the slices on both sides of each, (K, 2).
+    shares: Floats  #: How far each is from the first of them to the second.
+    positions: Floats  #: Where each is, (K, 2) as (i, j), and in texels of the level.
+    texels: Floats
+    noise: Floats
+    weights: Floats
+    gain: float
+    value: float
+
+
+def _looked(bench: Bench) -> tuple[_Looked, Floats]:
+    """Return the look-ups of the point of figure 2, and the level of the noise that they are of."""
+    asked: dict[str, Any] = {**PAPER, "resolution": RESOLUTION}
+    field = bench.gyre
+    textures, surface = bench.textures(field, **asked), field.surface
+    noise = textures.image
+    assert isinstance(noise, NoiseTextures)
+    place = surface_point(surface, FIGURE2_POINT)
+    camera = camera_facing(surface, place, TEXELS_PER_PIXEL * surface.extent / RESOLUTION)
+    state = view_state(textures, camera, ViewState(still=True), (0, 0))
+    values = uniforms(textures, bench.settings(**asked), state)
+    fragments = Fragments.of(textures, cover_place(surface, place, camera, (1, 1)))
+    slice_mip = slice_level(fragments.coordinate, values)
+    lookup = NoiseLookup(fragments, values, NoiseImages(noise))
+    recorder = Recorder(lookup, values["u_samples"] + 2)
+    slices = slices_at(textures, (0, 0), values)
+    summing = Summing(slices, values, recorder, by_lag=True)
+    value = summing.texture(fragments.place, slice_mip, fragments.by)[0]
+    lags = -np.concatenate(recorder.length)
+    order = np.argsort(lags)
+    lags, knots = lags[order], np.concatenate([[0.0], values["u_lags"]])
+    first, shares = bracket(knots, lags, side="left")
+    coordinates = (lookup.start + np.concatenate(recorder.displacement)[:, :2])[order]
+    mip = round(float(lookup.level[0]))
+    level = np.asarray(block_means(noise.texels, 2**mip), float)
+    unit = float(slices.layer(fragments.place, 0, slice_mip)[0, 3]) * textures.unit / textures.pace
+    return _Looked(
+        level=float(lookup.level[0]),
+        slice_level=float(slice_mip[0]),
+        lags=lags * unit,
+        slices=np.stack([first, first + 1], axis=-1),
+        shares=shares,
+        positions=noise.index(coordinates),
+        texels=coordinates * level.shape[::-1] - 0.5,
+        noise=recorder.noise[order],
+        weights=recorder.weights[order],
+        gain=recorder.gain,
+        value=float(value),
+    ), level
 
 
 def _figure2(bench: Bench) -> Finding:
-    view, result = _probed(bench)
-    paper = view.textures.paper
-    if paper is None or result.noise_coordinates is None:
-        msg = "there is no noise texture; expected that of the paper's method"
-        raise ValueError(msg)
-    level, order = round(result.level), np.argsort(result.lags)
-    size = np.array(paper.noise.shape[::-1]) // 2**level
-    texels = (result.noise_coordinates * size - 0.5)[order]
-    numbers = {
-        "level": result.level,
-        "slice_level": result.slice_level,
-        "lags": result.lags[order],
-        "noise": result.noise[order],
-        "weights": result.weights[order],
-        "texels": texels,
-        "value": result.value,
-    }
-    plot = _lookups(_level(paper.noise, level), texels, result, order)
-    blocks: list[Block] = [plot, _rows(result, order, texels)]
-    return Finding(blocks, numbers, _claims(result, texels))
+    result, noise = _looked(bench)
+    names = ("level", "slice_level", "lags", "noise", "weights", "texels", "value")
+    numbers = {name: getattr(result, name) for name in names}
+    return Finding([_lookups(noise, result), _rows(result)], numbers, _claims(result))
 
 
-def _rows(result: Probe, order: Indices, texels: Floats) -> Table:
+def _rows(result: _Looked) -> Table:
     """Tell the look-ups of the pixel, from the nearest to the farthest."""
     rows = [
         (
-            number + 1,
+            k + 1,
             float(result.lags[k]),
             f"{result.slices[k, 0]} and {result.slices[k, 1]}",
             float(result.shares[k]),
-            "{:.2f}, {:.2f}".format(*result.coordinates[k][::-1]),
-            "{:.1f}, {:.1f}".format(*texels[number]),
+            "{:.2f}, {:.2f}".format(*result.positions[k]),
+            "{:.1f}, {:.1f}".format(*result.texels[k]),
             float(result.noise[k]),
         )
-        for number, k in enumerate(order)
+        for k in range(len(result.lags))
     ]
     head = ("contribution", "lag", "slices", "share of the later", "(a, b)", "texel", "noise")
     caption = (
@@ -156,15 +194,15 @@ def _rows(result: Probe, order: Indices, texels: Floats) -> Table:
     return Table(head, rows, caption)
 
 
-def _claims(result: Probe, texels: Floats) -> list[Claim]:
+def _claims(result: _Looked) -> list[Claim]:
     mean = float(np.sum(result.weights * result.noise) * result.gain)
-    ways = np.linalg.norm(np.diff(texels, axis=0), axis=1)
+    ways = np.linalg.norm(np.diff(result.texels, axis=0), axis=1)
     return [
         Claim(
             "figure2_value_is_the_mean",
             "Figure 2, equation 2: the pixel is the mean of the looked-up texels. Difference of "
             "both.",
-            abs(mean - float(np.asarray(result.value))),
+            abs(mean - result.value),
             1e-9,
             "at most",
         ),
@@ -180,12 +218,7 @@ def _claims(result: Probe, texels: Floats) -> list[Claim]:
     ]
 
 
-def _level(noise: Floats32, level: int) -> Floats:
-    """Mip level of a noise, (H, W)."""
-    return np.asarray(block_means(noise, 2**level), float)
-
-
-def _lookups(noise: Floats, texels: Floats, result: Probe, order: Indices) -> Plot:
+def _lookups(noise: Floats, result: _Looked) -> Plot:
     """Draw the path over the mesh, the texels in the noise, and the values that are averaged."""
     with plot_axes(
         "Figure 2: from a fragment to its colour. Left: the fragment (i, j) and the positions "
@@ -195,10 +228,9 @@ def _lookups(noise: Floats, texels: Floats, result: Probe, order: Indices) -> Pl
         columns=3,
         size=(10.4, 3.9),
     ) as figure:
-        positions = result.coordinates[order][:, ::-1]
-        _mesh(figure.axes[0], positions)
-        _noise(figure.axes[1], noise, texels)
-        _mean(figure.axes[2], result.noise[order], result)
+        _mesh(figure.axes[0], result.positions)
+        _noise(figure.axes[1], noise, result.texels)
+        _mean(figure.axes[2], result)
     return figure.plot
 
 
@@ -235,9 +267,9 @@ def _noise(axes: Any, noise: Floats, texels: Floats) -> None:
     axes.grid(visible=False)
 
 
-def _mean(axes: Any, noise: Floats, result: Probe) -> None:
-    at = np.arange(1, len(noise) + 1)
-    axes.bar(at, noise, color=COLOURS[0], width=0.7)
+def _mean(axes: Any, result: _Looked) -> None:
+    at = np.arange(1, len(result.noise) + 1)
+    axes.bar(at, result.noise, color=COLOURS[0], width=0.7)
     mean = float(np.sum(result.weights * result.noise))
     axes.axhline(mean, color=COLOURS[1], linewidth=2)
     axes.set_title(f"3  mean of equation 2: {mean:.2f}")
@@ -263,7 +295,7 @@ SECTIONS = [
         "A fragment looks up the slices at its own texture coordinates, and with what it finds "
         "there the noise; K such texels are averaged.",
         "One pixel of the gyre, by the paper's method with ten contributions: what it looked up, "
-        "written down by the renderer itself (flowtex.scene.probe).",
+        "written down by the renderer itself.",
         _figure2,
     ),
 ]

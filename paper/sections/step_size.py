@@ -9,12 +9,11 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.noise import PaperImages, PaperNoise
 from flowtex.rendering.cpu.texture import LookupMaker
-from flowtex.textures.paper import PaperTextures
 from paper import measures, quality
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
+from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures
 from paper.plots import Line, line_plot
 from paper.views import View, grey, view_of
 
@@ -27,31 +26,35 @@ SETTINGS: dict[str, Any] = {**PAPER, "resolution": RESOLUTION, "parameter": "tim
 SLOW_QUANTILE, FAST_QUANTILE = 0.25, 0.75
 
 
-class _FixedStep(PaperNoise):
+class _FixedStep(NoiseLookup):
     """The paper's noise with one step for all, at every place and every level."""
 
-    def __init__(self, step: float, noise: Any, images: PaperImages, values: Values) -> None:
-        super().__init__(noise, images, values)
+    def __init__(
+        self, step: float, fragments: Fragments, values: Values, images: NoiseImages
+    ) -> None:
+        super().__init__(fragments, values, images)
         self.spacing = np.full(len(self.spacing), step * values["u_spacing"])
 
 
-class _LocalStep(PaperNoise):
+class _LocalStep(NoiseLookup):
     """The paper's noise with a step for each place, which is not doubled with the level."""
 
-    def __init__(self, noise: Any, images: PaperImages, values: Values) -> None:
-        super().__init__(noise, images, values)
-        finest = images.step.at(self._start, np.zeros(len(self._start)))[:, 0]
+    def __init__(self, fragments: Fragments, values: Values, images: NoiseImages) -> None:
+        super().__init__(fragments, values, images)
+        finest = images.step.at(self.start, np.zeros(len(self.start)))[:, 0]
         self.spacing = finest * values["u_spacing"]
 
 
-def _lookups(paper: PaperTextures, step: float) -> dict[str, LookupMaker | None]:
-    images = PaperImages(paper)
+def _lookups(noise: NoiseTextures) -> dict[str, LookupMaker | None]:
+    images = NoiseImages(noise)
+    # The fixed step is right for the typical speed at the finest level.
+    step = float(np.median(noise.step))
 
-    def fixed(part: Fragments, values: Values) -> PaperNoise:
-        return _FixedStep(step, part.noise, images, values)
+    def fixed(part: Fragments, values: Values) -> NoiseLookup:
+        return _FixedStep(step, part, values, images)
 
-    def local(part: Fragments, values: Values) -> PaperNoise:
-        return _LocalStep(part.noise, images, values)
+    def local(part: Fragments, values: Values) -> NoiseLookup:
+        return _LocalStep(part, values, images)
 
     return {"adapted to flow and level": None, "adapted to the flow": local, "fixed": fixed}
 
@@ -73,12 +76,9 @@ def _coherence(view: View, values: Floats) -> dict[str, float]:
 def _section41(bench: Bench) -> Finding:
     field = bench.gyre
     size = bench.pick((440, 230), (200, 104))
-    textures = bench.textures(field, bench.settings(**SETTINGS))
-    if textures.paper is None:
-        msg = "there is no noise texture; expected that of the paper's method"
-        raise ValueError(msg)
-    # The fixed step is right for the typical speed at the finest level.
-    lookups = _lookups(textures.paper, float(np.median(textures.paper.step)))
+    noise = bench.textures(field, **SETTINGS).image
+    assert isinstance(noise, NoiseTextures)
+    lookups = _lookups(noise)
     zooms = bench.pick((0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0))
     panel_zoom = 1.0
     figures: dict[str, dict[str, Any]] = {name: {} for name in lookups}

@@ -1,8 +1,7 @@
 // The numbers of the method, which flowtex/rendering/constants.py reads.
 
-// Lengths of the arrays that a renderer sets.
+// Length of the array of lags that a renderer sets.
 const int FLOWTEX_MOST_LAGS = 32;
-const int FLOWTEX_HALF_LEVELS = 32;
 
 // The sum along a path.
 const int FLOWTEX_KERNEL_HANN = 0;
@@ -41,12 +40,11 @@ const float FLOWTEX_SHARP = 0.86;         // cosine between the normals of trian
 const float FLOWTEX_LEVELS_AROUND = 6.0;  // levels of detail in one round of hues
 const float FLOWTEX_HUE_SHIFT = 0.333;    // from one colour channel to the next, in rounds
 const float FLOWTEX_LEVEL_DARKEST = 0.35;
-const float FLOWTEX_LEVEL_STRENGTH = 0.5; // of a picture over the colours of the levels
+const float FLOWTEX_LEVEL_STRENGTH = 0.5; // of an image over the colours of the levels
 
 // Noise that is even in space.
 const float FLOWTEX_SQRT_HALF = 0.7071067811865476;
 const float FLOWTEX_LAST_OCTAVE = 58.99;    // and between two, as the next ones
-const float FLOWTEX_LAST_HALF_LEVEL = 30.99;
 const float FLOWTEX_LEAST_RATE = 0.25;      // turns in a base period of a grain in motion
 const float FLOWTEX_LEAST_TRAVEL = 1e-30;
 const float FLOWTEX_MANY_PHASES = 64.0;     // rounds of phases of every other rate

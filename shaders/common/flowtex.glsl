@@ -1,10 +1,11 @@
 // The method: everything a fragment needs, in the order that GLSL asks for.
 
+#ifdef FLOWTEX_IMAGE
+void flowtexGather(vec3 displacement, float weight);
+#else
 vec2 flowtexLookup(vec3 displacement, float length_);
 float flowtexBlend(vec2 sums, float near);
 void flowtexMove(float slope, float speed);
-#ifdef FLOWTEX_PICTURE
-void flowtexGather(vec3 displacement, float weight);
 #endif
 //#include common/path.glsl
 //#include common/cell.glsl
@@ -12,8 +13,8 @@ void flowtexGather(vec3 displacement, float weight);
 //#include common/derivatives.glsl
 //#include common/levels.glsl
 //#include common/shade.glsl
-#ifdef FLOWTEX_PAPER
-//#include common/lookup_paper.glsl
+#ifdef FLOWTEX_IMAGE
+//#include common/lookup_image.glsl
 #else
 //#include common/noise.glsl
 //#include common/lookup_space.glsl

@@ -2,12 +2,12 @@
 
 //#include common/place.glsl
 
-#ifdef FLOWTEX_PAPER
+#ifdef FLOWTEX_IMAGE
 // Called outside of any branch: derivatives are not defined behind one.
-float flowtexValue(vec2 coordinate, vec2 noise)
+float flowtexValue(vec2 coordinate, vec2 at)
 {
   float level = flowtexSliceLevel(flowtexDx(coordinate), flowtexDy(coordinate));
-  return flowtexFragment(coordinate, noise, flowtexDx(noise), flowtexDy(noise), level);
+  return flowtexFragment(coordinate, at, flowtexDx(at), flowtexDy(at), level);
 }
 #else
 float flowtexValueAt(FlowtexPlace place)

@@ -109,7 +109,7 @@ struct FlowtexSums
 
 void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight, float before)
 {
-#ifdef FLOWTEX_PICTURE
+#ifdef FLOWTEX_IMAGE
   flowtexGather(displacement, weight);
 #else
   sums.noise += weight * flowtexLookup(displacement, length_);
@@ -159,7 +159,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
     bool final = slice == u_lagCount;
     vec3 bend = (after - before) / (to - from);
     before -= bend * from;
-#ifndef FLOWTEX_PAPER
+#ifndef FLOWTEX_IMAGE
     // From a point nearly at rest the path does not jump: it is at least as fast as it will soon be.
     float least = max(sqrt(length(bend) / per_speed), FLOWTEX_LEAST_SPEED);
     if (slice == 1)
@@ -187,7 +187,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         line += slant;
         change -= turn * cosine;
         cosine += change;
-#ifndef FLOWTEX_PAPER
+#ifndef FLOWTEX_IMAGE
         // Points stay evenly spaced along the path where the particle is faster or slower there
         // than it is here: equation 3 at every point of the path, with the derivative of
         // lag * slope.
@@ -213,7 +213,7 @@ void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slo
 }
 
 // Texture of a fragment, of zero mean and about unit variance. ``spacing`` is that of the points
-// in nominal length, or in units of lag for the paper's textures.
+// in nominal length, or in units of lag for an image.
 float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
@@ -228,7 +228,7 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   count *= known;
 #endif
   bool goes = speed > FLOWTEX_LEAST_SPEED && count > 0.0;
-#ifdef FLOWTEX_PAPER
+#ifdef FLOWTEX_IMAGE
   float scale = 1.0;
   spacing *= speed;
 #else
@@ -249,6 +249,9 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
     else
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);
   }
+#ifdef FLOWTEX_IMAGE
+  return 0.0; // the colours have been gathered
+#else
   float value = flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
 #ifdef FLOWTEX_UNCERTAIN
   value *= mix(FLOWTEX_FADED, 1.0, known);
@@ -257,4 +260,5 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   if (u_fade > 0.0)
     value *= smoothstep(0.0, u_fade, flowtexLayer(coordinate, 2, sliceLevel).w);
   return value;
+#endif
 }

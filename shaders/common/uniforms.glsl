@@ -44,17 +44,11 @@ uniform vec3 u_noiseOriginOdd;   // and in cells of octave 1: whole numbers,
 uniform vec3 u_noiseRestOdd;     // and the rest
 uniform float u_noiseFinest;     // width of a cell of octave 0
 uniform float u_texel;           // width of a grain that is fixed on the surface
-#ifdef FLOWTEX_PAPER
-uniform highp sampler2DArray u_noiseImage; // one layer each
-uniform highp sampler2DArray u_stepImage;
-uniform vec2 u_noiseSize;  // texels of the noise, and of the step texture
-uniform float u_noiseGrain; // width of a grain, in texels
-uniform float u_noiseDeviation[FLOWTEX_HALF_LEVELS]; // of the noise at each level and half-way to the next
-uniform bool u_noiseCorrected; // noise even on the surface, not in the texture
-#endif
-#ifdef FLOWTEX_PICTURE
-uniform vec2 u_pictureSize;  // texels of the picture over the surface, with its repeats
-uniform vec2 u_pictureRound; // 1 along an axis that closes on itself
-uniform bool u_pictureGrey;  // one channel, opaque; or four, colours times opacity
-uniform float u_tiles;       // how often the picture is repeated
+#ifdef FLOWTEX_IMAGE
+uniform highp sampler2DArray u_image;     // one layer each: colours times opacity, and opacity,
+uniform highp sampler2DArray u_stepImage; // and the lag in which the flow crosses a texel
+uniform vec2 u_stepSize;   // texels of the step texture
+uniform vec2 u_imageSize;  // texels of the image over the surface, with its repeats
+uniform vec2 u_imageRound; // 1 along an axis that closes on itself
+uniform float u_tiles;     // how often the image is repeated
 #endif

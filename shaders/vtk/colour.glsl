@@ -13,7 +13,7 @@ vec3 flowtexColoured(vec3 colour, vec2 coordinate, float value)
     colour = u_plainColour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
-#ifdef FLOWTEX_PICTURE
+#ifdef FLOWTEX_IMAGE
   return flowtexPaint(colour);
 #else
   return flowtexShade(colour, value);

@@ -8,8 +8,8 @@ in vec3 flowtexPositionVSOutput;
 #ifdef FLOWTEX_TRIANGLES
 flat in vec4 flowtexCornersVSOutput;
 #endif
-#ifdef FLOWTEX_PAPER
-in vec2 flowtexNoiseVSOutput;
+#ifdef FLOWTEX_IMAGE
+in vec2 flowtexImageVSOutput;
 #endif
 //#include common/flowtex.glsl
 //#include vtk/colour.glsl

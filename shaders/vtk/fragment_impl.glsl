@@ -14,8 +14,8 @@
   flowtexTriangleNumber = int(flowtexCornersVSOutput.w);
 #endif
   vec2 flowtexPlaced = flowtexCoordinateVSOutput;
-#ifdef FLOWTEX_PAPER
-  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexNoiseVSOutput);
+#ifdef FLOWTEX_IMAGE
+  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexImageVSOutput);
 #else
   float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput);
 #endif

@@ -9,8 +9,8 @@ out vec3 flowtexPositionGSOutput;
 flat in vec4 flowtexCornersVSOutput[];
 flat out vec4 flowtexCornersGSOutput;
 #endif
-#ifdef FLOWTEX_PAPER
-in vec2 flowtexNoiseVSOutput[];
-out vec2 flowtexNoiseGSOutput;
+#ifdef FLOWTEX_IMAGE
+in vec2 flowtexImageVSOutput[];
+out vec2 flowtexImageGSOutput;
 #endif
 #endif

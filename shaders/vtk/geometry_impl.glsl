@@ -4,7 +4,7 @@
 #ifdef FLOWTEX_TRIANGLES
     flowtexCornersGSOutput = flowtexCornersVSOutput[i];
 #endif
-#ifdef FLOWTEX_PAPER
-    flowtexNoiseGSOutput = flowtexNoiseVSOutput[i];
+#ifdef FLOWTEX_IMAGE
+    flowtexImageGSOutput = flowtexImageVSOutput[i];
 #endif
 #endif

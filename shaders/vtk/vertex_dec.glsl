@@ -7,8 +7,8 @@ out vec3 flowtexPositionVSOutput;
 in vec4 flowtexCorners; // numbers of the three nodes and of the triangle, the same at each
 flat out vec4 flowtexCornersVSOutput;
 #endif
-#ifdef FLOWTEX_PAPER
-in vec2 flowtexNoise;
-out vec2 flowtexNoiseVSOutput;
+#ifdef FLOWTEX_IMAGE
+in vec2 flowtexImage;
+out vec2 flowtexImageVSOutput;
 #endif
 #endif

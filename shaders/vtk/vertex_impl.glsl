@@ -4,7 +4,7 @@
 #ifdef FLOWTEX_TRIANGLES
   flowtexCornersVSOutput = flowtexCorners;
 #endif
-#ifdef FLOWTEX_PAPER
-  flowtexNoiseVSOutput = flowtexNoise;
+#ifdef FLOWTEX_IMAGE
+  flowtexImageVSOutput = flowtexImage;
 #endif
 #endif

@@ -9,8 +9,8 @@ uniform int u_layer;
 #ifdef FLOWTEX_TRIANGLES
 uniform highp usampler2D u_corners; // as in webgl2/vertex.glsl
 #endif
-#ifdef FLOWTEX_PAPER
-uniform highp sampler2D u_along; // coordinates of columns and rows in the noise
+#ifdef FLOWTEX_IMAGE
+uniform highp sampler2D u_along; // coordinates of columns and rows in the image
 #endif
 uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
 uniform bool u_flat;       // values belong to cells: they lie at first nodes, or are those of triangles
@@ -53,9 +53,9 @@ float flowtexShareAt(vec2 coordinate, int triangle)
 #endif
 }
 
-#ifdef FLOWTEX_PAPER
-// The texture at a place, whose coordinate in the noise is linear between the nodes.
-float flowtexPaperAt(FlowtexPlace place)
+#ifdef FLOWTEX_IMAGE
+// The texture at a place, whose coordinate in the image is linear between the nodes.
+float flowtexImageAt(FlowtexPlace place)
 {
   vec2 at = place.coordinate * u_slicesSize - 0.5 - u_padding;
   ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), textureSize(u_nodes, 0).xy - 2);
@@ -79,15 +79,15 @@ void main()
   flowtexSetCorners(vec3(texelFetch(u_corners, ivec2(triangle % width, triangle / width), 0).xyz));
 #endif
   FlowtexPlace place = flowtexFindPlace(vec2(pixel) + 0.5, uintBitsToFloat(drawn.xy));
-#ifdef FLOWTEX_PAPER
-  float textured = flowtexPaperAt(place);
+#ifdef FLOWTEX_IMAGE
+  float textured = flowtexImageAt(place);
 #else
   float textured = flowtexValueAt(place);
 #endif
   vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(place.coordinate, triangle)) : u_colour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
-#ifdef FLOWTEX_PICTURE
+#ifdef FLOWTEX_IMAGE
   colour = flowtexPaint(colour);
 #else
   colour = flowtexShade(colour, textured);

@@ -68,7 +68,7 @@ async def test_use_leaves_no_object_behind() -> None:
         element.take_camera(whole.to_dict())
         element.take_colours({"cmap": "magma"})
         element.take_colours({"cmap": "viridis"})
-        for name, values in (("noise", ("texture", "procedural")), ("lod", (False, True))):
+        for name, values in (("texture", ("streaklets", "dense")), ("lod", (False, True))):
             for value in values:
                 setattr(app.area.settings, name, value)
                 app.viewport.draw(96, 64)
@@ -79,7 +79,7 @@ async def test_use_leaves_no_object_behind() -> None:
 
     # A second move of the pointer soon after the first waits in the loop.
     async with playing(app):
-        use()  # every kind of noise has been shown once
+        use()  # every variant has been shown once
         before = objects()
         use()
         assert objects() - before == Counter()

@@ -53,7 +53,7 @@ def store(field: Callable[[], FlowField]) -> SliceStore:
 
 
 def made(field: Callable[[], FlowField], settings: Settings) -> TextureSet:
-    return TextureSet.build(store(field), settings)
+    return TextureSet.build(store(field))
 
 
 def scene(
@@ -168,7 +168,7 @@ def test_a_drag_carries_the_picture_along(client: ClientPage) -> None:
 
 
 def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientPage) -> None:
-    squares = scene(gyre, straight(3, (0.8, 0.5)), noise="texture", resolution=256, tiles=4)
+    squares = scene(gyre, straight(3, (0.8, 0.5)))
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
     view = "viewers[0]"
@@ -253,7 +253,7 @@ def test_the_bar_and_the_settings(client: ClientPage) -> None:
     rows = page.locator("[data-setting]").evaluate_all("(all) => all.map((r) => r.dataset.setting)")
     assert {"samples", "kernel", "contrast", "motion", "seed", "resolution"} <= set(rows)
     # What would need the host, has no effect here, or lies in the bar.
-    absent = {"noise", "parameter", "tiles", "noise_correction", "lod", "critical_points"}
+    absent = {"noise", "parameter", "tiles", "lod", "critical_points"}
     assert not absent & set(rows)
     assert page.locator(".kinds span").count() == 0
     page.locator("[data-setting=contrast] input").fill("2")
@@ -404,7 +404,7 @@ def test_a_lost_context_comes_back_with_the_same_picture(client: ClientPage) -> 
 
 def test_a_context_that_is_lost_while_paths_are_traced(client: ClientPage) -> None:
     settings = Settings(samples=5)
-    data = ClientData(TextureSet.build(SliceStore(gyre()), settings), traces=True)
+    data = ClientData(TextureSet.build(SliceStore(gyre())), traces=True)
     assert data.traced
     given = packed(data, data.header(settings))
     client.mount(given, SIZE, **PLAIN)

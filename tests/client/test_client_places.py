@@ -93,7 +93,7 @@ def bent_sheet() -> FlowField:
 
 def mounted(client: ClientPage, field: Any, camera: Camera, size: tuple[int, int]) -> None:
     settings = Settings(samples=5)
-    data = ClientData(TextureSet.build(SliceStore(field), settings))
+    data = ClientData(TextureSet.build(SliceStore(field)))
     header = data.header(settings, camera=state(camera))
     client.mount(packed(data, header), size, controls=False, smooth=False)
     client.sharp()

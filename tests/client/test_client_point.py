@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from flows import gyre, lines, swinging, torus
-from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, WHOLE
+from matrix import ASIDE, IMAGE, MIDDLE, SIZE, WHOLE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
@@ -17,7 +17,7 @@ from flowtex.field.earth import Projection
 from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours
-from flowtex.scene.options import Options
+from flowtex.scene.options import Appearance, Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
@@ -32,7 +32,7 @@ PATHS: dict[str, tuple[FlowField, Camera, dict[str, Any]]] = {
     "one side": (gyre(), WHOLE, {"two_sided": False, "samples": 12}),
     "fixed grain": (gyre(), WHOLE, {"lod": False}),
     "moving": (gyre(), WHOLE, {"motion": "speed"}),
-    "texture": (gyre(), WHOLE, TEXTURE),
+    "image": (gyre(), WHOLE, {"noise": "image"}),
     "curved": (torus(), ASIDE, {}),
     "varying": (swinging(), MIDDLE, {}),
     "no sign": (lines(), MIDDLE, {}),
@@ -51,7 +51,7 @@ def card(page: Page) -> dict[str, str]:
 @pytest.mark.parametrize("name", PATHS)
 def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None:
     field, camera, chosen = PATHS[name]
-    scene = Scene(field, Settings(samples=21))
+    scene = Scene(field, Settings(samples=21), Appearance(image=IMAGE))
     scene.settings.update(**chosen)
     data = ClientData(scene.textures, Colours(plain=(0.6, 0.6, 0.6)))
     header = data.header(scene.settings, camera=state(camera))
@@ -66,7 +66,7 @@ def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None
     length = float(np.linalg.norm(np.diff(judge.points, axis=0), axis=1).sum())
     assert length > 0
     # The sides are as long as the samples reach, to a part of the grain that is not followed.
-    loose = 0.1 if name in ("texture", "curved") else 0.06
+    loose = 0.1 if name in ("image", "curved") else 0.06
     ends = np.array([drawn["sampled"][0], drawn["sampled"][-1]])
     if drawn["directed"]:
         np.testing.assert_allclose(ends, judge.points[[0, -1]], atol=loose * length)

@@ -236,7 +236,7 @@ def test_pathlines_are_those_of_numpy(browser: Browser, tmp_path: Path, name: st
 @pytest.mark.parametrize("lines", ["pathlines", "streamlines"])
 def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: str) -> None:
     settings, camera = Settings(samples=11), straight(1, (0, 0))
-    textures = TextureSet.build(SliceStore(swinging(), lines=lines), settings)
+    textures = TextureSet.build(SliceStore(swinging(), lines=lines))
     plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
     data = ClientData(textures, plain, traces=True)
     header = data.header(settings, camera=state(camera), time=0.8)
@@ -285,7 +285,7 @@ def test_pictures_over_a_pole_are_those_of_numpy(client: ClientPage, name: str) 
     field, settings = FIELDS[name][0](), Settings(samples=11)
     top = field.points[..., 2].max()
     above = (0.1 * top, 0.05 * top, 3 * top), (0.02 * top, 0.01 * top, top), (0, 1, 0)
-    textures = TextureSet.build(SliceStore(field), settings)
+    textures = TextureSet.build(SliceStore(field))
     plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
     data = ClientData(textures, plain, traces=True)
     assert data.traced

@@ -146,7 +146,7 @@ def test_a_page_of_some_steps_and_of_two_views(store: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"noise": "texture", "resolution": 64}, "with noise 'texture'"),
+        ({"image": np.ones((2, 2))}, "with noise 'image'"),
         ({"parameter": "time"}, "expected 'time' along"),
         ({"lines": "pathlines"}, "along streamlines; expected .* along pathlines"),
     ],

@@ -36,7 +36,7 @@ from IPython.core.formatters import DisplayFormatter
 from flowtex.host.flow_widget import FlowWidget
 
 #: Pixels by pixels of noise: a picture to lay on the surface.
-SQUARES = np.indices((8, 8)).sum(axis=0) % 2 * 255
+SQUARES = (np.indices((8, 8)).sum(axis=0) % 2 * 255).astype(np.uint8)
 
 
 def gyre(times: int = 1, nodes: int = 30) -> flowtex.FlowField:
@@ -235,27 +235,27 @@ def test_large_field_is_shown_coarse_first(
 def test_a_setting_sends_what_it_changes_and_no_more(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    widget = make(noise="texture", resolution=32)
+    widget = make(image=SQUARES)
     heard = Heard(widget, monkeypatch)
     heard.settle()
-    assert "noise" in heard.arrays
+    assert "image" in heard.arrays
     widget.contrast = 2.0
     widget.samples = 30
     assert heard.messages == []
-    was = heard.arrays["noise"]
-    widget.seed = 5
-    heard.wait(lambda: not np.array_equal(was, heard.arrays["noise"]))
+    was = heard.arrays["image"]
+    widget.set_image(255 - SQUARES)
+    heard.wait(lambda: not np.array_equal(was, heard.arrays["image"]))
     assert "position" not in {name for m in heard.messages for name in names_of(m)}
     widget.noise = "procedural"
-    wait_until(lambda: "FLOWTEX_PAPER" not in widget._header["variant"])
+    wait_until(lambda: "FLOWTEX_IMAGE" not in widget._header["variant"])
 
 
 def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     widget = make()
-    widget.set_image(SQUARES.astype(np.uint8))
+    widget.set_image(SQUARES)
     assert widget.noise == "image"
     assert widget._feeds[0].settled.wait(PATIENCE_S)
-    assert widget._header["paper"]["picture"]
+    assert widget._header["image"]
 
 
 def test_an_error_while_tracing_is_told(
@@ -269,7 +269,7 @@ def test_an_error_while_tracing_is_told(
         raise MemoryError(msg)
 
     monkeypatch.setattr(widget._views[0], "data", fail)
-    widget.noise = "texture"
+    widget.parameter = "time"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
     told = [m["text"] for m in heard.messages if m["kind"] == "error"]
     assert told == ["MemoryError: out of memory"]
@@ -454,7 +454,7 @@ def test_many_views_of_one_mesh_share_what_is_made_of_it(make: Make) -> None:
     assert first_scene.textures is other_scene.textures
     different = make(gyre(nodes=101))
     assert different.field is not first.field
-    assert make(gyre(nodes=100), noise="texture", resolution=32).scene.store is first.scene.store
+    assert make(gyre(nodes=100), image=SQUARES).scene.store is first.scene.store
 
 
 def test_what_is_shown_is_sent_before_anybody_asks(
@@ -472,10 +472,9 @@ def test_what_is_shown_is_sent_before_anybody_asks(
 
 
 def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    widget = make(gyre(3), beside={"noise": "texture", "resolution": 32})
-    assert widget._header_beside["own"] == {"noise": "texture", "resolution": 32}
-    assert widget._header["differs"] == widget._header_beside["differs"] == ["noise", "resolution"]
-    assert "FLOWTEX_PAPER" in widget._header_beside["variant"]
+    widget = make(gyre(3), beside={"cmap": "magma", "resolution": 32})
+    assert widget._header_beside["own"] == {"resolution": 32}
+    assert widget._header["differs"] == widget._header_beside["differs"] == ["resolution"]
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
     heard.wait(lambda: {0, 1} <= {m["view"] for m in heard.messages})
@@ -483,16 +482,16 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
     second = widget._views[1].scene.settings
     widget.samples = 33
     assert second.samples == 33
-    widget.noise = "texture"
-    assert second.noise == "texture"
+    widget.lines = "streamlines"
+    assert second.lines == "streamlines"
     with pytest.raises(ValueError, match=r"^beside has plane, which selects data; both views"):
         make(beside={"plane": "k=2"})
     text = widget.to_html()
     assert text is not None
     part = r'<script type="text/plain" data-view="1" data-part="[^"]*&quot;{}&quot;[^"]*">([^<]?)'
-    assert [bool(found) for found in re.findall(part.format("noise"), text)] == [True]
+    assert [bool(found) for found in re.findall(part.format("cmap"), text)] == [True]
     # What the first view has as well lies in the page once.
-    assert [bool(found) for found in re.findall(part.format("position"), text)] == [False]
+    assert [bool(found) for found in re.findall(part.format("flow/0"), text)] == [False]
 
 
 def test_another_flow_takes_the_place_of_the_first(
@@ -512,8 +511,8 @@ def test_another_flow_takes_the_place_of_the_first(
     assert widget.time == widget.scene.time == 1.0  # the nearest that it has
     assert resent == [] and widget._header["shaders"] is None  # the text of 60 kB stays
     # Settings reach what is shown now.
-    widget.noise = "texture"
-    heard.wait(lambda: "noise" in heard.arrays)
+    widget.set_image(SQUARES)
+    heard.wait(lambda: "image" in heard.arrays)
 
 
 @pytest.mark.parametrize(

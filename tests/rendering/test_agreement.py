@@ -71,8 +71,7 @@ SHARED = {
     *("streaklets, near triangles", "between two steps, moving", "streamlines, near"),
     *("half still, streaming", "half still, between two steps", "centre, streaming"),
     *("triangles, by time", "triangles, streaming", "triangles, centre", "triangles, holes"),
-    *("uncertain, centre", "uncertain, between two steps", "texture, stretched"),
-    *("texture, no lod", "image, mixed"),
+    *("uncertain, centre", "uncertain, between two steps", "image, mixed"),
 }
 
 

@@ -18,6 +18,7 @@ from flowtex.rendering.cpu.render import render
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData, Colours
+from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.tiles.structure import STRUCTURE
@@ -125,10 +126,11 @@ def test_four_nodes_are_drawn_by_time_also_at_rest() -> None:
         check_picture(Scene(field, Settings(parameter="time")))
 
 
-def test_a_ring_of_two_lines_has_noise_coordinates() -> None:
+def test_a_ring_of_two_lines_has_image_coordinates() -> None:
     x, y = np.meshgrid([0.0, 1.0, 0.0], np.arange(4.0))
     points = np.stack([x, y], axis=-1)
-    check_picture(Scene(field_from(points, periodic="i"), Settings(noise="texture", resolution=32)))
+    look = Appearance(image=np.ones((2, 2)))
+    check_picture(Scene(field_from(points, periodic="i"), Settings(noise="image"), look))
 
 
 def test_a_moment_far_from_the_first_has_a_clock() -> None:

@@ -48,9 +48,9 @@ def staged(field: flowtex.FlowField, **options: Any) -> tuple[WebView, ClientDat
 
 
 @pytest.mark.parametrize("make", [plane, ball, lambda: plane(3)])
-@pytest.mark.parametrize("noise", ["procedural", "texture"])
-def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
-    view, scene = staged(make(), noise=noise, resolution=64)
+@pytest.mark.parametrize("image", [None, np.ones((2, 3))])
+def test_arrays_are_those_of_the_texture_set(make: Any, image: Any) -> None:
+    view, scene = staged(make(), image=image)
     header = json.loads(json.dumps(scene.header(view.scene.settings), allow_nan=False))
     textures = view.scene.textures
     geometry = textures.geometry
@@ -82,11 +82,11 @@ def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
     assert ("cells" in surface) == (not geometry.field.valid.all())
     if "cells" in surface:
         np.testing.assert_array_equal(surface["cells"], geometry.field.surface.cells)
-    if textures.paper is not None:
-        np.testing.assert_allclose(surface["noise"], textures.paper.noise, rtol=1e-3, atol=1e-6)
-        np.testing.assert_allclose(surface["step"], textures.paper.step, rtol=1e-3)
-        nodes = np.stack(np.meshgrid(header["paper"]["alongI"], header["paper"]["alongJ"]), axis=-1)
-        np.testing.assert_allclose(nodes, textures.paper.coordinate, atol=1e-6)
+    if textures.image is not None:
+        np.testing.assert_allclose(surface["image"], textures.image.texels, rtol=1e-3, atol=1e-6)
+        np.testing.assert_allclose(surface["step"], textures.image.step, rtol=1e-3)
+        nodes = np.stack(np.meshgrid(header["image"]["alongI"], header["image"]["alongJ"]), axis=-1)
+        np.testing.assert_allclose(nodes, textures.image.coordinate, atol=1e-6)
 
 
 def test_triangles_are_handed_over() -> None:

@@ -51,7 +51,7 @@ from flowtex.trace.structure.separatrices import separatrices
 FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
 
 #: Parts of the header that the client's uniforms come from.
-NEEDED = ("variant", "geometry", "slices", "paper", "constants", "settings")
+NEEDED = ("variant", "geometry", "slices", "image", "constants", "settings")
 #: What only Python knows of a view.
 PYTHONS = ("lags", "levels", "still")
 
@@ -78,10 +78,8 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
     "streaklets": (gyre, WHOLE, 1.0, {"texture": "streaklets", "two_sided": False}),
     "finer": (gyre, WHOLE, 2.0, {"motion": "speed", "kernel": "box", "arrows": True}),
-    "finer paper": (gyre, WHOLE, 2.0, {"noise": "texture", "resolution": 64}),
     "finer image": (gyre, WHOLE, 2.0, {"noise": "image", "tiles": 3}),
     "coarser": (gyre, WHOLE, 0.4, {"grain": 1.2}),
-    "coarser paper": (gyre, WHOLE, 0.5, {"noise": "texture", "resolution": 64}),
 }
 
 
@@ -91,7 +89,7 @@ def uniforms_of(name: str) -> dict[str, Any]:
     settings = Settings(**{"samples": 11, **options})
     image = as_picture(IMAGE) if settings.noise == "image" else None
     store = SliceStore(make(), lines=options.get("lines", "pathlines"))
-    textures = TextureSet.build(store, settings, image)
+    textures = TextureSet.build(store, image)
     view = ViewState(
         focus=np.asarray(camera.focal_point, dtype=float),
         anchor=np.array([0.1, 0.2, 0.0]),
@@ -102,16 +100,14 @@ def uniforms_of(name: str) -> dict[str, Any]:
         density=density,
     )
     header = ClientData(textures).header(settings)
-    if header["paper"] is not None:
-        header["paper"] |= {"alongI": [], "alongJ": []}
-    noise = None if textures.paper is None else list(textures.paper.noise.shape)
+    if header["image"] is not None:
+        header["image"] |= {"alongI": [], "alongJ": []}
     values = uniforms(textures, settings, view)
     return {
         "header": {key: header[key] for key in NEEDED},
         # A browser traces the lags that it draws with, with all mip levels, and has no number of
         # either.
         "view": plain({k: value for k, value in vars(view).items() if k not in PYTHONS}),
-        "noise": noise,
         "moving": values.pop("moving"),
         "near": values.pop("near"),
         "sparse": values.pop("sparse"),
@@ -199,7 +195,7 @@ def seeds_of(
     field: FlowField, eye: Any, half: float, middle: tuple[float, float]
 ) -> dict[str, Any]:
     """Seeds of a view down onto a place, along parallel rays or from an eye."""
-    geometry = TextureSet.build(SliceStore(field), Settings()).geometry
+    geometry = TextureSet.build(SliceStore(field)).geometry
     seeds = ArrowSeeds(geometry)
     sides = [
         np.array([sign * (axis == k) for k in range(3)]) for axis in (0, 1) for sign in (1, -1)
@@ -435,7 +431,7 @@ def samples_of(name: str) -> dict[str, Any]:
     header = ClientData(scene.textures).header(scene.settings)
     found = probe(scene, at, pixel=camera, size=PICTURE_SIZE)
     assert found.slice_level == 0
-    needed = ("variant", "geometry", "slices", "paper", "constants", "settings", "limits")
+    needed = (*NEEDED, "limits")
     return {
         "header": {key: header[key] for key in needed},
         "camera": camera.to_dict(),
@@ -527,7 +523,7 @@ def test_what_a_formula_gives() -> None:
         results = [float(evaluate(tree, values)) for tree in trees]
     ends: Any = {"x": (-8, 8), "y": (-4, 4), "b": (0.2, 0, 1)}
     field = flowtex.formula("y", "-sin(x) - b*y", **ends)
-    textures = TextureSet.build(SliceStore(field), Settings())
+    textures = TextureSet.build(SliceStore(field))
     data = ClientData(textures, traces=True, marks=Marks(shared_structure(field)))
     header = data.header(Settings())
     parts = ("geometry", "slices", "formula", "pyramid", "mesh", "speed", "scalars")

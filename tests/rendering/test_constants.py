@@ -9,7 +9,7 @@ import pytest
 
 from flowtex.rendering import constants
 from flowtex.rendering.shaders import shader_names, shader_source
-from flowtex.textures import paper, texture_set
+from flowtex.textures import texture_set
 
 NAMES = re.findall(r"FLOWTEX_(\w+) =", shader_source("common/constants.glsl"))
 
@@ -32,8 +32,8 @@ def test_numbers_that_follow_from_others_do() -> None:
     assert pytest.approx(np.pi) == constants.PI
     assert pytest.approx(np.sqrt(0.5)) == constants.SQRT_HALF
     assert pytest.approx(constants.MOST_GRAIN**2 / 3) == constants.GRAIN_VARIANCE
-    assert [f"KERNEL_{kernel.upper()}" for kernel in constants.KERNELS] == NAMES[2:5]
-    assert [getattr(constants, name) for name in NAMES[2:5]] == [0, 1, 2]
+    assert [f"KERNEL_{kernel.upper()}" for kernel in constants.KERNELS] == NAMES[1:4]
+    assert [getattr(constants, name) for name in NAMES[1:4]] == [0, 1, 2]
 
 
 def test_every_constant_of_the_shaders_is_used() -> None:
@@ -48,7 +48,6 @@ def test_every_constant_of_the_shaders_is_used() -> None:
 @pytest.mark.parametrize("name", ["AGREED", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"])
 def test_textures_are_made_by_the_numbers_of_the_shaders(name: str) -> None:
     assert getattr(constants, name) == getattr(texture_set, name)
-    assert constants.HALF_LEVELS == paper.HALF_LEVELS
 
 
 def test_a_name_that_the_shaders_lack_is_an_error() -> None:

@@ -74,7 +74,7 @@ def test_samplers_and_arrays_are_few() -> None:
 VARIANTS = tuple(
     f"FLOWTEX_{name}"
     for name in (
-        *("CELLS", "DEFERRED", "MOVING", "OPAQUE", "PAPER", "PICTURE", "PLANAR", "SIGNFREE"),
+        *("CELLS", "DEFERRED", "MOVING", "IMAGE", "OPAQUE", "PLANAR", "SIGNFREE"),
         *("SPARSE", "TRIANGLES", "UNCERTAIN", "UNSTEADY"),
     )
 )
@@ -83,9 +83,7 @@ VARIANTS = tuple(
 def chosen_variants() -> list[tuple[str, ...]]:
     """Variants in pairs, and all that do not exclude each other: more take minutes."""
     single = [()] + [(name,) for name in VARIANTS]
-    sets = [*single, *itertools.combinations(VARIANTS, 2), VARIANTS]
-    # A picture takes the place of the paper's noise.
-    return [s for s in sets if "FLOWTEX_PICTURE" not in s or "FLOWTEX_PAPER" in s]
+    return [*single, *itertools.combinations(VARIANTS, 2), VARIANTS]
 
 
 @pytest.mark.skipif(shutil.which("glslangValidator") is None, reason="apt-get: glslang-tools")

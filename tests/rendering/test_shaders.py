@@ -18,10 +18,10 @@ def test_an_include_is_put_in_once() -> None:
 
 
 def test_variants_are_defined_first_and_in_order() -> None:
-    text = shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PLANAR", "FLOWTEX_PAPER"])
-    assert text == shaders.shader_text("vtk/vertex_dec.glsl", {"FLOWTEX_PAPER", "FLOWTEX_PLANAR"})
+    text = shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PLANAR", "FLOWTEX_IMAGE"])
+    assert text == shaders.shader_text("vtk/vertex_dec.glsl", {"FLOWTEX_IMAGE", "FLOWTEX_PLANAR"})
     assert re.match(
-        r"#ifndef FLOWTEX_PAPER\n#define FLOWTEX_PAPER\n#endif\n#ifndef FLOWTEX_PLANAR\n", text
+        r"#ifndef FLOWTEX_IMAGE\n#define FLOWTEX_IMAGE\n#endif\n#ifndef FLOWTEX_PLANAR\n", text
     )
 
 
@@ -30,7 +30,7 @@ def test_files_ask_for_every_variant() -> None:
     named = {name for text in texts for name in re.findall(r'"(FLOWTEX_[A-Z]+)"', text)}
     sources = map(shaders.shader_source, shaders.shader_names())
     asked = {n for s in sources for line in re.findall(r"#(?:if|elif).*", s) for n in WORD(line)}
-    assert {"FLOWTEX_PAPER", "FLOWTEX_OPAQUE", "FLOWTEX_DEFERRED"} <= named <= asked
+    assert {"FLOWTEX_IMAGE", "FLOWTEX_OPAQUE", "FLOWTEX_DEFERRED"} <= named <= asked
 
 
 def test_no_line_of_shader_text_stands_in_python() -> None:

@@ -74,7 +74,7 @@ def test_a_second_view_follows_the_first_in_what_is_not_its_own() -> None:
     assert second.scalar_limits == second.scalar_range("vorticity") != first.scalar_limits
     assert (second.settings.noise, second.appearance.cmap) == ("procedural", "magma")
     end = follow(lambda: first, lambda: second, own)
-    first.settings.update(samples=9, noise="texture")
+    first.settings.update(samples=9, noise="procedural")
     first.appearance = replace(first.appearance, cmap="gray", clim=(0.0, 1.0), log_scale=False)
     assert (second.settings.samples, second.settings.noise) == (9, "procedural")
     assert second.appearance.cmap == "gray"

@@ -76,6 +76,7 @@ def camera(field: FlowField, *, aside: bool = False) -> Camera:
 # --- the pixel ------------------------------------------------------------------------------
 
 IMAGE = np.random.default_rng(5).integers(0, 256, (16, 32, 4), dtype=np.uint8)
+LAID: dict[str, Any] = {"noise": "image", "image": IMAGE}
 CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
     "two-sided": (gyre, {}),
     "one-sided": (gyre, {"two_sided": False, "kernel": "ramp"}),
@@ -85,18 +86,13 @@ CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
     "even count": (gyre, {"samples": 10, "parameter": "time"}),
     "one sample": (gyre, {"samples": 1}),
     "streaming": (gyre, {"motion": "speed", "speed": 90.0}),
-    "paper": (gyre, {"noise": "texture", "resolution": 256}),
-    "paper uncorrected": (
-        gyre,
-        {"noise": "texture", "noise_correction": False, "two_sided": False, "kernel": "box"},
-    ),
-    "paper, lod off": (gyre, {"noise": "texture", "lod": False, "resolution": 256}),
-    "image": (gyre, {"noise": "image", "image": IMAGE, "tiles": 2, "resolution": 256}),
+    "image": (gyre, LAID | {"tiles": 2}),
+    "image, lod off": (gyre, LAID | {"lod": False, "two_sided": False, "kernel": "box"}),
     "unsteady": (swinging, {}),
-    "unsteady paper": (swinging, {"noise": "texture", "resolution": 256}),
+    "unsteady image": (swinging, LAID),
     "no sign": (fibres, {}),
     "curved": (torus, {}),
-    "curved paper": (torus, {"noise": "texture", "resolution": 256}),
+    "curved image": (torus, LAID),
 }
 
 
@@ -104,7 +100,7 @@ CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
     ("case", "aside"),
     [
         *((case, False) for case in CASES),
-        *((case, True) for case in ("two-sided", "streaklets", "paper", "unsteady", "curved")),
+        *((case, True) for case in ("two-sided", "streaklets", "image", "unsteady", "curved")),
     ],
 )
 def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Generator) -> None:
@@ -236,9 +232,8 @@ def test_each_doubling_of_the_pixel_is_a_level() -> None:
     assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
 
 
-@pytest.mark.parametrize("noise", ["procedural", "texture"])
-def test_a_fine_screen_shows_the_same(noise: str) -> None:
-    view = view_of(wind(), samples=5, noise=noise, resolution=64)
+def test_a_fine_screen_shows_the_same() -> None:
+    view = view_of(wind(), samples=5)
     one = probe(view, (20.3, 30.4), pixel=0.1)
     fine = probe(view, (20.3, 30.4), pixel=0.05, density=2.0)
     assert fine.pixel == pytest.approx(0.05)
@@ -246,28 +241,11 @@ def test_a_fine_screen_shows_the_same(noise: str) -> None:
         assert getattr(fine, name) == pytest.approx(getattr(one, name), abs=1e-6), name
 
 
-def test_the_paper_steps_one_texel() -> None:
-    """Equation 3: in the step, the flow goes one texel of the level that is looked up."""
-    settings = {"noise": "texture", "resolution": 256, "spacing": 1.0, "two_sided": False}
-    view = view_of(wind(), **settings, samples=8, kernel="box")
-    paper = view.textures.paper
-    assert paper is not None
-    for pixel in (0.003, 3.0 / 256, 3.0 / 32):
-        got = probe(view, (20.3, 30.4), pixel=pixel)
-        assert got.noise_coordinates is not None
-        texels = np.diff(got.noise_coordinates, axis=0) * paper.noise.shape[::-1]
-        assert np.abs(texels).max(axis=-1) == pytest.approx(np.full(7, 2.0**got.level), rel=1e-2)
-        assert got.weights == pytest.approx(np.full(8, 1 / 8))
-        assert got.lags[-1] == 0.0
-        # A texel is 3 / 256 long and 2 / 256 high.
-        assert got.grain == pytest.approx(max(pixel, 6.0**0.5 / 256), rel=0.01)
-
-
-def test_the_paper_looks_up_twice() -> None:
-    """Figure 2: the slice at (i, j) gives (a, b), and the noise there is what is met."""
-    view = view_of(gyre(), noise="texture", lod=False, resolution=128, samples=9)
-    paper = view.textures.paper
-    assert paper is not None
+def test_an_image_is_looked_up_where_the_slices_lead() -> None:
+    """Figure 2 of the paper: the slice at (i, j) gives (a, b), and the image there is met."""
+    view = view_of(gyre(), **LAID, lod=False, samples=9)
+    image = view.textures.image
+    assert image is not None
     got = probe(view, (14.0, 33.0), pixel=0.01)
     assert (got.level, got.slice_level) == (0.0, 0.0)
     at = got.noise_coordinates
@@ -275,16 +253,14 @@ def test_the_paper_looks_up_twice() -> None:
     # The first look-up, in the traces themselves: half precision apart.
     slices, (j, i) = view.store.at(0), (14, 33)
     for lag, where in zip(got.lags, got.coordinates, strict=True):
-        forward = bool(lag < 0)
         held = abs(lag) / slices.unit[j, i]
-        traced = slices.positions(held, forward=forward)[j, i][::-1]
+        traced = slices.positions(held, forward=bool(lag < 0))[j, i][::-1]
         assert where == pytest.approx(traced, abs=5e-3)
-        assert paper.at(where[None, ::-1])[0] == pytest.approx(at[np.argmax(got.lags == lag)])
+        assert image.at(where[None, ::-1])[0] == pytest.approx(at[np.argmax(got.lags == lag)])
     # The second one, in the texture.
-    texel = at[:, ::-1] * paper.noise.shape - 0.5
-    met = ndimage.map_coordinates(paper.noise.astype(float), texel.T, order=1, mode="nearest")
-    # The level's own deviation is made good for.
-    assert got.noise == pytest.approx(met / paper.deviations[0], abs=2e-2)
+    texel = (at[:, ::-1] * image.texels.shape[:2] - 0.5).T
+    met = [ndimage.map_coordinates(c, texel, order=1) for c in np.moveaxis(image.texels, -1, 0)]
+    assert got.noise == pytest.approx(np.stack(met, axis=-1), abs=2e-2)
 
 
 def test_a_picture_is_met_in_its_colours() -> None:
@@ -333,8 +309,8 @@ def test_a_seam_is_passed() -> None:
     x, y = np.meshgrid(np.arange(0.0, 361.0, 5.0), np.arange(-60.0, 61.0, 5.0))
     east = np.stack([np.ones_like(x), np.zeros_like(x)], axis=-1)
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), east, periodic="i")
-    for noise in ("procedural", "texture"):
-        got = probe(view_of(field, noise=noise, samples=31), (12.0, 0.4), pixel=1.0)
+    for look in ({}, LAID):
+        got = probe(view_of(field, **look, samples=31), (12.0, 0.4), pixel=1.0)
         assert len(got.lags) == got.asked
         # On straight in space, and around in the indices.
         assert got.points[:, 0] == pytest.approx(2 - got.lags, abs=0.05)

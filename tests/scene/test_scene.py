@@ -26,14 +26,14 @@ def field(steps: int = 1) -> flowtex.FlowField:
     [
         ("samples", 9, "uniform", True, True),
         ("lod", False, "uniform", True, True),
-        ("noise", "texture", "shader", False, True),
+        ("noise", "image", "shader", False, True),
         ("parameter", "time", "trace", False, False),
     ],
 )
 def test_a_change_costs_what_the_table_says(
     name: str, value: object, affects: str, textures: bool, traces: bool
 ) -> None:
-    scene = Scene(field())
+    scene = Scene(field(), image=np.ones((1, 1, 4), np.float32))
     heard: list[str] = []
     before, store = scene.textures, scene.store
     scene.observe(heard.append)

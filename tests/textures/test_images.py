@@ -19,8 +19,6 @@ from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures.images import LARGEST, ImageError, as_picture, load_image
-from flowtex.textures.paper import PaperTextures
-from flowtex.trace.store import SliceStore
 
 SIZE = (240, 140)
 
@@ -182,16 +180,13 @@ def test_a_uniform_flow_blurs_along_itself_alone(
     """The kernel written out: a mean of Hann weights over points that are one step apart."""
     image = photo(rng)
     x, y, inside = places()
-    samples, spacing, resolution = 21, 2.0, 256
+    samples, spacing = 21, 8.0
     u, v = (1.0, 0.0) if along == "i" else (0.0, 1.0)
-    found = draw(
-        uniform(u, v), image=image, samples=samples, spacing=spacing, resolution=resolution,
-        lod=False,
-    )  # fmt: skip
-    # A step is two texels, of which there are 256 along x and 128 along y.
+    found = draw(uniform(u, v), image=image, samples=samples, spacing=spacing, lod=False)
+    # A step is eight texels, of which there are 1024 along x and 512 along y.
     k = np.arange(-10, 11)
     weight = 0.5 + 0.5 * np.cos(np.pi * k / 11)
-    way = k * spacing * 2 / resolution
+    way = k * spacing * 2 / 1024
     terms = [w * seen(image, x + s * u, y + s * v) for w, s in zip(weight, way, strict=True)]
     expected = np.sum(terms, axis=0) / weight.sum()
     reach = float(way.max()) + 0.01
@@ -215,7 +210,7 @@ def test_stripes_along_the_flow_stay_and_stripes_across_go(opengl: Any) -> None:
 def test_colours_survive_also_on_a_curved_surface_in_the_light(opengl: Any, steps: int) -> None:
     red = np.zeros((5, 9, 3))
     red[..., 0] = 1.0
-    found = draw(uniform(1, 0.3, steps), image=red, noise_correction=steps == 1)
+    found = draw(uniform(1, 0.3, steps), image=red)
     assert (found[places()[2]] == [255, 0, 0]).all()
     angle, height = np.meshgrid(np.linspace(0, 2, 41), np.linspace(0, 1, 21))
     points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1)
@@ -279,36 +274,6 @@ def test_the_level_of_detail_keeps_a_fine_image_from_flickering(opengl: Any) -> 
     assert rough.std() > 15
 
 
-# --- patterns on the texture ----------------------------------------------------------------
-
-
-def pattern(field: FlowField, name: str, **options: Any) -> PaperTextures:
-    store = SliceStore(field, parameter="arclength")
-    settings = Settings(noise=name, **{"resolution": 256, **options})
-    return PaperTextures.build(store, settings)
-
-
-def in_space(made: PaperTextures, field: FlowField) -> Floats:
-    """Texture of a stretched grid at even places of 2 by 1, (200, 400)."""
-    height, width = made.noise.shape
-    along = np.interp(np.linspace(0, 2, 401)[1:], field.points[0, :, 0], made.along_i)
-    v, u = np.meshgrid(np.arange(200) / 200 * height, along * width - 0.5, indexing="ij")
-    return np.asarray(map_coordinates(made.noise.astype(float), [v, u], order=1, mode="nearest"))
-
-
-def widths(noise: Floats) -> tuple[float, float]:
-    """Pixels along x and y over which the correlation falls to a half."""
-    noise = noise - noise.mean()
-    found = []
-    for axis in (1, 0):
-        lags = range(1, 40)
-        moved = [np.roll(noise, lag, axis=axis) for lag in lags]
-        like = np.array([1.0] + [(noise * m).mean() / noise.var() for m in moved])
-        first = int(np.argmax(like < 0.5))
-        found.append(first - (0.5 - like[first]) / (like[first - 1] - like[first]))
-    return found[0], found[1]
-
-
 # --- live, and what cannot be ---------------------------------------------------------------
 
 
@@ -356,40 +321,29 @@ def test_an_image_that_came_later_stays_on_another_surface(
         np.testing.assert_array_equal(handle.scene.image, as_picture(later))
 
 
-@pytest.mark.parametrize(
-    ("noise", "name", "affects"),
-    [
-        ("image", "tiles", "uniform"),
-        ("texture", "seed", "textures"),
-        ("image", "seed", "uniform"),
-        ("texture", "resolution", "textures"),
-        ("image", "resolution", "textures"),
-    ],
-)
-def test_a_change_costs_no_more_than_it_must(noise: str, name: str, affects: str) -> None:
-    view = Scene(uniform(), Settings(noise=noise, resolution=64), Appearance(image=np.ones((2, 2))))
+def test_a_change_of_tiles_makes_no_textures() -> None:
+    view = Scene(uniform(), Settings(noise="image"), Appearance(image=np.ones((2, 2))))
     before, heard = view.textures, list[str]()
     view.observe(heard.append)
-    view.settings.update(**{name: 32})
-    assert heard == [affects]
-    assert (view.textures is before) == (affects == "uniform")
+    view.settings.tiles = 32
+    assert heard == ["uniform"] and view.textures is before
 
 
 def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) -> None:
     told = r"^noise is 'image', but no image is given; pass image="
     with pytest.raises(SettingsError, match=told):
         plotter.flowtex.add(uniform(), noise="image")
-    with pytest.raises(SettingsError, match=r"^noise is 'texture', but an image is given; omit"):
-        plotter.flowtex.add(uniform(), noise="texture", image=np.ones((2, 2)))
+    with pytest.raises(SettingsError, match=r"^noise is 'procedural', but an image is given"):
+        plotter.flowtex.add(uniform(), noise="procedural", image=np.ones((2, 2)))
     assert len(plotter.flowtex) == 0
-    handle = plotter.flowtex.add(uniform(), noise="texture")
+    handle = plotter.flowtex.add(uniform())
     first = plotter.screenshot(return_img=True)
     with pytest.raises(SettingsError, match=told):
         handle.settings.noise = "image"
-    assert handle.settings.noise == "texture"
+    assert handle.settings.noise == "procedural"
     with pytest.raises(ImageError, match="expected"):
         handle.set_image(np.zeros((2, 2, 7)))
-    assert handle.settings.noise == "texture" and handle.scene.image is None
+    assert handle.settings.noise == "procedural" and handle.scene.image is None
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
 
 
@@ -406,7 +360,7 @@ def test_an_image_is_a_flag_of_the_command_line(
     for more, told in (
         (["--image", str(tmp_path / "no.png")], "no.png: the file does not exist"),
         (["--noise", "image"], "no image is given; add --image FILE"),
-        (["--noise", "texture", "--image", picture], "omit one of them"),
+        (["--noise", "procedural", "--image", picture], "omit one of them"),
     ):
         capsys.readouterr()
         assert main([*words, *more]) == 2

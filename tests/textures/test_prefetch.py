@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import flowtex
-from flowtex.settings import Settings
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
 from flowtex.trace.store import SliceStore
 
@@ -19,7 +18,7 @@ def made() -> TextureSet:
     y, x = np.mgrid[0:1:9j, 0:1:11j]
     velocity = np.stack([np.stack([1 + 0 * x, k + 0 * x], -1) for k in range(4)])
     field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), velocity, times=[0, 1, 2, 3])
-    return TextureSet.build(SliceStore(field), Settings())
+    return TextureSet.build(SliceStore(field))
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Trace slices as textures, and the paper's own noise and step textures."""
+"""Trace slices as textures, and the step texture of images."""
 
 from __future__ import annotations
 
@@ -9,19 +9,18 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.field.grids.grid_surface import GridSurface
-from flowtex.settings import Settings
-from flowtex.textures.geometry import NodeDisplacements, SurfaceGeometry
-from flowtex.textures.paper import PaperTextures
+from flowtex.textures.geometry import NodeDisplacements
+from flowtex.textures.images import ImageTextures
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
 
 
-def textures(field: FlowField, slices: TraceSlices | None = None, **settings: object) -> TextureSet:
-    options = Settings(**settings)  # type: ignore[arg-type]
-    parameter = str(settings.get("parameter", "arclength"))
-    return TextureSet.build(SliceStore(field, parameter=parameter, slices=slices), options)
+def textures(
+    field: FlowField, slices: TraceSlices | None = None, parameter: str = "arclength"
+) -> TextureSet:
+    return TextureSet.build(SliceStore(field, parameter=parameter, slices=slices))
 
 
 def nodal(made: TextureSet, layer: Floats32) -> Floats32:
@@ -200,18 +199,16 @@ def test_blanked_nodes_take_what_is_beside_them() -> None:
         np.testing.assert_array_equal(values[5, 12], values[4, 12])
 
 
-@pytest.mark.parametrize("correction", [True, False])
-def test_layers_for_the_noise_texture_hold_ways_across_it(correction: bool) -> None:
-    field = airfoil_field((17, 49))
-    made = textures(field, noise="texture", noise_correction=correction)
-    assert made.paper is not None
+def test_layers_for_an_image_hold_ways_across_it() -> None:
+    made = TextureSet.build(SliceStore(airfoil_field((17, 49))), np.ones((1, 1, 4), np.float32))
+    assert made.image is not None
     slices = made.store.at(0)
     layers = made.layers(dtype=np.float32)
     inner = (slice(None), slice(0, -1))  # The closing column repeats the first.
-    expected = slices.rate[0] * made.paper.by_cell()
+    expected = slices.rate[0] * made.image.by_cell()
     np.testing.assert_allclose(nodal(made, layers[0])[inner][..., :2], expected[inner], rtol=1e-5)
-    there = made.paper.at(slices.nodes + slices.displacement[0, 2])
-    expected = (made.paper.coordinate - there) / slices.lags[2]
+    there = made.image.at(slices.nodes + slices.displacement[0, 2])
+    expected = (made.image.coordinate - there) / slices.lags[2]
     np.testing.assert_allclose(nodal(made, layers[3])[inner][..., :2], expected[inner], atol=1e-6)
     assert not layers[..., 2].any()
 
@@ -230,62 +227,17 @@ def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
         )
 
 
-# --- the paper's textures -------------------------------------------------------------------
-
-
-def paper(
-    field: FlowField, *, correction: bool, parameter: str = "arclength", seed: int = 0
-) -> PaperTextures:
-    store = SliceStore(field, parameter=parameter)
-    settings = Settings(noise="texture", resolution=128, noise_correction=correction, seed=seed)
-    return PaperTextures.build(store, settings)
-
-
 @pytest.mark.parametrize("parameter", ["arclength", "time"])
-@pytest.mark.parametrize("correction", [True, False])
-def test_a_step_moves_one_texel(correction: bool, parameter: str) -> None:
+def test_a_step_moves_one_texel(parameter: str) -> None:
     """Equation 3."""
     field = stretched()
-    made = paper(field, correction=correction, parameter=parameter)
+    store = SliceStore(field, parameter=parameter)
+    made = ImageTextures.build(store, np.ones((1, 1, 4), np.float32), 128)
+    x = field.points[0, :, 0]
+    np.testing.assert_allclose(made.coordinate[0, :, 0], x / x[-1], atol=5e-3)
     height, width = made.step.shape
-    rate = SliceStore(field, parameter=parameter).at(0).rate[0]
-    texels = np.abs(rate * made.by_cell() * [width, height]).max(axis=-1)
+    texels = np.abs(store.at(0).rate[0] * made.by_cell() * [width, height]).max(axis=-1)
     u, v = np.moveaxis(made.coordinate[2:-2, 2:-2] * [width, height], -1, 0).astype(int)
     moved = made.step[v, u] * texels[2:-2, 2:-2]
     assert np.median(moved) == pytest.approx(1, abs=0.03)
     np.testing.assert_allclose(moved, 1, atol=0.2)
-
-
-@pytest.mark.parametrize("correction", [True, False])
-def test_noise_has_zero_mean_and_unit_variance_and_a_seed(correction: bool) -> None:
-    one, same, other = (
-        paper(stretched(), correction=correction, seed=seed).noise for seed in (1, 1, 2)
-    )
-    assert one.mean() == pytest.approx(0, abs=1e-5)
-    assert one.std() == pytest.approx(1, abs=1e-4)
-    np.testing.assert_array_equal(one, same)
-    assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.2
-
-
-def test_correction_makes_the_grain_even_on_the_surface() -> None:
-    """Figure 6: grains of the corrected noise have the same length where cells have not."""
-    field = stretched()
-    x = field.points[0, :, 0]
-    plain, even = (paper(field, correction=c) for c in (False, True))
-    np.testing.assert_allclose(plain.coordinate[0, :, 0], np.linspace(0, 1, 41), atol=1e-6)
-    np.testing.assert_allclose(even.coordinate[0, :, 0], x / x[-1], atol=5e-3)
-
-    def spread(made: PaperTextures) -> float:
-        """Ninth over first decile of the lengths of grains along a row."""
-        row = made.noise[made.noise.shape[0] // 2]
-        edges = (np.flatnonzero(np.diff(row)) + 1) / len(row)
-        grains = np.diff(np.interp(edges, made.along_i, x))
-        return float(np.quantile(grains, 0.9) / np.quantile(grains, 0.1))
-
-    assert spread(plain) > 4
-    assert spread(even) < 3
-
-
-def test_noise_is_repeated_where_the_axis_is() -> None:
-    assert paper(cylinder_field().at_step(0), correction=True).repeat == (False, True)
-    assert SurfaceGeometry.of(stretched()).columns.before == 0

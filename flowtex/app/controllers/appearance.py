@@ -29,7 +29,6 @@ COMPARISONS: dict[str, dict[str, Any]] = {
         named_values(changes): changes
         for changes in (
             {"lod": False},
-            {"noise": "texture"},
             {"kernel": "box"},
             {"two_sided": False},
             {"fixed_grain": True},

@@ -112,10 +112,9 @@ base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.f
 fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function runsOf(map){let runs=[];for(let n=0;n<
 map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*n+k]===map[4*n-4+k])?runs[runs.length-1][1]=n+1:runs.push([n,n+1]);return runs}
 function rampOf(map,header,settings,stops){let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`\
-rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")}\
-)`},runs=runsOf(map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*
-from/count2}% ${100*to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")}\
-)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+rgb(${(header.image?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(
+map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*
+to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
@@ -194,15 +193,15 @@ spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stret
 precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],SAMPLERS=[
-"u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_p\
-laces","u_depths","u_colours","u_strides"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){this.
-graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
-this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
-"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
-fragment,...defines].join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,
-defines)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.
-context,program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.
-map(name=>`#define ${name}
+"u_slices","u_slicesNext","u_image","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places",
+"u_depths","u_colours","u_strides"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){this.graphics=
+graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){this.entries.
+clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free("Shader",shader);
+this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,fragment,...defines].
+join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,defines)),!entry.
+ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.context,program=graphics.
+counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.map(name=>`#define ${name}\
+
 `).join(""),shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(kinds[n]));return gl.
 shaderSource(shader,source.startsWith("#version")?source:preamble+source),gl.compileShader(shader),gl.attachShader(program,
 shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,
@@ -625,42 +624,40 @@ swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(ea
 button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(
 header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
 this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
-not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
-var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
-paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
-paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
-noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
-settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),critical_points:({structure})=>!!structure?.
-parts.includes("critical"),separatrices:({structure})=>!!structure?.parts.includes("separatrices"),nullclines:({structure})=>!!structure?.
-parts.includes("nullclines"),lod:()=>!1,show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(
-header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===
-value==(sign==="=="));return!needs.length||holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glas\
-s",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){this.viewer=viewer}build(header){
-let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,header,rebuild)),kindOf=some=>JSON.
-stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))return!1;this.rows=rows,this.controls.
-clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom(
-"span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,
-...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,
-line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].filter(({row:row2})=>row2.name.
-startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.
-controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),
-line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(
-row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){
-let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
-choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom(
-"option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.
-viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[
-min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
-viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
-clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
-row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
-utput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
-lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":"change";return this.viewer.
-lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{input.value=String(toSlider(
-Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,[least,most]=[low??0,high??
-1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?
-Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?
-1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,image,variant}){return slices.steps===1&&!image&&!isSignFree({variant})}
+var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({image})=>!image,fixed_grain:({
+image})=>!image,two_sided:({slices})=>slices.sides===2,seed:({image})=>!image,resolution:({image})=>!image,tiles:({image})=>!!image,
+lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,settings},rebuild)=>rebuild&&(slices.steps===1||settings.
+lines!=="pathlines"),critical_points:({structure})=>!!structure?.parts.includes("critical"),separatrices:({structure})=>!!structure?.
+parts.includes("separatrices"),nullclines:({structure})=>!!structure?.parts.includes("nullclines"),lod:()=>!1,show_level:()=>!1};
+function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({
+needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||
+holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
+this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
+header,rebuild)),kindOf=some=>JSON.stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))
+return!1;this.rows=rows,this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(
+row2),{input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},
+line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.
+set(row2.name,{...control,row:row2,line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].
+filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,
+{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.
+toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control===
+"checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.
+slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,
+"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.
+map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,
+"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,
+low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(
+max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
+this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,
+fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
+range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(
+Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":
+"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{
+input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
+[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
 left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
@@ -683,41 +680,39 @@ scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);retur
 ticks[2]}var MOST_SHARE=.9999999;function cornersAndBlocks(triangles,blocks){return Uint32Array.from({length:4*blocks.length},(_,n)=>n%
 4<3?triangles[3*(n>>2)+n%4]:blocks[n>>2])}function placeIn(triangle,second,third){return[third,triangle+Math.min(Math.max(
 second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(j),[second,third]=[j-number,i];return[1-
-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
-header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
-subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
-chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
-geometry.columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.
-two_sided||signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
-header,settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.
-kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
+second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}function uniforms(header,settings,view){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(header),finest=2**
+(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.
+eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&chosen===
+"ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.
+columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
+signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,
+settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.
+indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
 show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,
 u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length===
-"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,
-s,noiseShape,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&!isSignFree(
-header);return!header.paper&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.paper&&
-settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(header)&&
-!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),constants.
-arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(
-...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.
-eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(s.samples/
-2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={FLOWTEX_CELLS:isClose,
-FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(chosen).flatMap(
-([name,holds])=>holds?[name]:[])}function motionUniforms(header,s,view){let{geometry,constants}=header,{times:times2,pace}=header.
-slices,varies=times2.length>1,inPixels=!varies&&s.speed_in==="pixels",span=times2[times2.length-1]-times2[0],rounds=span*
-pace/geometry.extent,period=varies?span/(Math.round(rounds)||rounds):s.period,turns=(varies?view.time-times2[0]:view.clock)/
-period%constants.mostTurns,travel=period*(varies?pace:s.speed),fine=turns%constants.clockStep;return{u_clock:[turns-fine,
-fine],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.
-wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,
-center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**
-clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.
-map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
-u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
-s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
-deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
-if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_SLOPE=1e-6,SMALL2=.001;
+"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.image?imageUniforms(header.image,s.tiles,view.
+density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&!isSignFree(header);return!header.
+image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.image&&settings.texture===
+"streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(header)&&!header.image}function arrowDistance({
+constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){
+let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,
+away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.
+density:geometry.extent/s.resolution;return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){
+let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};
+return Object.entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}function motionUniforms(header,s,view){let{geometry,
+constants}=header,{times:times2,pace}=header.slices,varies=times2.length>1,inPixels=!varies&&s.speed_in==="pixels",span=times2[times2.
+length-1]-times2[0],rounds=span*pace/geometry.extent,period=varies?span/(Math.round(rounds)||rounds):s.period,turns=(varies?
+view.time-times2[0]:view.clock)/period%constants.mostTurns,travel=period*(varies?pace:s.speed),fine=turns%constants.clockStep;
+return{u_clock:[turns-fine,fine],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||
+s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,
+clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**
+(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*
+cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*
+finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function imageUniforms({
+size,stepSize,repeat},tiles,density){return{u_stepSize:stepSize.map(n=>n*density),u_imageSize:size.map(n=>n*density*tiles),
+u_imageRound:[Number(repeat[1]),Number(repeat[0])],u_tiles:tiles}}function momentOf(times2,time){if(times2.length<2)return[
+0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-
+times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_SLOPE=1e-6,SMALL2=.001;
 function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[-di-dj,
 di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+columns.before,place[1]+
 dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map(
@@ -733,8 +728,8 @@ function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3
 reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=
 POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/
 (lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[
-before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)
-return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,place[0]),between(
+before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{image,geometry}=scene.header;if(!image)
+return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=image,here=[between(alongI,place[0]),between(
 alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];
 return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(
 pointAt(scene,place),scene.header.geometry.center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.
@@ -748,21 +743,21 @@ slice(0,3))),across=unit(cross2(normal,wayAt([0,0]))),by=half/dot2(normal,normal
 normal,first)].map(side=>by*dot2(across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){
 let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
 let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=cross2(...sidesAt(
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,image}=scene.header,normal=cross2(...sidesAt(
 scene,place)),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/
-rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.
-length-2);return(along2[n+1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*
-(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),aside=dot2(
-ray,camera.at(camera.state.focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.
+rows;if(image){let[across,up]=[image.alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.
+length-2);return(along2[n+1]-along2[n])*image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.
+lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2}let texel=geometry.extent/Number(settings.resolution),aside=dot2(ray,
+camera.at(camera.state.focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.
 grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],
 [from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(
 add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function velocityAt(at){
-let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(
-slope,SMALL2*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(
+let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(
+slope,SMALL2*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(
 at)(small)??position,position):slope;return scale2(unit(along2),layers(2)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
-let{scene,position}=at,{slices,paper}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
+let{scene,position}=at,{slices,image}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
 slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
-sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
+sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
 lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}
 let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=sides===2?Math.floor(samples/
 2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(
@@ -1746,17 +1741,17 @@ sight(height/view.density),planes:camera.planes},draft=height!==this.canvas.heig
 for(let[layer,placed]of scene.arrows.share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,
 isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.
 scalarParts(shown[0],shown[1]),values=this.values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,
-placed,painted,view.anchor,{...values,u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
-let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
-null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
-noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
-u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,u_padding:[columns.before,rows.before],
-u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,
-u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(width,height,bottom,rows){let{pen}=this;if(!pen)return;
-let{canvas}=this.graphics,first=canvas.height-rows,[w,scaled]=[this.canvas.width,this.canvas.height/height];if(pen.imageSmoothingEnabled=
-w!==width||scaled!==1,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=width,coarse.height=rows,coarsePen?.
-drawImage(canvas,0,first,width,rows,0,0,width,rows),[canvas,first]=[coarse,0]}let to=(height-bottom-rows)*scaled;pen.clearRect(
-0,to,w,rows*scaled),pen.drawImage(canvas,0,first,width,rows,0,to,w,rows*scaled)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+placed,painted,view.anchor,{...values,u_picture:[width,height]})}}values({header},{bodies},camera,view,samples,draft){let{
+settings}=this.viewer,{columns,rows}=header.geometry,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.
+arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view),...draft?draftUniforms(settings,samples,view.
+density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,
+u_flat:!!header.scalars.flat,u_padding:[columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.
+background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(width,height,bottom,rows){let{pen}=this;if(!pen)return;let{canvas}=this.graphics,first=canvas.height-rows,[w,
+scaled]=[this.canvas.width,this.canvas.height/height];if(pen.imageSmoothingEnabled=w!==width||scaled!==1,pen.imageSmoothingEnabled){
+let{coarse,coarsePen}=this;coarse.width=width,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,width,rows,0,0,width,
+rows),[canvas,first]=[coarse,0]}let to=(height-bottom-rows)*scaled;pen.clearRect(0,to,w,rows*scaled),pen.drawImage(canvas,
+0,first,width,rows,0,to,w,rows*scaled)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1944,27 +1939,27 @@ data[ROW*n+k])),point=add(fromFrame(geometry.frame,[a,b,c]),geometry.center),see
 place[1]);away<least&&([kind,least]=[structure?.kinds[number]?.name??"",away])}return kind}dispose(){this.graphics.free(
 "Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=this.drawn=null}};function nearest([
 before,after,between3]){return between3<.5?before:after}var USERS={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*
-(4/3),CORNERS_WIDTH=2048,ARRAYS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+"cmap"],image:["image"],step:["step"],scalars:["scalar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*
+(4/3),CORNERS_WIDTH=2048,ARRAYS=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
 0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
 this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
 header,parts)}isReady(settings,smooth=!1){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[
 ...["place","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(name).ready),this.
 earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.ready??
-!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.
+!0)}missing(before,after){let{geometry,slices,scalars,image,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.
 parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.bodies?.runs.length&&
 names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?
 names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(
-`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.
-push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).
+`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),image&&names.
+push("image","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).
 map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.
 scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:
 [0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,
-paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??
+image,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??
 [],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,
 geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.
-shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
+shape[2]],step:image?[...image.stepSize].reverse():[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
 let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
 ["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
 planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.
@@ -2037,17 +2032,17 @@ gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,s
 graphics;makeLayers(gl,texture,size);for(let n=0;n<size.layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(
 n));floats2&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.
 steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(
-stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper,scalars}=this.header,repeat=paper?.
-repeat??[!1,!1],steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=
-steps,this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:
-this.slices(after)),this.bind("u_noiseImage",paper&&this.image("noise",paper.picture?[!0,!0]:repeat)),this.bind("u_stepI\
-mage",paper&&this.image("step",repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.
-bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.
-shares(before,after);this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));
-let along2=()=>alongAxes(paper?.alongI??[],paper?.alongJ??[]);this.bind("u_along",paper&&this.table("along","",gl.RG32F,
-Math.max(paper.alongI.length,paper.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)
-return data;let all=new data.constructor(length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.header,steps=String(
+this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,this.dropSlices(before,
+after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.slices(after)),this.bind(
+"u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",image.repeat));let colours=texelsOf(
+this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.
+beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);this.bind("u_shares",scalars.
+name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(image?.alongI??[],
+image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,image.alongJ.length),
+along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(target,
+gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;let all=new data.constructor(
+length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){
@@ -2255,7 +2250,7 @@ sign*by),weight}),step=stepAt(at(2*lag-from),bend)}return result2}function share
 c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
 d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
 Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
-shaders}=header;if(header.paper||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.
+shaders}=header;if(header.image||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.
 state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,anchor:[0,0,
 0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*
 grain,layers=layersAt(at),moves=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(u.u_sides)).

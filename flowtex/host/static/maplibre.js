@@ -67,7 +67,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new $r[i](s);for(let m=0,u=0;m<c;m+=1)for(let p=m;p<s;p+=c,u+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+u]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let m=0;m<r[0];m+=1)for(let u=h;u<s;u+=1)l[u]+=l[u-h];for(let m=0;m<r[1];m+=1)for(let u=0;u<
 s;u+=h)for(let p=u+c;p<u+h;p+=1)l[p]+=l[p-c];return Yr(a,n?Na(l,n.map(m=>2**m)):l)}function Na(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>cr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var mr=1e-6,et=typeof Float32Array<"u"?Float32Array:Array;var Sc=Math.PI/180,Tc=180/Math.PI;function Zr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>cr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var mr=1e-6,et=typeof Float32Array<"u"?Float32Array:Array;var Ac=Math.PI/180,Tc=180/Math.PI;function Zr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function Qr(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<mr?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
 a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Ua(){var a=new et(3);return et!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function en(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function tn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function rn(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function nn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -79,10 +79,10 @@ return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var G=a=>a,te=()=>[0,0,0],ln=a=>new Array(a).fill(0),L=(a,e)=>an(G(a),G(e)),F=a=>en(G(a)),E=(a,e)=>tn(te(),G(a),G(e)),k=(a,e)=>rn(
 te(),G(a),e),I=(a,e)=>on(te(),G(a),G(e)),U=a=>sn(te(),G(a)),T=(a,e,t=1)=>nn(te(),G(a),G(e),t);function tt(a,e,t){let r=Qr(
 ln(16),t*Math.PI/180,G(e));return r===null?te():cn(te(),G(a),r)}function O(a,e){let t=Zr(ln(9),a);return ur(te(),G(e),t)}
-function Z(a,e){return ur(te(),G(e),a)}function S(a,e,t){return Math.min(Math.max(a,e),t)}var Da="own cmap";var hn=256;function Ba({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
+function Z(a,e){return ur(te(),G(e),a)}function A(a,e,t){return Math.min(Math.max(a,e),t)}var Da="own cmap";var hn=256;function Ba({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
 length/4-1||1;return o.map((l,h)=>{let[m,u]=[h>>2,h&3],p=Math.round((s?c-m:m)/c*(hn-1));return u===3?l:e[3*(i.indexOf(t)*
 hn+p)+u]})}function mn(a,{beyond:e}){let t=a.length/4,r=a instanceof Float32Array;return Float32Array.from({length:a.length+
-12},(n,s)=>{let[i,o]=[s>>2,s&3],c=a[4*S(i-1,0,t-1)+o];return o===3?r?i?c:1:0:(i>t?e[i-t]:i?null:e[0])?.[o]??c/255})}function un(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:y})=>y===e.scalars);
+12},(n,s)=>{let[i,o]=[s>>2,s&3],c=a[4*A(i-1,0,t-1)+o];return o===3?r?i?c:1:0:(i>t?e[i-t]:i?null:e[0])?.[o]??c/255})}function un(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:y})=>y===e.scalars);
 if(n>=0){let{name:y,label:b,unit:v,steps:x,flat:w}=r.choices[n];Object.assign(r,{name:y,label:b,unit:v,steps:x,flat:w,number:n,
 auto:!0})}if(e.cmap&&(r.cmap=e.cmap),Array.isArray(e.clim)&&([r.low,r.high]=e.clim),e.clim!==void 0&&(r.auto=!e.clim),r.
 auto&&r.choices[r.number]){let{low:y,high:b,cmap:v=""}=r.choices[r.number],w=(y<0&&b>0||r.diverging.includes(v))&&r.diverging.
@@ -110,7 +110,7 @@ i-s,0)*pe(r.view_angle),c=r.parallel?r.parallel_scale:o,l=Math.min(c/s*180/Math.
 position[1])/i,m=Math.min(l*this.aspect/Math.max(h,Ha),n.turn);this.turn(pr,-m*e);let[u]=this.axes,p=Math.abs(r.position[2])/
 i,f=fr(r);this.turn(u,l*t),Math.abs(r.position[2])/i>Math.max(pn,p)&&(this.state=f);let[,,g]=this.axes,y=T(pr,g,-L(pr,g));
 F(y)>1-pn&&(this.state.up=U(y))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=tt(r[n],e,t)}zoomBy(e,t=0,r=0){
-if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=S(e,n/
+if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=A(e,n/
 this.zoom,s/this.zoom),[o,c,l]=this.axes,h=this.height*(1-1/i);this.shift(T(k(o,t*this.aspect*h),c,r*h)),this.state.parallel?
 this.state.parallel_scale/=i:this.approach(this.height/i,l)}ray(e,t){let[r,n,s]=this.axes,{height:i,state:o}=this,c=T(T(
 o.focal_point,r,e*this.aspect*i),n,t*i);return o.parallel?[T(c,s,-this.distance),s]:[T(o.position,[0,0,0]),U(E(c,o.position))]}approach(e,t){
@@ -118,24 +118,24 @@ let r=Math.max(e/pe(this.limits.view_angle),this.nearest);this.state.position=T(
 view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=L(E(r,this.state.
 position),n);s>0&&(this.state.focal_point=T(this.state.position,n,s))}shift(e){this.state.focal_point=T(this.state.focal_point,
 e),this.state.position=T(this.state.position,e)}};function fr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
-...e],focal_point:[...t],up:[...r]}}function H(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:i,frame:o}=a,[c,l,h]=e.axes.map(A=>O(o,A)),m=A=>E(O(o,E(A,s)),
+...e],focal_point:[...t],up:[...r]}}function H(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:i,frame:o}=a,[c,l,h]=e.axes.map(S=>O(o,S)),m=S=>E(O(o,E(S,s)),
 t),u=m(r.focal_point),p=k(t,-1),f=Math.max(.51*i,a.reach??0),d=new Array(16).fill(0),g=r.parallel?r.parallel_scale:pe(r.
-view_angle);if([c.map(A=>A/g/n),l.map(A=>A/g)].forEach((A,P)=>{for(let R=0;R<3;R+=1)d[4*R+P]=A[R];d[12+P]=-L(A,u)}),r.parallel){
-for(let A=0;A<3;A+=1)d[4*A+2]=h[A]/f;return d[14]=-L(h,p)/f,d[15]=1,d}let b=m(r.position),v=L(E(p,b),h),x=Math.max(v+f,.001*
-f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),_=-2*x*w/(x-w);for(let A=0;A<3;A+=1)d[4*A+2]=h[A]*M,d[4*A+3]=h[A];return d[15]=-L(
+view_angle);if([c.map(S=>S/g/n),l.map(S=>S/g)].forEach((S,P)=>{for(let R=0;R<3;R+=1)d[4*R+P]=S[R];d[12+P]=-L(S,u)}),r.parallel){
+for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-L(h,p)/f,d[15]=1,d}let b=m(r.position),v=L(E(p,b),h),x=Math.max(v+f,.001*
+f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),_=-2*x*w/(x-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-L(
 h,b),d[14]=d[15]*M+_,d}function fn({center:a,frame:e},t,r,n,s){let[i,o]=t.axes,{height:c,state:l,aspect:h}=t,[m,u]=[k(i,
 2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,gn=9,za=.2,Ga=1.4,dn=55,Wa=125,$a=.5,ja=4,bn=4e-5,yn=2e-6;function vn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+ae)<=s)return{scale:1,samples:r};let i=Math.min(gn,r),o=Math.sqrt(s/(i+ae)/t);return o<1?{scale:Math.max(
-o,za),samples:i}:{scale:1,samples:S(Math.floor(s/t-ae),i,r)}}function xn(a,e,t,r,n){if(!n)return dn;let s=Math.min(gn,r),
-i=e+a*t*$a**2*(s+ae);return S(i,dn,Wa)}function wn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),ja)}function Mn(a){
-return(2*a+ae)/(a+ae)}function En(a,e,t,r,n){let s=Math.max(e,.05)/(t*(r+ae)*n);return a+(s-a)*(s>a?.7:.3)}function An(a,e,t){
-let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:S(
+o,za),samples:i}:{scale:1,samples:A(Math.floor(s/t-ae),i,r)}}function xn(a,e,t,r,n){if(!n)return dn;let s=Math.min(gn,r),
+i=e+a*t*$a**2*(s+ae);return A(i,dn,Wa)}function wn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),ja)}function Mn(a){
+return(2*a+ae)/(a+ae)}function En(a,e,t,r,n){let s=Math.max(e,.05)/(t*(r+ae)*n);return a+(s-a)*(s>a?.7:.3)}function Sn(a,e,t){
+let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:A(
 c,.1,Math.max(Ga,n))}}var Ya=`#version 300 es
 precision highp float;
 precision highp int;
 `,Xa=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],de=["u_sli\
-ces","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places",
-"u_depths","u_colours","u_strides"],Ae=class{graphics;entries=new Map;parallel=null;constructor(e){this.graphics=e}findFeatures(){
+ces","u_slicesNext","u_image","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places","u_d\
+epths","u_colours","u_strides"],Se=class{graphics;entries=new Map;parallel=null;constructor(e){this.graphics=e}findFeatures(){
 this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){this.entries.clear()}dispose(){for(let e of this.
 entries.values()){for(let t of e.shaders)this.graphics.free("Shader",t);this.graphics.free("Program",e.program)}this.clear()}get(e,t,...r){
 let n=[e,t,...r].join("\0"),s=this.entries.get(n);return s||this.entries.set(n,s=this.build(e,t,r)),!s.ready&&!s.error&&
@@ -155,7 +155,7 @@ r.useProgram(e.program);for(let[n,s]of Object.entries(t)){let i=e.uniforms.get(n
 l=typeof s=="object"?s:[Number(s)];c===r.FLOAT?r.uniform1fv(o,l):c===r.FLOAT_VEC2?r.uniform2fv(o,l):c===r.FLOAT_VEC3?r.uniform3fv(
 o,l):c===r.FLOAT_VEC4?r.uniform4fv(o,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(o,!1,l):r.uniform1i(o,l[0])}}};var Ka=4,qa=45,Ja=[4,68],Za=Symbol.for("flowtex.gl/3"),dr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
-high-performance"}),this.programs=new Ae(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",e=>{e.
+high-performance"}),this.programs=new Se(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",e=>{e.
 preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),this.picker=
 this.smooth=null;for(let t of this.users)t.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
 !1,this.findFeatures();for(let e of this.users)e.change()})}findFeatures(){let{gl:e}=this;if(!e)return;let t=["EXT_color\
@@ -180,7 +180,7 @@ r.READ_FRAMEBUFFER,this.smooth?.frame??null),r.bindFramebuffer(r.DRAW_FRAMEBUFFE
 0,0,e,t,0,0,e,t,r.COLOR_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,null)}numbers(e,t=1,r=1){let n=this.context;
 this.picker??=this.target(n.RGBA32UI,...Ja,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
 n.SCISSOR_TEST),n.enable(n.DEPTH_TEST),n.clearBufferuiv(n.COLOR,0,[0,0,0,0]),n.clear(n.DEPTH_BUFFER_BIT),e();let s=new Uint32Array(
-4*t*r);return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function Sn(){
+4*t*r);return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function An(){
 let a=globalThis;return a[Za]??=new dr}function gr(a,e,t,r=1){let n=a.getParameter(a.MAX_TEXTURE_SIZE),s=a.getParameter(a.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(
 e,t)>n||r>s)throw new Error(`a texture of ${e} x ${t} texels in ${r} layers is needed, but this graphics card supports a\
 t most ${n} x ${n} in ${s}; show fewer nodes`)}function rt(a,e,t){let{width:r,height:n,layers:s,channels:i,levels:o}=t;gr(
@@ -248,7 +248,7 @@ r?r[i]:1;for(let o of[0,1])s[4*i+1+o]=n?n[2*i+o]:0}return s}padded(){let e=this.
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,i=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
 flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=ii)break;this.flows.delete(o),this.textures.delete(c),this.
-graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=S(Math.ceil((t-e)*this.fastest/oi),1,ci),n=s=>s===r?t:e+
+graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=A(Math.ceil((t-e)*this.fastest/oi),1,ci),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,i)=>[n(i),n(i+1)])}layerTarget(e,t){let r=this.graphics.context,{width:n,height:s}=t;
 if(this.graphics.floats){let m=this.frame();return{begin:u=>(r.bindFramebuffer(r.FRAMEBUFFER,m),r.framebufferTextureLayer(
 r.FRAMEBUFFER,r.COLOR_ATTACHMENT0,e,0,u),[n,s]),end:()=>{},finish:()=>{r.activeTexture(r.TEXTURE0),r.bindTexture(r.TEXTURE_2D_ARRAY,
@@ -266,15 +266,15 @@ Number(r.closed[0])],u_first:[r.first[1],r.first[0]],u_texels:[m,h],u_offsetJ:r.
 3,6),u_timed:r.timed?.speed??0,u_rest:r.rest,u_pace:r.pace,u_unit:o.unit,u_cell:o.cell/o.unit,u_planar:Number(i.planar),
 u_mostReach:2*v[v.length-1]},_=([C,J],we,he,Pe)=>{s.viewport(0,0,C,J);for(let j of[s.SCISSOR_TEST,s.DEPTH_TEST,s.BLEND,s.
 CULL_FACE])s.disable(j);we.forEach((j,ee)=>{s.activeTexture(s.TEXTURE0+ee),s.bindTexture(s.TEXTURE_2D,j)}),s.bindVertexArray(
-null),t.programs.use(he,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},A=this.layerTarget(p,u),P=(C,J,we,he)=>{_(A.begin(C),
-[d,...y,...we],J,he),A.end(C)},{follow:R,compose:N,slopes:B,tangents:q}=at(t,n,r);P(0,q,[],{u_inCells:0}),w>1+x*v.length&&
+null),t.programs.use(he,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},S=this.layerTarget(p,u),P=(C,J,we,he)=>{_(S.begin(C),
+[d,...y,...we],J,he),S.end(C)},{follow:R,compose:N,slopes:B,tangents:q}=at(t,n,r);P(0,q,[],{u_inCells:0}),w>1+x*v.length&&
 P(w-1,q,[],{u_inCells:1});let se=0;for(let C=0;C<x;C+=1){let J=C?1:-1,we=1+C*v.length,[he,Pe,j]=[b[0],b[0],b[0]];for(let[
 ee,Je]of v.entries()){let[Cr,Ur]=[v[ee-1]??0,v[ee-2]??0],Vr=Je>ai&&Ur>0?N:null,Ze=j;for(let ir of mi(n,e,J,Cr,Je)){let[Pa,
 Ra]=ir.steps.map(or=>this.flowTexture(or)),La=Vr?[[Cr,Je]]:this.partsOf(ir);for(let[or,ka]of La){let Dr=b.find(Oa=>![he,
 Pe,j,Ze].includes(Oa))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Dr[1]),_([l,c],[Pa,...y,Ze[0],Pe[0],Ra,g],Vr??R,{u_lagEarlier:Ur,
 u_from:or,u_to:ka,u_side:J,u_between:ir.between}),Ze=Dr,!((se+=c*l)<li)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,s.UNSIGNED_INT,
 new Uint32Array(4)),se=0,yield)}}[Pe,j]=[j,Ze],ee||(he=j);let Ta=r.uncertain&&ee===ni,_a=ee===1&&!C?ei:Ta?ri:Qa;ee&&P(we+
-ee,B,[j[0],j[0]],{u_fourth:_a,u_lag:J*Je})}P(we,B,[he[0],j[0]],{u_fourth:ti,u_lag:J*v[0]})}return A.finish(),p}};var ui={slices:[12,4],flow:[100,24]},pi=24,ot=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
+ee,B,[j[0],j[0]],{u_fourth:_a,u_lag:J*Je})}P(we,B,[he[0],j[0]],{u_fourth:ti,u_lag:J*v[0]})}return S.finish(),p}};var ui={slices:[12,4],flow:[100,24]},pi=24,ot=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
 digest:r}=e;if(r&&this.all.get(t)?.digest===r)return!1;let n=this.graphics.hold(e);return this.remove(t),this.all.set(t,
 n),!0}remove(e){this.graphics.release(this.all.get(e)),this.all.delete(e)}clear(e=()=>!0){for(let t of[...this.all.keys()])
 e(t)&&this.remove(t)}trim(e,t,r){let{hasSteps:n=!1,hasMarks:s=!1,memory:i=0}=t??{};if(!e||!n)return;for(let h of s?Object.
@@ -287,16 +287,16 @@ e.addEventListener(t,r,{...n,signal:s})}later(e,t){let r=setTimeout(()=>{this.ti
 add(r),r}cancel(e){e!==null&&(clearTimeout(e),this.timers.delete(e))}observe(e,t){e.observe(t),this.observers.add(e)}watch(e,t,r){
 e.observe(t,r),this.observers.add(e)}stats(){let{globalListeners:e,observers:t,timers:r}=this;return{listeners:e,observers:t.
 size,timers:r.size}}end(){this.controller.abort(),this.globalListeners=0;for(let e of this.observers)e.disconnect();this.
-observers.clear();for(let e of this.timers)clearTimeout(e);this.timers.clear()}};function Ln(a,e,t,r=null){let{geometry:n,slices:s,constants:i}=a,o=e,c=me(a),l=2**(Math.floor(Math.log2(n.extent))-i.noiseDoublings),
-h=t.eye[3],m=O(n.frame,E(t.eye,k(n.center,h))),u=kn(a,e),p=u?"ramp":o.kernel,f=c&&p==="ramp"?"hann":p;return{u_eye:[...E(
-m,k(t.anchor,h)),h],u_between:t.between,u_slicesSize:[n.columns.size,n.rows.size],u_deepest:n.levels,u_lags:s.lags,u_lagCount:s.
-lags.length,u_sides:o.two_sided||c||u?s.sides:1,u_unit:s.unit,u_rateLayer:s.count-1,u_cell:s.cell,u_samples:lt(a,e,t.still)?
-2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:i.kernels.indexOf(f),u_lod:o.lod,u_contrast:o.
-contrast,u_strength:o.strength,u_fade:c?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,...fi(a,o,
-t),...di(a,t,l),u_noiseFinest:l,u_texel:n.extent/o.resolution,u_apart:br(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
-d",u_arrowSides:s.sides,u_pieces:i.arrows.pieces,...a.paper&&r?gi(a.paper,o,r,t.density):{}}}function lt(a,e,t=!1){let r=e.
-motion!=="off"&&!me(a);return!a.paper&&(r||a.slices.steps>1&&!t)}function kn(a,e){return!a.paper&&e.texture==="streaklet\
-s"}function Le(a,e){return Number(e.arrows)>0&&!me(a)&&!a.paper}function br({constants:a},{arrows:e}){return a.arrows.least*
+observers.clear();for(let e of this.timers)clearTimeout(e);this.timers.clear()}};function Ln(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=me(a),c=2**(Math.floor(Math.log2(r.extent))-s.noiseDoublings),
+l=t.eye[3],h=O(r.frame,E(t.eye,k(r.center,l))),m=kn(a,e),u=m?"ramp":i.kernel,p=o&&u==="ramp"?"hann":u;return{u_eye:[...E(
+h,k(t.anchor,l)),l],u_between:t.between,u_slicesSize:[r.columns.size,r.rows.size],u_deepest:r.levels,u_lags:n.lags,u_lagCount:n.
+lags.length,u_sides:i.two_sided||o||m?n.sides:1,u_unit:n.unit,u_rateLayer:n.count-1,u_cell:n.cell,u_samples:lt(a,e,t.still)?
+2*i.samples-1:i.samples,u_spacing:i.spacing,u_grain:i.grain*t.density,u_kernel:s.kernels.indexOf(p),u_lod:i.lod,u_contrast:i.
+contrast,u_strength:i.strength,u_fade:o?0:i.fade,u_seed:i.seed,u_showLevel:i.show_level,u_fixed:i.fixed_grain,...fi(a,i,
+t),...di(a,t,c),u_noiseFinest:c,u_texel:r.extent/i.resolution,u_apart:br(a,e)*t.density,u_bySpeed:e.arrow_length==="spee\
+d",u_arrowSides:n.sides,u_pieces:s.arrows.pieces,...a.image?gi(a.image,i.tiles,t.density):{}}}function lt(a,e,t=!1){let r=e.
+motion!=="off"&&!me(a);return!a.image&&(r||a.slices.steps>1&&!t)}function kn(a,e){return!a.image&&e.texture==="streaklet\
+s"}function Le(a,e){return Number(e.arrows)>0&&!me(a)&&!a.image}function br({constants:a},{arrows:e}){return a.arrows.least*
 Math.max(Number(e),a.arrows.mostDense)}function ht(a,e,t){let{geometry:r,slices:n,constants:s}=a,i=e,o=Math.hypot(...E(t.
 eye,r.center))-.5*r.extent,c=t.eye[3]?Math.max(o,0)/Math.hypot(...E(t.eye,t.focus)):1,l=i.lod?t.pixel*c*i.grain*t.density:
 r.extent/i.resolution;return Math.floor(i.samples/2)*i.spacing*l<s.farCells*n.critical}function On(a,e,t,r){let n={FLOWTEX_CELLS:t,
@@ -305,20 +305,19 @@ let{geometry:r,constants:n}=a,{times:s,pace:i}=a.slices,o=s.length>1,c=!o&&e.spe
 i/r.extent,m=o?l/(Math.round(h)||h):e.period,u=(o?t.time-s[0]:t.clock)/m%n.mostTurns,p=m*(o?i:e.speed),f=u%n.clockStep;return{
 u_clock:[u-f,f],u_travel:p*(c?t.density:1),u_travelInPixels:c,u_travelBySpeed:o||e.motion==="speed",u_wave:n.wavePixels*
 t.density}}function di(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=O(s,E(e.
-focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>S(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*
+focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>A(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*
 l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:u,u_noiseRestOdd:m.map((p,f)=>p-
-u[f])}}function gi(a,e,t,r){let n=e.noise==="image"?e.tiles:1,[s,i]=t;return{u_noiseSize:a.size.map(o=>o*r),u_noiseGrain:a.
-grain,u_noiseDeviation:a.deviations,u_noiseCorrected:a.corrected,u_pictureSize:[i*r*n,s*r*n],u_pictureRound:[Number(a.repeat[1]),
-Number(a.repeat[0])],u_pictureGrey:t.length===2,u_tiles:n}}function yr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.
-length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,S(r,0,1)]}var bi=.5,yi=6,vi=60,xi=.5,mt=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+u[f])}}function gi({size:a,stepSize:e,repeat:t},r,n){return{u_stepSize:e.map(s=>s*n),u_imageSize:a.map(s=>s*n*r),u_imageRound:[
+Number(t[1]),Number(t[0])],u_tiles:r}}function yr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)
+t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,A(r,0,1)]}var bi=.5,yi=6,vi=60,xi=.5,mt=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return yr(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
-times[t]-this.times[e])}seek(e){this.time=S(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
+times[t]-this.times[e])}seek(e){this.time=A(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
 r:o>=r),s=t.length,i=n<0?s:n;return t[(e>0?i:i-1+s)%s]}start(){this.playing=!0,this.lastFrame=0}range(e){if(this.varies)
 return{first:this.span[0],last:this.span[1],now:this.time};let t=Number(e.period);return{first:0,last:t,now:this.clock%t}}advance(e,t){
 let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,xi)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
-r,!0;let[n,s]=this.span,i=S(bi*(this.times.length-1),yi,vi),o=this.time+r*(s-n)/i,[c,l]=yr(this.times,Math.min(o,s));return t(
+r,!0;let[n,s]=this.span,i=A(bi*(this.times.length-1),yi,vi),o=this.time+r*(s-n)/i,[c,l]=yr(this.times,Math.min(o,s));return t(
 [c,l])?(this.time=o>s?n:o,!0):!1}};var Fn=()=>null,ut=class{};var V="",Nn=5,z=a=>a.join("/"),oe=a=>a.split("/").map(Number);function In(a,e){let[t,r,n]=["samples","spacing","grain"].
 map(i=>Number(e[i])),s=.5*t*r*n;return a.cellPixels*Math.max(1,2*s/(a.cellPixels*a.pathCells))}var pt=class{header;place;constructor(e,t){
 this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Nn*(n[s]+i*
@@ -338,23 +337,23 @@ Math.max(F(E([r,n,s],a))-i,o):1;return o*.5*t/(e*c)}function Cn(a){return[...a].
 n=s=>{let{needed:i=!1,finer:o=[]}=a.get(s)??{},c=o.filter(n);return s!==V&&!i&&c.length===o.length?!0:s!==V&&!e(s)?(c.forEach(
 r),!1):(t.set(s,c),!0)};return n(V),t}function ft(a,e,t){let r=s=>Math.min(s*2**e,t-1),n=Math.floor(a);return r(n)+(a-n)*
 (r(n+1)-r(n))}function Un(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/
-(Math.min((n+1)*r,t-1)-n*r)}var Vn=1e4,wi=20,Mi=4,Ei=4,Ai="The surface is shown coarse",Si="A part of the surface is shown coarse",Ti="A time step c\
-annot be shown",Se=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
-now())}has(e){return this.now()-(this.times.get(e)??-1/0)<Vn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Se;constructor(e,t){
+(Math.min((n+1)*r,t-1)-n*r)}var Vn=1e4,wi=20,Mi=4,Ei=4,Si="The surface is shown coarse",Ai="A part of the surface is shown coarse",Ti="A time step c\
+annot be shown",Ae=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
+now())}has(e){return this.now()-(this.times.get(e)??-1/0)<Vn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Ae;constructor(e,t){
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
-running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Se}next(){for(let e of this.jobs){if(this.
+running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Ae}next(){for(let e of this.jobs){if(this.
 running.size>=(this.source()?.atOnce??Mi))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
 let{taker:t}=this,r=this.source();if(!r)return;let[n,s,i]=e,o=new AbortController,{signal:c}=o,l=h=>n?t.tiles?.has(z(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),o);try{let h=await r.load(n,s,c,l,i);if(!c.aborted)for(let m of h)t.setPart(
 m)}catch(h){c.aborted||this.fail(e,h)}c.aborted||(this.running.delete(String(e)),this.failed.has(String(e))||(this.jobs=
 this.jobs.filter(h=>String(h)!==String(e))),this.next())}fail(e,t){let[r,n]=e;this.failed.add(String(e)),setTimeout(()=>this.
-next(),Vn+wi);let s=t.fault==="unreachable",i=r&&!s?z(r):void 0;this.taker.lack(Dn(r?Si:Ti,t),i,n)}};function Dn(a,e){let{
+next(),Vn+wi);let s=t.fault==="unreachable",i=r&&!s?z(r):void 0;this.taker.lack(Dn(r?Ai:Ti,t),i,n)}};function Dn(a,e){let{
 fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?r:`${a}: ${r}`}var dt=class{tiles;wholes;marks;given;formula=null;constructor(e,t){
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
 source?.hasMarks??!1}setHeader(e){this.stop(),this.formula=e.formula?new ut(e,e.formula):null}follow(e){return this.formula?.
 follow(e)??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.tiles;this.source?.open?.().
-catch(t=>e.lack(Dn(Ai,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
+catch(t=>e.lack(Dn(Si,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
 ,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+Ei);this.wholes.want(r.map(
 n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){
 this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Bn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
@@ -365,9 +364,9 @@ length:2*a[0]*a[1]},(r,n)=>{let[s,{before:i,size:o}]=n%2?[Math.floor((n>>1)/a[1]
 function Gn(a,e){let t=Math.max(a.length,e.length);return Float32Array.from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Wn(a){
 let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=
 r}return e}function bt(a,e){let t=a[0]?.length??0,r=new Float32Array(2*t),n=lr(e);return a.forEach((s,i)=>{for(let o=0;o<
-t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?S(c,-Hn,Hn):_i}}),r}function $n([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
+t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?A(c,-Hn,Hn):_i}}),r}function $n([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
 t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],c=s*e+n,[l,h]=[Math.min(i,o),Math.max(i,o)],m=c+(i>=o?1:e);return[[
-c,1-h],[m,h-l],[c+e+1,l]]}function yt(a,e){return a.reduce((t,[r,n])=>t+n*e(r),0)}var jn=180/Math.PI;var Pi=1e-4;function Ri(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=S(
+c,1-h],[m,h-l],[c+e+1,l]]}function yt(a,e){return a.reduce((t,[r,n])=>t+n*e(r),0)}var jn=180/Math.PI;var Pi=1e-4;function Ri(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Yn(a,e){let t=a*(e-1),r=A(
 Math.floor(t)-1,0,e-4);return[r,Ri(t-r)]}function Mr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Yn((i[0]-a)/(t-a),c),
 [m,u]=Yn((i[1]-e)/(r-e),o),p=[0,0,0];return u.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((m+d)*
 c+l+y)+b]})}),p}function vt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?Mr(a.map,t,e):e,i=[Math.atan2(n,r),Math.
@@ -378,55 +377,55 @@ l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var Li=.9999999;function Kn(a,e){
 return[t,a+Math.min(Math.max(e,0),Li)]}function qn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((o,c)=>[
 a[3*r+c],o])}var Jn=8,ki=4,Oi=10,Fi=.05,Ni=.25,es=1e-6,Ii=.001;function Ci({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
 header.geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[o,c]=[e[0]+t+s.before,e[1]+r+
-n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=S(
-l+(f&1),0,s.size-1);return[S(h+(f>>1),0,n.size-1)*s.size+d,p]})}function ts(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
+n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=A(
+l+(f&1),0,s.size-1);return[A(h+(f>>1),0,n.size-1)*s.size+d,p]})}function ts(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
 header,s=Ci(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
 Ui(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
 -1:1)*n.lags.length,b=u[g]<0&&p>0?y:p;h.forEach((v,x)=>{m[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*m[x]*w*(M<3?u[g]:1)})})}),f}}
 function Ui(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Vi(a,e,t,r,n){
 let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let m=a(t+h+
 1).slice(0,3);for(let u=1;u<=Jn;u+=1){let p=u/Jn,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(m[b]-y));
-if(l.push(k(g,r*f*n)),f===c)break}[s,i]=[m,e[h]]}return l}function rs({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.
+if(l.push(k(g,r*f*n)),f===c)break}[s,i]=[m,e[h]]}return l}function rs({scene:a,place:e,position:t}){let{image:r,geometry:n}=a.
 header;if(!r)return l=>T(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Zn(s,e[0]),Zn(i,e[1])],c=Fe(a,e);return([l,h])=>{let m=[
 Qn(s,o[0]+l),Qn(i,o[1]+h)];return m.some(Number.isNaN)?null:T(t,E(Fe(a,m),c))}}function Ne(a,e){return T(Fe(a,e),a.header.
 geometry.center)}function Fe(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>yt(r,i=>t[3*i+s]));return Z(
 a.header.geometry.frame,n)}function Di(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
-e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>S(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
+e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>A(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
 return[E(i(.5,0),i(-.5,0)),E(i(0,.5),i(0,-.5))]}function Zn(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Qn(a,e){let t=a.findIndex(
 r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Bi({scene:a,place:e,position:t},r,n,s){let{
-geometry:i,paper:o}=a.header,c=I(...Di(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Fi),u=2*l/s;if(o){let[
-y,b]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.size[w]}),v=Math.
-sqrt(F(c)/(y*b));return o.grain*(r.lod?Math.max(u/Math.sqrt(m),v):v)}let p=i.extent/Number(r.resolution),f=L(h,n.at(n.state.
-focal_point).ray),g=u*Math.sqrt(Math.max(f,Ni/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Hi(a,e,t){
-let r=[],[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(T(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}
-return r}function Er(a){let{scene:e,position:t}=a,{slices:r,paper:n,speed:s}=e.header,i=ts(a),[o,c,l]=i(0),h=[o,c,l],m=k(
-h,Ii*(n?1/n.size[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){
-let{scene:n,position:s}=a,{slices:i,paper:o}=n.header,c=ts(a),l=!me(n.header),h=c(0),m=[h[0],h[1],h[2]],u=rs(a),p=[],f=e.
-two_sided||!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,A=Vi(c,i.lags,w*i.lags.length,w?1:-1,M).map(
-u),P=A.findIndex(R=>R===null);p.push(A.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=lt(n.header,e,!0)?2*d-1:d,y=f===
-2?Math.floor(g/2):g-1,b=Number(e.spacing)*Bi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(A=>Hi(s,A,w));return[...M.reverse(),s,..._]};
-return{path:v(ki*Math.max(y,Oi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var zi=8,Gi=1e-6,Wi=.001,$i=89.99,ji=a=>a-360*Math.round(a/360);function Ar([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
-function xt({header:a},e){return e.map((t,r)=>S(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ss=([a,e])=>[(1-a)*(1-e),a*
-(1-e),(1-a)*e,a*e];function as(a,e,[t,r],n){let{earth:s}=a.header,i=Ar(e).map(d=>s&&vt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
+geometry:i,image:o}=a.header,c=I(...Di(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Fi),u=2*l/s;if(o){let[
+y,b]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.stepSize[w]}),v=Math.
+sqrt(F(c)/(y*b));return r.lod?Math.max(u/Math.sqrt(m),v):v}let p=i.extent/Number(r.resolution),f=L(h,n.at(n.state.focal_point).
+ray),g=u*Math.sqrt(Math.max(f,Ni/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Hi(a,e,t){let r=[],
+[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(T(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r}
+function Er(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.header,i=ts(a),[o,c,l]=i(0),h=[o,c,l],m=k(h,Ii*(n?
+1/n.stepSize[0]:r.cell)/(F(h)||1)),u=F(h)>es?E(rs(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function ns(a,e,t,r){let{
+scene:n,position:s}=a,{slices:i,image:o}=n.header,c=ts(a),l=!me(n.header),h=c(0),m=[h[0],h[1],h[2]],u=rs(a),p=[],f=e.two_sided||
+!l?i.sides:1;for(let w=0;w<f&&F(m)>es;w+=1){let M=o?1:h[3]*i.unit,S=Vi(c,i.lags,w*i.lags.length,w?1:-1,M).map(u),P=S.findIndex(
+R=>R===null);p.push(S.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=lt(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):
+g-1,b=Number(e.spacing)*Bi(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(S=>Hi(s,S,w));return[...M.reverse(),s,..._]};return{path:v(
+ki*Math.max(y,Oi)*b),sampled:v(y*b),directed:l,velocity:Er(a)}}var zi=8,Gi=1e-6,Wi=.001,$i=89.99,ji=a=>a-360*Math.round(a/360);function Sr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+function xt({header:a},e){return e.map((t,r)=>A(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ss=([a,e])=>[(1-a)*(1-e),a*
+(1-e),(1-a)*e,a*e];function as(a,e,[t,r],n){let{earth:s}=a.header,i=Sr(e).map(d=>s&&vt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
 abs(d[1])>$i))return null;let[o,c,l,h]=i.map(d=>[ji(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
 ...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Wi*p)?null:[(o[1]*
 u[0]-o[0]*u[1])/f,(o[0]*m[1]-o[1]*m[0])/f]}function is(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&vt(n,
 t,r);if(!i)return e;let o=xt(a,e);for(let c=0;c<zi;c+=1){let l=as(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
-.5+Gi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+S(l[p],0,1));o=m}return e}function os(a,e){
-let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=xt(a,e),s=ss(e.map((i,o)=>i-n[o]));return Ar(
+.5+Gi?u:0),m=xt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+A(l[p],0,1));o=m}return e}function os(a,e){
+let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=xt(a,e),s=ss(e.map((i,o)=>i-n[o]));return Sr(
 n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function cs(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
 o=s&&vt(s,n,e);if(!o)return null;let c=u=>Xn(s,u.position,Er(u),e),l=xt(t,r);if(i.triangles||!as(t,l,o,e))return c(a);let h=ss(
-r.map((u,p)=>u-l[p])),m=Ar(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[0,1].map(u=>m.reduce((p,f,d)=>p+h[d]*f[u],
+r.map((u,p)=>u-l[p])),m=Sr(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[0,1].map(u=>m.reduce((p,f,d)=>p+h[d]*f[u],
 0))}var Yi=16;function hs(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
 c,...o):Xi(l,...o),m=t.ray(n,s),u=ls(i.scene,h,m)[1],[p,f]=ls(i.scene,u,m),d=is(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
 d:Ki(e.header,i,d);return{point:{position:p,index:g,values:qi(i.scene,r,d)},layer:i,place:d}}function Xi({rows:a,columns:e,
-shape:t},r,n){let s=(i,{size:o,before:c},l)=>S(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function Ki(a,{key:e},[t,
+shape:t},r,n){let s=(i,{size:o,before:c},l)=>A(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function Ki(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,m]=n?.shapes[0]??s.shape,u=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>ft(
 f+d*u,o,g);return[p(t,l,m),p(r,c,h)]}function ls(a,e,[t,r]){let{geometry:n}=a.header,{data:s}=a.part("position"),i=a.cornersAt(
 e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(
 t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Yi)){
 let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(e[1]),d,Math.max(g,0))];let[y,b]=n.
-shape,v=(x,w)=>{let[M,_,A]=i.map(x);return S(M+d*(_-M)+g*(A-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function qi(a,e,t){
+shape,v=(x,w)=>{let[M,_,S]=i.map(x);return A(M+d*(_-M)+g*(S-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function qi(a,e,t){
 let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=os(a,t),c=i.triangles?Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.
 map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===
 null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):yt(o,b)}return u}var Ji=3,ms=5;function us({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
@@ -448,8 +447,8 @@ c.enable(c.DEPTH_TEST),c.depthFunc(c.LESS),c.disable(c.BLEND),c.clearBufferuiv(c
 let u=H(h.header.geometry,t,r);h.bodies.hide(u,r),h.bodies.seeThrough(()=>this.triangles(h.programs("place"),u,r),!1)}triangles(e,t,r,n={}){
 let{graphics:s,layers:i,seen:o}=this,c=s.context,{mesh:l,pyramid:h,geometry:m}=i[0].scene.header,[u,p]=h?.shapes[0]??m.shape;
 this.bind(),c.bindVertexArray(null),i.forEach(({scene:f,key:[d,...g]},y)=>{let{levels:b}=o[y],{columns:v,rows:x,shape:w,
-triangles:M}=f.header.geometry,[_,A]=g.map(R=>R*l.tileCells*(h?.tileBlocks??0)*2**d);f.bindNodes(r),s.programs.use(e,{...n,
-u_matrix:t,u_layer:y+1,u_blocks:b.reduce((R,N,B)=>R|(N<0?0:1<<B),0),u_part:[A,_,d],u_lastNode:[p-1,u-1,this.squares],u_closed:[
+triangles:M}=f.header.geometry,[_,S]=g.map(R=>R*l.tileCells*(h?.tileBlocks??0)*2**d);f.bindNodes(r),s.programs.use(e,{...n,
+u_matrix:t,u_layer:y+1,u_blocks:b.reduce((R,N,B)=>R|(N<0?0:1<<B),0),u_part:[S,_,d],u_lastNode:[p-1,u-1,this.squares],u_closed:[
 Number(m.periodic[1]),Number(m.periodic[0])],u_blockCells:l.tileCells,u_slicesSize:[v.size,x.size],u_padding:[v.before,x.
 before]}),M&&c.drawArrays(c.TRIANGLES,0,f.part("triangles").data.length);let P=f.blocks.shape[1];b.forEach((R,N)=>{if(R<
 0||M)return;let B=[N%P,Math.floor(N/P)].map(C=>C*l.tileCells),[q,se]=B.map((C,J)=>Math.ceil(Math.min(l.tileCells,w[1-J]-
@@ -461,7 +460,7 @@ x]=[Math.min(Math.ceil(d),i)-y,Math.min(Math.ceil(g),h+r)-b];if(v<=0||x<=0)retur
 s.programs.use(e,{...w,u_layer:u+1}),l.drawArrays(l.TRIANGLES,0,3)}),l.readPixels(0,0,1,1,l.RGBA,l.UNSIGNED_BYTE,new Uint8Array(
 4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}show(e){let t=this.graphics.context;this.bind(),t.bindVertexArray(null),this.graphics.
 programs.use(e,{u_bottom:0}),t.drawArrays(t.TRIANGLES,0,3)}at(e,t){let{graphics:r,target:n,layers:s}=this,i=r.context,[o,
-c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=S(Math.floor(o-.5),0,this.width-2),h=S(Math.floor(c-.5),0,this.height-
+c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=A(Math.floor(o-.5),0,this.width-2),h=A(Math.floor(c-.5),0,this.height-
 2),m=new Uint32Array(16);i.bindFramebuffer(i.FRAMEBUFFER,n?.frames[0]??null),i.readPixels(l,h,2,2,i.RGBA_INTEGER,i.UNSIGNED_INT,
 m),i.bindFramebuffer(i.FRAMEBUFFER,null);let u=+(o>=l+1)+2*+(c>=h+1),p=4*([u,u^1,u^2,u^3].find(g=>m[4*g+3])??u),[f,d]=new Float32Array(
 m.buffer,4*p,2);return m[p+3]?{layer:s[m[p+3]-1],coordinate:[f,d],triangle:m[p+2]}:null}dispose(){let{graphics:e,target:t}=this;
@@ -469,9 +468,9 @@ for(let r of t?.textures??[])e.free("Texture",r);for(let r of t?.frames??[])e.fr
 key=""}sendStrides(){let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:i,geometry:o}=s.header,
 c=o.triangles?[1,1]:i?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/Qi)),0);let l=2**
 -this.squares,[h,m]=c.map(p=>Math.ceil(p*l)),u=new Uint8Array(h*m);e.forEach(({scene:p,key:[f,...d]},g)=>{let y=p.blocks.
-shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,A]]=[Math.floor(x/y),x%y].map((P,R)=>{
+shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,S]]=[Math.floor(x/y),x%y].map((P,R)=>{
 let N=(P+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});for(let P=w;P<M;P+=1)for(let R=_+
-P*m;R<A+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+fs[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??
+P*m;R<S+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+fs[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??
 null),n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,m,h,0,n.RED_INTEGER,n.UNSIGNED_BYTE,u)}make(e,t){
 let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:i}=this,o={width:Math.max(e,r?.
 width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0].map(h=>{let m=n.
@@ -483,10 +482,10 @@ this.target={frames:l,textures:c,...o}}bind(){let e=this.graphics.context;fs.for
 t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+de.length)}};function ds(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],i=e[4],o=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*o-s*i)*c,a[5]=(r*i-t*o)*c,a):null}function gs(a){return a[0]*a[3]-a[1]*a[2]}function bs(a,e,t){var r=e[0],n=e[1],
 s=e[2],i=e[3],o=e[4],c=e[5],l=t[0],h=t[1],m=t[2],u=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+i*h,a[2]=r*m+s*u,a[3]=
-n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var to=4,ro=.3,Sr=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
+n*m+i*u,a[4]=r*p+s*f+o,a[5]=n*p+i*f+c,a}var to=4,ro=.3,Ar=1e-6,ys=(a,e)=>bs([0,0,0,0,0,0],a,e),vs=a=>ds([0,0,0,0,0,0],a);function xs(a,e,t,r){let[n,s]=[t/2,r/2],
 i=M=>ys([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),o=ys(i(e),vs(i(a))),c=Math.abs(gs(o));if(!(c>ro**2&&c<to**2))return null;
-let[l,h,m,u,p,f]=vs(o),d=([M,_])=>Math.abs((l*M+m*_+p)/n-1)<1+Sr&&Math.abs((h*M+u*_+f)/s-1)<1+Sr,g=[[0,0],[t,0],[0,r],[t,
-r]].every(d),[y,b,v,x]=o,w=Math.abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Sr;if(w)for(let M of[4,5])o[M]=Math.round(
+let[l,h,m,u,p,f]=vs(o),d=([M,_])=>Math.abs((l*M+m*_+p)/n-1)<1+Ar&&Math.abs((h*M+u*_+f)/s-1)<1+Ar,g=[[0,0],[t,0],[0,r],[t,
+r]].every(d),[y,b,v,x]=o,w=Math.abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Ar;if(w)for(let M of[4,5])o[M]=Math.round(
 o[M]);return{matrix:o,covers:g,shifts:w}}var no=14,so=40,ao=256;function ws(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var io=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
@@ -502,7 +501,7 @@ viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.isCoarse&&
 o=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(i),l=this.viewer.player.playing&&!this.viewer.
 isHeld,h=xn(c,this.fixed,n*s,i,l),m=Math.max(h/o,no),u=vn(c,this.fixed,n*s,i,m),p=Math.max(Math.round(n*u.scale),1),f=Math.
 max(Math.round(s*u.scale),1);this.draftVersion=this.version;let d=u.scale<1?this.reuse():null;if(!d?.covers){let y=performance.
-now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(S(performance.now()-y-b,.5,500)-
+now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(A(performance.now()-y-b,.5,500)-
 this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),ws(this.pen,this.last),
 this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=u.scale<1||u.samples<i;let g=!this.isCoarse&&!this.content.smooth;return g&&
 this.complete(),this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(this.viewer.settings.
@@ -539,35 +538,35 @@ y,"clear"),c.marks.draw({...y,ratio:p.density},i.settings,e),n&&s.copySmooth(m,r
 let{camera:s,settings:i}=this.viewer,{scene:o}=this.content;if(!o||!s||!Le(o.header,i))return;let c={...s.sight(n/t.density),
 planes:s.planes},l=n!==this.canvas.height,h=this.layers.map(m=>m.scene);for(let[m,u]of o.arrows.share(c,i,h)){let{arrows:p,
 header:f}=m,d=p.program(i,ht(f,i,t));if(!d||!u.length)continue;m.bindTextures(e[0],e[1]);let g=m.scalarParts(e[0],e[1]),
-y=this.values(m,o,s,t,Number(i.samples),l);p.draw(d,u,g,t.anchor,{...y,u_picture:[r,n]})}}values({header:e,parts:t},{bodies:r},n,s,i,o){
-let{settings:c}=this.viewer,{columns:l,rows:h}=e.geometry,m=t.get("noise")?.shape??null,u=e.scalars.name!==null&&Le(e,c)&&
-c.arrow_color==="scalars";return{...Ln(e,{...c,samples:i},s,m),...o?An(c,i,s.density):{},u_matrix:H(e.geometry,n,s.anchor),
-u_mapped:e.scalars.name!==null&&!u,u_plain:u,u_flat:!!e.scalars.flat,u_padding:[l.before,h.before],u_colour:e.colour,u_lit:e.
-lighting,u_ground:e.background??[1,1,1],u_opacity:r.areBehind?1:e.opacity,u_toEye:O(e.geometry.frame,k(n.axes[2],-1))}}copy(e,t,r,n){
-let{pen:s}=this;if(!s)return;let{canvas:i}=this.graphics,o=i.height-n,[c,l]=[this.canvas.width,this.canvas.height/t];if(s.
-imageSmoothingEnabled=c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:m,coarsePen:u}=this;m.width=e,m.height=n,u?.drawImage(
-i,0,o,e,n,0,0,e,n),[i,o]=[m,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),s.drawImage(i,0,o,e,n,0,h,c,n*l)}};var Tt=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
+y=this.values(m,o,s,t,Number(i.samples),l);p.draw(d,u,g,t.anchor,{...y,u_picture:[r,n]})}}values({header:e},{bodies:t},r,n,s,i){
+let{settings:o}=this.viewer,{columns:c,rows:l}=e.geometry,h=e.scalars.name!==null&&Le(e,o)&&o.arrow_color==="scalars";return{
+...Ln(e,{...o,samples:s},n),...i?Sn(o,s,n.density):{},u_matrix:H(e.geometry,r,n.anchor),u_mapped:e.scalars.name!==null&&
+!h,u_plain:h,u_flat:!!e.scalars.flat,u_padding:[c.before,l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??
+[1,1,1],u_opacity:t.areBehind?1:e.opacity,u_toEye:O(e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)
+return;let{canvas:i}=this.graphics,o=i.height-n,[c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=
+c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:m,coarsePen:u}=this;m.width=e,m.height=n,u?.drawImage(i,0,o,e,n,0,0,e,n),
+[i,o]=[m,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),s.drawImage(i,0,o,e,n,0,h,c,n*l)}};var Tt=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
 Float64Array.from({length:e.corners.length/Tt},(n,s)=>r+=this.area(Tr(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
 surface;return Ie(r,n.subarray(Tt*e,Tt*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return T(Z(t,e),
-r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(i=>s*t*St(e,i)<=n*St(r,i)&&this.sees(e,i,
+r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(i=>s*t*At(e,i)<=n*At(r,i)&&this.sees(e,i,
 0))}cornersOf({planes:e}){let{center:t,extent:r}=this.surface.geometry,n=c=>e[c].slice(0,3),s=I(n(0),n(2)),i=.5*r*F(s);return[
 0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[m,u]=[n(c),n(l)],p=T(k(I(u,s),-e[c][3]),I(
-s,m),-e[l][3]),f=I(m,u);return k(T(p,f,L(s,t)+h*i),1/L(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*St(e,t);return e.
+s,m),-e[l][3]),f=I(m,u);return k(T(p,f,L(s,t)+h*i),1/L(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*At(e,t);return e.
 planes.every(s=>L(s,t)+s[3]>=-n*F(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:i}=this,{extent:o,center:c}=this.surface.
 geometry,l=s[s.length-1]??0,h=t.eye?Math.max(F(E(c,t.eye))-.5*o,0):1,m=n.closer*r*_r(t,h),u=o,p=i[0],f=null;for(let d=0;d<
 n.mostOctaves;d+=1){let g=n.candidateArea*u**2;if(l<=n.mostCandidates*g)i[d+1]??=this.grown(p,this.spread(d,g),u),p=i[d+
 1];else{f??=Array.from(s,(b,v)=>Tr(v)),f=this.divided(f.filter(b=>this.isNeeded(b,e,u)),g);let y=f.flatMap(b=>{let v=ce(
-b.key+d);return At(v)*g<this.area(b)?[this.candidate(b,v)]:[]});if(p=this.grown(p,y,u),!f.length)break}if(u<=m)break;u*=
-n.octave}return p.filter(d=>{let g=this.point(d.position);return d.radius>=n.closer*r*St(t,g)&&this.sees(t,g,0)})}spread(e,t){
-let{sums:r}=this,n=ce(e+Et),s=0;return Array.from({length:Math.floor((r[r.length-1]??0)/t)},(i,o)=>{let c=ce(n+o),l=(o+At(
+b.key+d);return St(v)*g<this.area(b)?[this.candidate(b,v)]:[]});if(p=this.grown(p,y,u),!f.length)break}if(u<=m)break;u*=
+n.octave}return p.filter(d=>{let g=this.point(d.position);return d.radius>=n.closer*r*At(t,g)&&this.sees(t,g,0)})}spread(e,t){
+let{sums:r}=this,n=ce(e+Et),s=0;return Array.from({length:Math.floor((r[r.length-1]??0)/t)},(i,o)=>{let c=ce(n+o),l=(o+St(
 c))*t;for(;s<r.length-1&&r[s]<=l;)s+=1;return this.candidate(Tr(s),c)})}candidate({cell:e,low:t,size:r},n){let s=ce(n+Et),
-i=ce(s+Et),o=[t[0]+r[0]*At(s),t[1]+r[1]*At(i)];return{cell:e,place:o,position:this.position(e,o),radius:1/0}}grown(e,t,r){
+i=ce(s+Et),o=[t[0]+r[0]*St(s),t[1]+r[1]*St(i)];return{cell:e,place:o,position:this.position(e,o),radius:1/0}}grown(e,t,r){
 let n=r/this.limits.octave,s=new Pt(n);for(let l of e)s.add(l.position);for(let l of t)l.radius=s.distance(l.position);let i=t.
 filter(({radius:l})=>l>=r).sort((l,h)=>h.radius-l.radius),o=new Pt(n),c=i.filter(l=>(l.radius=Math.min(l.radius,o.distance(
 l.position)),l.radius<r?!1:(o.add(l.position),!0)));return[...e,...c]}isNeeded(e,[t,r],n){let{octave:s,closer:i,aroundRadii:o}=this.
 limits,{cell:c,low:l,size:h}=e,m=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[u,p]=this.sides(e),f=.5*(F(u)+
-F(p)),d=Math.max(As(t,m)-f,0);return!(n<s*i*r*_r(t,d))&&this.sees(t,m,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
+F(p)),d=Math.max(Ss(t,m)-f,0);return!(n<s*i*r*_r(t,d))&&this.sees(t,m,f+o*n)}divided(e,t){let r=e.filter(i=>this.area(i)>
 t);if(!r.length)return e;let n=r.map(i=>{let[o,c]=this.sides(i),l=F(c)>F(o)?1:0,h=[...i.size];h[l]*=.5;let m=[...i.low];
 return m[l]+=h[l],[{...i,size:h,key:ce(i.key+Et)},{...i,size:h,low:m,key:ce(i.key+oo)}]}),s=e.filter(i=>this.area(i)<=t);
 return this.divided([...s,...n.map(([i])=>i),...n.map(([,i])=>i)],t)}sides({cell:e,low:t,size:r}){let n=(s,i)=>this.position(
@@ -578,8 +577,8 @@ t/this.most))}add(e){let t=Es(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):t
 n]=this.cube(e),s=this.most;for(let i=0;i<27;i+=1){let o=Es(t+i%3-1,r+Math.floor(i/3)%3-1,n+Math.floor(i/9)-1);for(let c of this.
 cubes.get(o)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,oo=2246822507,co=[739982445,695872825],Ms=15;function Es(a,e,t){
 return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of co)
-e=Math.imul(e^e>>>Ms,t)>>>0;return(e^e>>>Ms)>>>0}var At=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var As=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,St=(a,e)=>_r(a,As(a,e));var _s=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Ss=4,lo=_s.reduce((a,[,e])=>a+e,0),ho=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+e=Math.imul(e^e>>>Ms,t)>>>0;return(e^e>>>Ms)>>>0}var St=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
+a)}}var Ss=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>_r(a,Ss(a,e));var _s=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],As=4,lo=_s.reduce((a,[,e])=>a+e,0),ho=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),Ts=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
@@ -596,12 +595,12 @@ constants.arrows.pieces+1),t.length),o.depthMask(!0),o.disable(o.BLEND),o.bindVe
 seeds=this.last=this.drawn=null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.
 array),this.array=this.buffer=null,this.forget()}inTile({corners:e,place:t,radius:r},n,[s,i,o]){let{geometry:c,pyramid:l,
 mesh:h}=this.header;if(!l||c.triangles)return null;let m=h.tileCells*l.tileBlocks,[u,p]=n.header.geometry.shape,f=c.shape[1],
-d=(v,x,w,M)=>{let _=l.shapes[0][x],A=Un(ft(v,l.depth,_),s,_)-w*m,P=Math.min(Math.max(Math.floor(A),0),M-1);return A<0||A>
-M?null:[P,A-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*
+d=(v,x,w,M)=>{let _=l.shapes[0][x],S=Un(ft(v,l.depth,_),s,_)-w*m,P=Math.min(Math.max(Math.floor(S),0),M-1);return S<0||S>
+M?null:[P,S-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*
 (p-1)+g[0]]===0)return null;let b=y[0]*p+g[0];return{corners:[b,b+1,b+p,b+p+1],place:[g[1],y[1]],radius:r,cell:b}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of _s)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,lo*Ss,r),e.vertexAttribDivisor(n,1),r+=s*Ss;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+n,s,e.FLOAT,!1,lo*As,r),e.vertexAttribDivisor(n,1),r+=s*As;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=bt(i,s),c=this.nodes,l=n.triangles?null:zn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:m,radius:u,cell:p})=>{let[f,d]=m,[g,y,b,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
@@ -627,17 +626,17 @@ runs.filter(({clear:_})=>_===o);if(!c.length)return;let{header:l,graphics:h}=thi
 programs,d=this.drawn??=this.make(),g=H(m,e,t),[y,b,v,x]=e.eye,w=O(m.frame,E([y,b,v],k(m.center,x)));o&&(u.enable(u.BLEND),
 u.blendFuncSeparate(u.SRC_ALPHA,u.ONE_MINUS_SRC_ALPHA,u.ZERO,u.ONE),u.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,
 u_eye:[...E(w,k(t,x)),x],...fo(l,e)}),u.bindVertexArray(d.faces),u.enable(u.POLYGON_OFFSET_FILL),u.polygonOffset(Te[1],Te[1]);
-for(let{faces:[_,A],ambient:P,diffuse:R}of c)A&&(h.programs.use(p,{u_ambient:P,u_diffuse:R}),u.drawElements(u.TRIANGLES,
-3*A,u.UNSIGNED_INT,12*_));u.disable(u.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
-1]};h.programs.use(f,M),u.bindVertexArray(d.pieces);for(let{pieces:[_,A],width:P}of c)if(A){h.programs.use(f,{u_width:P*
+for(let{faces:[_,S],ambient:P,diffuse:R}of c)S&&(h.programs.use(p,{u_ambient:P,u_diffuse:R}),u.drawElements(u.TRIANGLES,
+3*S,u.UNSIGNED_INT,12*_));u.disable(u.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
+1]};h.programs.use(f,M),u.bindVertexArray(d.pieces);for(let{pieces:[_,S],width:P}of c)if(S){h.programs.use(f,{u_width:P*
 s});for(let[R,N,B,q,se]of[[d.ends,3,u.FLOAT,mo,0],[d.colours,4,u.UNSIGNED_BYTE,uo,2]]){u.bindBuffer(u.ARRAY_BUFFER,R);for(let C of[
-0,1])u.vertexAttribPointer(se+C,N,B,N===4,q,q*(_+C/2))}u.drawArraysInstanced(u.TRIANGLE_STRIP,0,4,A)}u.bindVertexArray(null),
+0,1])u.vertexAttribPointer(se+C,N,B,N===4,q,q*(_+C/2))}u.drawArraysInstanced(u.TRIANGLE_STRIP,0,4,S)}u.bindVertexArray(null),
 u.depthMask(!0),u.disable(u.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,i=this.drawn??=
 this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
 s.bindVertexArray(i.faces);for(let{faces:[o,c],clear:l}of r)l||s.drawElements(s.TRIANGLES,3*c,s.UNSIGNED_INT,12*o);s.disable(
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:i}){let{geometry:o}=this.
 header,c=H(o,t,r);for(let{text:l,position:h,size:m,color:u,plate:p}of this.labels){let f=E(O(o.frame,E(h,o.center)),r),[
-d,g,,y]=[0,1,2,3].map(A=>c[A]*f[0]+c[4+A]*f[1]+c[8+A]*f[2]+c[12+A]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
+d,g,,y]=[0,1,2,3].map(S=>c[S]*f[0]+c[4+S]*f[1]+c[8+S]*f[2]+c[12+S]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
 s],x=m*i,w=po*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,_]=[e.measureText(l).width+2*w,x+
 2*w];e.fillStyle=Rs(p),e.beginPath(),e.roundRect(b,v-_,M,_,w),e.fill(),e.fillStyle=Rs(u),e.fillText(l,b+w,v-.5*_)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,i,o,c]=Ce.map(y=>t.get(y)?.data??[]),l=()=>{let y=e.counted(r.createVertexArray());
@@ -662,10 +661,10 @@ drawn.delete(e)}}get lines(){let{earth:e}=this.header;return e?jr.filter(t=>e[t]
 header:r,graphics:n}=this,{earth:s,shaders:i}=r,o=n.programs.get(i.lineVertex,i.lineFragment);if(!s||!o.ready)return;let c=n.
 context,{camera:l,anchor:h,width:m,height:u,ratio:p}=e;c.bindFramebuffer(c.FRAMEBUFFER,null),c.viewport(0,0,m,u),c.enable(
 c.SCISSOR_TEST),c.scissor(0,0,m,u),c.disable(c.DEPTH_TEST),c.enable(c.BLEND),c.blendEquation(c.MAX),c.clearColor(0,0,0,0);
-let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y=2*l.height*p/u,b=S(Math.sqrt(u/p/s.usualHeight),
-...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:_,width:A}of s.strokes){
+let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y=2*l.height*p/u,b=A(Math.sqrt(u/p/s.usualHeight),
+...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:_,width:S}of s.strokes){
 if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let P=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
-use(o,{u_matrix:H(r.geometry,l,h),u_picture:[m,u],u_width:A*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
+use(o,{u_matrix:H(r.geometry,l,h),u_picture:[m,u],u_width:S*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
 c.bindVertexArray(P.array),c.bindBuffer(c.ARRAY_BUFFER,P.buffers[0]);for(let[R,N]of Ns(P.groups,g)){for(let B=0;B<Cs;B+=
 1)c.vertexAttribPointer(B,3,c.FLOAT,!1,Is,(R+B)*Is);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,N)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders;
@@ -709,16 +708,16 @@ nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),
 saddles:l}).lines).filter(([,u])=>u.length).map(([u])=>({name:u,color:o[u]}));return this.shown(e,t,"nullclines")[0]&&m.
 push(...c),[...i.filter((u,p)=>s.has(p)),...m.map(u=>({...u,isLine:!0}))]}draw({camera:e,anchor:t,width:r,height:n,ratio:s},i,o){
 let{header:c,graphics:l}=this,{structure:h,geometry:m}=c,u=h&&this.layers(h,i,o);if(!h||!u?.length)return;let p=l.context,
-[f,d,g,y]=e.eye,b=O(m.frame,E([f,d,g],k(m.center,y))),v=s*S(Math.sqrt(n/s/h.usualHeight),...h.widthRange),x=y?1:e.distance/
+[f,d,g,y]=e.eye,b=O(m.frame,E([f,d,g],k(m.center,y))),v=s*A(Math.sqrt(n/s/h.usualHeight),...h.widthRange),x=y?1:e.distance/
 Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:H(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
-y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:A,width:P,
-above:R}of u){let[N,B,q,se=1]=A;l.programs.use(w,{u_width:P*v,u_nearer:bo*x*(1+yo*R)});for(let C of[0,1])p.vertexAttribPointer(
+y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:S,width:P,
+above:R}of u){let[N,B,q,se=1]=S;l.programs.use(w,{u_width:P*v,u_nearer:bo*x*(1+yo*R)});for(let C of[0,1])p.vertexAttribPointer(
 C,3,p.FLOAT,!1,Us,Us*(M+C/2)),p.vertexAttrib4f(2+C,N,B,q,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Pr(r)]);if(this.drawn?.key===l)return this.
-drawn.layers;let h=Ds(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,A)=>{
-let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:A}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>vo(c?.data??
+drawn.layers;let h=Ds(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,S)=>{
+let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:S}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>vo(c?.data??
 [],M));v.forEach(w=>b(w,p,m[0],0)),v.forEach((w,M)=>b(w,e.nullclines[M].color,m[1],1)),b(Ve(Object.values(h.lines).flat()),
 p,m[0],1.5),Object.entries(h.lines).forEach(([w,M],_)=>b(Ve(M),e.lines[w],m[1],2+_));let x=e.kinds.map((w,M)=>h.points[M]??
 []);return b(Ve(x,!0),p,u[0],6),e.kinds.forEach(({color:w},M)=>b(Ve([x[M]],!0),w,u[1],7)),b(Ve(x.filter((w,M)=>e.kinds[M].
@@ -731,88 +730,88 @@ header,[l,h]=this.shown(s,i,"critical"),m=2*n.height/Math.max(r,1),[u,p]=["",Vs]
 ...E(v,t))>4*Vs*m)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([u,p]=[c?.kinds[b]?.name??"",w])}
 return u}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
 buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var xo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],noise:["noise"],step:["step"],scalars:["scalar"]},Bs=["padded","unit","open","nearest","rays"],wo=8*(4/3),Mo=2048,
-Eo=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_nodes"],Ao=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=Ao+=1;constructor(e,t,r,n=null){this.tile=
+"cmap"],image:["image"],step:["step"],scalars:["scalar"]},Bs=["padded","unit","open","nearest","rays"],wo=8*(4/3),Mo=2048,
+Eo=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],So=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=So+=1;constructor(e,t,r,n=null){this.tile=
 n,this.graphics=e,this.header=t,this.parts=r,this.earth=new kt(e,t,r),this.bodies=new Lt(e,t,r),this.arrows=new Rt(e,t,r),
 this.marks=new Ot(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(o=>this.arrows.program(e,o));return[...["place","surface","sm\
 ooth","probe"].filter(o=>t||o!=="smooth").map(o=>this.programs(o).ready),this.earth.isReady,this.bodies.isReady,this.marks.
-isReady(e)].every(Boolean)&&r.every(o=>o?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,paper:i,pyramid:o,formula:c}=this.
+isReady(e)].every(Boolean)&&r.every(o=>o?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,image:i,pyramid:o,formula:c}=this.
 header,{trace:l}=n,h=["mesh",...l?.parts??["position",...r.planar?[]:["normal"]]];o&&!c&&h.push("places"),this.header.bodies?.
 runs.length&&h.push(...Ce),r.triangles&&h.push("triangles","blocks");for(let m of new Set([e,t]))l?h.push(...ie(this.header,
 m).map(u=>`flow/${u}`)):h.push(`slices/${m}`),n.channels===2&&h.push(`extra/${m}`);return h.push(...this.scalarParts(e,t)),
-s.name!==null&&h.push("cmap"),i&&h.push("noise","step"),[...new Set(h)].filter(m=>!this.fits(m))}lacking(e){let t=this.missing(
+s.name!==null&&h.push("cmap"),i&&h.push("image","step"),[...new Set(h)].filter(m=>!this.fits(m))}lacking(e){let t=this.missing(
 e,e).map(r=>r.startsWith("flow/")?Y(r):e);return[...new Set(t)]}scalarParts(e,t,r=this.header.scalars){let{name:n,steps:s,
 number:i}=r;if(n===null)return[];let o=i?`/${i}`:"";return(s>1?[e,t]:[0,0]).map(c=>`scalars/${c}${o}`)}fits(e){let t=this.
-parts.get(e);if(!t)return!1;let{geometry:r,slices:n,paper:s,mesh:i}=this.header,o=r.shape.map(m=>Math.max(Math.ceil((m-1)/
+parts.get(e);if(!t)return!1;let{geometry:r,slices:n,image:s,mesh:i}=this.header,o=r.shape.map(m=>Math.max(Math.ceil((m-1)/
 i.tileCells),1)),c=n.trace?.nodes??[],h={flow:[...c,t.shape[2]],unit:c,padded:[...c.map(m=>m+2),3],slices:[n.count,r.rows.
-size,r.columns.size,n.channels],position:[...r.shape,3],mesh:r.triangles?t.shape:[...o,t.shape[2]],step:s?[s.size[1],s.size[0]]:
-[]}[e.split("/")[0]];return!h||String(h)===String(t.shape)}make(e,t){let{slices:r,geometry:n}=this.header,{trace:s}=r;if(!s)
-return!0;let i=this.part("padded"),o=c=>this.key(["padded"],c,s);return this.put("position",o("position"),()=>Pn(i,s,n.shape)),
-!n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Rn(i,s,n.shape)),e.every(c=>this.trace(c,t))}prepare(){
-let{trace:e}=this.header.slices;e&&at(this.graphics,this.header,e)}trace(e,t){let{graphics:r,header:n}=this,{trace:s,lags:i,
-sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(n,e).map(u=>`flow/${u}`),h=this.key([...l,
-...Bs],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){let{tracings:u}=r,p=h||`${this.number} ${e}`;
-this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=u.get(p)??new it(r,n,s,f,e);if(u.set(this.tracing=p,d),
-m=d.advance(t),!m)return!1;this.stopTracing()}return this.take(c,"Texture",h,()=>m,()=>{}),!0}put(e,t,r){let{graphics:n,
-parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),digest:t};n.release(s.get(e)),s.set(e,n.
-hold(i)),this.forget(e)}isMade(e){return!this.missing(e[0],e[e.length-1]).length&&(!this.header.slices.trace||this.isLoaded(
-e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=
-""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of the scene is missing`);return t}forget(e){let[
-t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].includes(
-t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?
-[`slices/${r}`]:xo[t]??[])this.drop(s);Bs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.get(e);this.
-resources.delete(e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){
-for(let e of[...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.
-dispose(),this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Boolean)?
-JSON.stringify([r,t]):""}take(e,t,r,n,s){let i=this.resources.get(e);if(i)return i.object;let{graphics:o}=this,c=r&&`${e.
-split("/")[0]} ${r}`,l=c?o.common.get(c):void 0,h=l?.object??o.counted(n()),m=l??{kind:t,object:h,count:0,key:c,users:0};
-return m.users+=1,this.resources.set(e,m),l||(m.count=s(h)||0),c&&o.common.set(c,m),h}get blocks(){return this.part("mes\
-h")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=us(e,this.blocks,this.part("position").data,t.
-tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?qn(this.part("triangles").data,e):$n(r,e)}isLoaded(e){
-return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?
-[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*wo*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)
-this.slices(t)}bindNodes(e){let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.header.geometry;e.some((m,u)=>m!==
-this.anchor[u])&&this.drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture("nodes",this.key(["position","n\
-ormal"],o,e),m=>{gr(t,o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?3:6)*o*i);u.set(gt(this.part("p\
-osition").data,e)),s||u.set(Wn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,
-...p,0,t.RGB,t.FLOAT,u),Hs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table(
-"cells",this.key(["triangles","blocks"]),t.RGBA32UI,Mo,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.
-table("cells",this.key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_cor\
-ners":"u_open",h)}get nodesSize(){let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:
-e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Eo.includes(e)?r.TEXTURE_2D_ARRAY:
-r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,o={[i.RGBA32UI]:[i.RGBA_INTEGER,
-i.UNSIGNED_INT,4],[i.R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},
-[c,l,h]=o[r];return this.texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(i.TEXTURE_2D,m),i.pixelStorei(
-i.UNPACK_ALIGNMENT,1);let f=So(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Hs(i,i.TEXTURE_2D)})}shares(e,t){let{
-geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["triangles",...new Set(i)],s,n.low,
-n.high,n.log),()=>bt(i.map(l=>this.part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Text\
-ure",t,()=>n.createTexture(),r)}slices(e){let{slices:t,geometry:r}=this.header,n=this.key([`slices/${e}`,`extra/${e}`],r.
-levels,t.extra);return this.texture(`slices/${e}`,n,s=>{let i=this.part(`slices/${e}`),[o,c,l,h]=i.shape,m=i.data,u=this.
-parts.get(`extra/${e}`)?.data,p=c*l,f=d=>{let g=m.subarray(d*p*h,(d+1)*p*h);if(h===4)return g;let y=new Uint16Array(4*p),
-b=t.extra.indexOf(d),v=b<0?null:u?.subarray(b*p,(b+1)*p);for(let x=0;x<p;x+=1)y[4*x]=g[2*x],y[4*x+1]=g[2*x+1],v&&(y[4*x+
-3]=v[x]);return y};this.fill(s,{width:l,height:c,layers:o,channels:4,levels:r.levels},f)})}programs(e){let{programs:t}=this.
-graphics,{vertex:r,place:n,fullVertex:s,surface:i,probe:o}=this.header.shaders;return e==="smooth"?t.get(r,i,"FLOWTEX_SM\
-OOTH"):e==="place"?t.get(r,n):t.get(s,e==="probe"?o:i)}texels(e,t){let{graphics:r,header:n}=this,s=r.context,{slices:i,geometry:o}=n,
-c=o.columns.size,l=this.slices(e),h=()=>{s.activeTexture(s.TEXTURE0),s.bindTexture(s.TEXTURE_2D_ARRAY,l),s.bindVertexArray(
-null);let p=t.flatMap(f=>[f%c,Math.floor(f/c)]);r.programs.use(this.programs("probe"),{u_texels:p}),s.drawArrays(s.TRIANGLES,
-0,3)},m=r.numbers(h,t.length,i.count),u=new Float32Array(m.buffer);return(p,f)=>{let[d,g,y,b]=u.subarray(4*(p*t.length+f));
-return[d,g,y,b]}}image(e,t){let r=this.graphics.context;return this.texture(e,this.key([e],t),n=>{let{data:s,shape:i}=this.
-part(e),[o,c,l=1]=i,h=Math.floor(Math.log2(Math.max(c,o))),m={width:c,height:o,layers:1,channels:l,levels:h};this.fill(n,
-m,()=>s);let u=p=>t[p]?r.REPEAT:r.CLAMP_TO_EDGE;r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_S,u(1)),r.texParameteri(
-r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_T,u(0))})}fill(e,t,r){let{context:n,floats:s}=this.graphics;rt(n,e,t);for(let i=0;i<t.
-layers;i+=1)nt(n,s?{...t,levels:0}:t,i,r(i));s&&t.levels&&n.generateMipmap(n.TEXTURE_2D_ARRAY)}dropSlices(e,t){let r=t+1<
-this.header.slices.steps?t+1:0;for(let n of[...this.resources.keys()])n.startsWith("slices/")&&([e,t,r,t+1].includes(Y(n))||
-this.drop(n))}bindTextures(e,t){let r=this.graphics.context,{paper:n,scalars:s}=this.header,i=n?.repeat??[!1,!1],o=String(
-this.scalarParts(e,t));o!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=o,this.dropSlices(e,t),this.bind("u_sl\
-ices",this.slices(e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_noiseImage",n&&this.image("noise",
-n.picture?[!0,!0]:i)),this.bind("u_stepImage",n&&this.image("step",i));let c=mn(this.parts.get("cmap")?.data??new Uint8Array(
-4),s);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,c.length/4,()=>c));let[l,h]=this.shares(
-e,t);this.bind("u_shares",s.name===null?null:this.table("scalar",l,r.RG32F,this.nodesSize[1],h));let m=()=>Gn(n?.alongI??
-[],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),m))}};function Hs(a,e){
-a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function So(a,e){if(a.
-length===e)return a;let t=new a.constructor(e);return t.set(a),t}var To=60,_o=25,Po=9e8,Ro=3.5,Lo={slices:4,flow:24},Ft=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Se;constructor(e,t){this.host=e,
+size,r.columns.size,n.channels],position:[...r.shape,3],mesh:r.triangles?t.shape:[...o,t.shape[2]],step:s?[...s.stepSize].
+reverse():[]}[e.split("/")[0]];return!h||String(h)===String(t.shape)}make(e,t){let{slices:r,geometry:n}=this.header,{trace:s}=r;
+if(!s)return!0;let i=this.part("padded"),o=c=>this.key(["padded"],c,s);return this.put("position",o("position"),()=>Pn(i,
+s,n.shape)),!n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Rn(i,s,n.shape)),e.every(c=>this.trace(
+c,t))}prepare(){let{trace:e}=this.header.slices;e&&at(this.graphics,this.header,e)}trace(e,t){let{graphics:r,header:n}=this,
+{trace:s,lags:i,sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(n,e).map(u=>`flow/${u}`),
+h=this.key([...l,...Bs],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){let{tracings:u}=r,p=h||`${this.
+number} ${e}`;this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=u.get(p)??new it(r,n,s,f,e);if(u.set(this.
+tracing=p,d),m=d.advance(t),!m)return!1;this.stopTracing()}return this.take(c,"Texture",h,()=>m,()=>{}),!0}put(e,t,r){let{
+graphics:n,parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),digest:t};n.release(s.get(e)),
+s.set(e,n.hold(i)),this.forget(e)}isMade(e){return!this.missing(e[0],e[e.length-1]).length&&(!this.header.slices.trace||
+this.isLoaded(e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),
+this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of the scene is missing`);return t}forget(e){
+let[t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].
+includes(t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=null),Ce.includes(t)&&this.bodies.dispose();
+for(let s of n?[`slices/${r}`]:xo[t]??[])this.drop(s);Bs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.
+get(e);this.resources.delete(e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(
+t.key)))}dispose(){for(let e of[...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.
+dispose(),this.arrows.dispose(),this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"n\
+one");return r.every(Boolean)?JSON.stringify([r,t]):""}take(e,t,r,n,s){let i=this.resources.get(e);if(i)return i.object;
+let{graphics:o}=this,c=r&&`${e.split("/")[0]} ${r}`,l=c?o.common.get(c):void 0,h=l?.object??o.counted(n()),m=l??{kind:t,
+object:h,count:0,key:c,users:0};return m.users+=1,this.resources.set(e,m),l||(m.count=s(h)||0),c&&o.common.set(c,m),h}get blocks(){
+return this.part("mesh")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=us(e,this.blocks,this.part(
+"position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?qn(this.part("triangle\
+s").data,e):$n(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.
+header;return e.trace?[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*wo*e.count*t.rows.size*t.columns.
+size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.
+header.geometry;e.some((m,u)=>m!==this.anchor[u])&&this.drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture(
+"nodes",this.key(["position","normal"],o,e),m=>{gr(t,o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?
+3:6)*o*i);u.set(gt(this.part("position").data,e)),s||u.set(Wn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(
+t.TEXTURE_2D_ARRAY,0,t.RGB32F,...p,0,t.RGB,t.FLOAT,u),Hs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.
+of(1),h=n?this.table("cells",this.key(["triangles","blocks"]),t.RGBA32UI,Mo,()=>Kn(this.part("triangles").data,this.part(
+"blocks").data)):this.table("cells",this.key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",
+c),this.bind(n?"u_corners":"u_open",h)}get nodesSize(){let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?
+[r.size,n.size]:e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Eo.includes(
+e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,
+o={[i.RGBA32UI]:[i.RGBA_INTEGER,i.UNSIGNED_INT,4],[i.R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],
+[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},[c,l,h]=o[r];return this.texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(
+i.TEXTURE_2D,m),i.pixelStorei(i.UNPACK_ALIGNMENT,1);let f=Ao(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Hs(i,i.
+TEXTURE_2D)})}shares(e,t){let{geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["tr\
+iangles",...new Set(i)],s,n.low,n.high,n.log),()=>bt(i.map(l=>this.part(l).data),n)]}texture(e,t,r){let n=this.graphics.
+context;return this.take(e,"Texture",t,()=>n.createTexture(),r)}slices(e){let{slices:t,geometry:r}=this.header,n=this.key(
+[`slices/${e}`,`extra/${e}`],r.levels,t.extra);return this.texture(`slices/${e}`,n,s=>{let i=this.part(`slices/${e}`),[o,
+c,l,h]=i.shape,m=i.data,u=this.parts.get(`extra/${e}`)?.data,p=c*l,f=d=>{let g=m.subarray(d*p*h,(d+1)*p*h);if(h===4)return g;
+let y=new Uint16Array(4*p),b=t.extra.indexOf(d),v=b<0?null:u?.subarray(b*p,(b+1)*p);for(let x=0;x<p;x+=1)y[4*x]=g[2*x],y[4*
+x+1]=g[2*x+1],v&&(y[4*x+3]=v[x]);return y};this.fill(s,{width:l,height:c,layers:o,channels:4,levels:r.levels},f)})}programs(e){
+let{programs:t}=this.graphics,{vertex:r,place:n,fullVertex:s,surface:i,probe:o}=this.header.shaders;return e==="smooth"?
+t.get(r,i,"FLOWTEX_SMOOTH"):e==="place"?t.get(r,n):t.get(s,e==="probe"?o:i)}texels(e,t){let{graphics:r,header:n}=this,s=r.
+context,{slices:i,geometry:o}=n,c=o.columns.size,l=this.slices(e),h=()=>{s.activeTexture(s.TEXTURE0),s.bindTexture(s.TEXTURE_2D_ARRAY,
+l),s.bindVertexArray(null);let p=t.flatMap(f=>[f%c,Math.floor(f/c)]);r.programs.use(this.programs("probe"),{u_texels:p}),
+s.drawArrays(s.TRIANGLES,0,3)},m=r.numbers(h,t.length,i.count),u=new Float32Array(m.buffer);return(p,f)=>{let[d,g,y,b]=u.
+subarray(4*(p*t.length+f));return[d,g,y,b]}}image(e,t){let r=this.graphics.context;return this.texture(e,this.key([e],t),
+n=>{let{data:s,shape:i}=this.part(e),[o,c,l=1]=i,h=Math.floor(Math.log2(Math.max(c,o))),m={width:c,height:o,layers:1,channels:l,
+levels:h};this.fill(n,m,()=>s);let u=p=>t[p]?r.REPEAT:r.CLAMP_TO_EDGE;r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_S,
+u(1)),r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_T,u(0))})}fill(e,t,r){let{context:n,floats:s}=this.graphics;rt(n,
+e,t);for(let i=0;i<t.layers;i+=1)nt(n,s?{...t,levels:0}:t,i,r(i));s&&t.levels&&n.generateMipmap(n.TEXTURE_2D_ARRAY)}dropSlices(e,t){
+let r=t+1<this.header.slices.steps?t+1:0;for(let n of[...this.resources.keys()])n.startsWith("slices/")&&([e,t,r,t+1].includes(
+Y(n))||this.drop(n))}bindTextures(e,t){let r=this.graphics.context,{image:n,scalars:s}=this.header,i=String(this.scalarParts(
+e,t));i!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=i,this.dropSlices(e,t),this.bind("u_slices",this.slices(
+e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_image",n&&this.image("image",[!0,!0])),this.bind("u\
+_stepImage",n&&this.image("step",n.repeat));let o=mn(this.parts.get("cmap")?.data??new Uint8Array(4),s);this.bind("u_cma\
+p",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,o.length/4,()=>o));let[c,l]=this.shares(e,t);this.bind("u_sha\
+res",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>Gn(n?.alongI??[],n?.alongJ??[]);this.
+bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),h))}};function Hs(a,e){a.texParameteri(
+e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Ao(a,e){if(a.length===e)return a;
+let t=new a.constructor(e);return t.set(a),t}var To=60,_o=25,Po=9e8,Ro=3.5,Lo={slices:4,flow:24},Ft=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ae;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
 e)}setPart(e,t){let{graphics:r,header:n}=this.root,s=this.tiles.get(e)??this.emptyTile();if(this.tiles.set(e,s),t.digest&&
@@ -874,7 +873,7 @@ this.smooth))return r.request();let l=!r.sharp&&this.renderer.draw(c,o,t);l&&(i.
 varies&&this.program(i,this.isClose(i),!1)),r.painted(l)}get canPick(){return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){
 let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||
 !n||!s)return null;let l=hs(c,s,o,n,[e,t]),h={place:[e,t],position:l.point.position,height:i.root.clientHeight};return l.
-point.mark=s.marks.at(h,o,i.settings,n),l}};var It=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ct;player;held=new ot(
+point.mark=s.marks.at(h,o,i.settings,n),l}};var It=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=An();lifetime=new ct;player;held=new ot(
 this.graphics);parts=this.held.all;isClear=!0;isVisible=!0;panel;requests;options;header;settings;painter;camera=null;sharp=!1;ratio=1;host;isNew=!0;constructor(e,{
 header:t,settings:r,player:n,source:s,isComing:i}){this.host=e,this.header=t,this.settings=r,this.player=n,this.options=
 {source:s,isComing:i},this.panel={wait:()=>{},showKinds:()=>{},fail:(o,c)=>e.failed(o,c)},this.requests=new dt(s,this),this.
@@ -928,7 +927,7 @@ void main()
   gl_Position = projectTile(place);
 }
 `;var Ws=1e-5,Ct=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,Fo=88*X,$s='export it with projection="mercator"';
-function ge({lng:a,lat:e}){let t=Math.sin(S(e,-Ct,Ct)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
+function ge({lng:a,lat:e}){let t=Math.sin(A(e,-Ct,Ct)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t){
 let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${$s}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/X,lat:Math.asin(v/Math.hypot(y,b,v))/X}),w=[r[0]+(r[2]-r[0])*g/(s-
 1),r[1]+(r[3]-r[1])*d/(n-1)];return{place:x,position:w}},[o,c,l]=[i(1,1),i(n>>1,s>>1),i(n-2,s-2)],h=d=>d+Math.ceil(o.place[0]-
@@ -939,11 +938,11 @@ this.slope[t]*e[t])}lngLatOf(e){let[t,r]=this.placeOf(e);return[360*(t-.5),Math.
 let[t,r]=e.map((s,i)=>(s-this.origin[i])/this.slope[i]),n=1/this.slope[0];return[t+n*Math.round((.5*(this.box[0]+this.box[2])-
 t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,s]=this.positionOf(ge(e.center)),i=f=>e.globe?this.globeLook(
 e,r,[f,s,t]):this.flatLook(e,r,[f,s,t]),o=[i(n)],[c,l]=e.globe?[.5*r*o[0].width,.5*r*o[0].width]:[.5*r*Math.min(e.width,
-e.height),r*js(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-S(u,h,m))<l&&
+e.height),r*js(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-A(u,h,m))<l&&
 o.push(i(u)),o}flatLook({width:e,height:t,bearing:r,pitch:n,fov:s},i,[o,c,l]){let[h,m]=[r*X,n*X],u=.5*t*i,p=u/Math.tan(.5*
 s*X);return{state:{position:[o-p*Math.sin(m)*Math.sin(h),c-p*Math.sin(m)*Math.cos(h),l+p*Math.cos(m)],focal_point:[o,c,l],
 up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:u,view_angle:s},width:e,height:t}}globeLook(e,t,[r,,n]){let s=1/
-(t*this.slope[0]),i=S(e.center.lat,-Ct,Ct)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(js(e)/o,1)),[l,h]=[i-c,i+c].
+(t*this.slope[0]),i=A(e.center.lat,-Ct,Ct)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(js(e)/o,1)),[l,h]=[i-c,i+c].
 map(g=>ge({lng:0,lat:g/X})[1]),m=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,u=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[m/Math.PI,l-h];return{state:{position:[r,u,n+1/this.slope[0]],focal_point:[r,u,n],up:[0,1,0],parallel:!0,
 parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function js({width:a,height:e,pitch:t,fov:r}){
@@ -960,10 +959,10 @@ LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercato
 shaderData,c=r.get(`${o}
 ${i}
 ${Gs}`,zs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(S(e.zoom,0,No)),m=n.placeOf(l.state.focal_point),u=2**h,
-p=[Math.floor(m[0]*u),S(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=P=>P.map((R,N)=>(R*u-
-p[N])*Rr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Io:1,A=s?0:Math.
-round(ge(e.center)[0]-m[0]);for(let P of e.isRepeated&&!s?[-1,0,1]:[0]){let R={wrap:f+A+P,canonical:d},N=e.getProjectionData(
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(A(e.zoom,0,No)),m=n.placeOf(l.state.focal_point),u=2**h,
+p=[Math.floor(m[0]*u),A(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=P=>P.map((R,N)=>(R*u-
+p[N])*Rr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Io:1,S=s?0:Math.
+round(ge(e.center)[0]-m[0]);for(let P of e.isRepeated&&!s?[-1,0,1]:[0]){let R={wrap:f+S+P,canonical:d},N=e.getProjectionData(
 {tileID:R,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:N.mainMatrix,u_projection_fallback_matrix:N.fallbackMatrix,u_projection_tile_mercator_coords:N.
 tileMercatorCoords,u_projection_clipping_plane:N.clippingPlane,u_projection_transition:N.projectionTransition,u_box:[...w,
 M[0]-w[0],M[1]-w[1]],u_mapCells:_,u_flowMatrix:Co(this.view.header,l,n,p,1/(u*Rr)),u_flowPicture:0,u_opacity:e.opacity}),
@@ -1178,7 +1177,7 @@ t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await thi
 `scalars/${y}/${h}`);if(!v)throw new Error(`tile ${z(e)} has no values of step ${y}`);return{...v,name:d}}));Ir(f,t,this.
 header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var gc=4096,bc=4,Ma=32,yc=.25,vc=1e4,Ea=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
-this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Ae(r),this.array=t.createVertexArray(),
+this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Se(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
@@ -1198,7 +1197,7 @@ shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(
 playing=!1),this.change()}set(e){Object.assign(this.own,e),Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){
 Object.assign(this.colours,e);for(let{view:t}of this.pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)
 e.change()}async pointAt(e){let{mercator:t,header:r}=this.scene??{};if(!t||!r)return null;let n=[...t.positionOf(ge(e)),
-r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Sa(()=>s.every(({painter:c})=>c.canPick&&
+r.geometry.center[2]],s=this.pictures.filter(({isUsed:c})=>c).map(({view:c})=>c);await Aa(()=>s.every(({painter:c})=>c.canPick&&
 c.shown));let i=s.map(c=>this.pointIn(c,n)).find(Boolean)??null;if(i&&!r.pyramid)return i;this.asked=this.asked.then(()=>this.
 pointClose(n)).catch(()=>null);let o=await this.asked;return o&&{...o,path:i?.path??o.path}}pointIn(e,t){let{camera:r,parts:n,
 settings:s}=e,{mercator:i}=this.scene??{},o=r?.project(t)??[2,2],c=Math.max(...o.map(Math.abs))>1?null:e.find(o[0],o[1]),
@@ -1207,19 +1206,19 @@ l=e.painter.shown;if(!i||!r||!c||!l)return null;let h=c.point.position,m={scene:
 map(d=>i.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:i}=t.mercator,{pyramid:o,geometry:c}=t.
 header,l=yc*(i[2]-i[0])/(o?.shapes[0]??c.shape)[1],[h,m,u]=e,p={up:[0,1,0],view_angle:30,position:[h,m,u+l],focal_point:e,
-parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Ma,Ma,1),await Sa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
+parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Ma,Ma,1),await Aa(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
 projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],m=this.pictures.filter(({isUsed:d})=>d),{
 shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:u,getProjectionData:p,zoom:l,center:h,globe:c,
 opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.mercator,isRepeated:m.length===1});typeof g=="string"&&g?this.failed(
 "The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,
-ratio:o,text:c}=Aa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
+ratio:o,text:c}=Sa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),
 [0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(bc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],
 Math.min(o,o*p,gc/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
-scene||!t.every(r=>r.isComplete)?!1:this.look===Aa(e,this.globe).text}};function Aa(a,e){let{clientWidth:t,clientHeight:r}=a.
+scene||!t.every(r=>r.isComplete)?!1:this.look===Sa(e,this.globe).text}};function Sa(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
-fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Sa(a){
+fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Aa(a){
 let e=performance.now()+vc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function xc(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
 json()}function wc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,

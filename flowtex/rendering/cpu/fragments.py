@@ -42,21 +42,21 @@ class Varying:
 class Fragments:
     """N pixels of a surface: their positions and normals in its own frame, (N, 3), and coordinates.
 
-    These are of the slices, (N, 2), and of the noise where it has a texture. A flat surface has no
+    These are of the slices, (N, 2), and of an image in place of the noise. A flat surface has no
     normals; others are of any length. On a surface of triangles the coordinates are the shares of
     the second and the third corner, and ``nodes`` (N, 3) are the corners' numbers.
     """
 
     position: Varying
     coordinate: Varying
-    noise: Varying | None = None
+    image: Varying | None = None
     normal: Varying | None = None
     nodes: Indices | None = None
 
     @classmethod
     def of(cls, textures: TextureSet, coverage: Coverage) -> Fragments:
         """Interpolate the values of the nodes to the pixels of a coverage."""
-        geometry, paper = textures.geometry, textures.paper
+        geometry, image = textures.geometry, textures.image
 
         def varying(nodal: NDArray[np.floating]) -> Varying:
             return Varying(*coverage.mix(nodal.reshape(-1, nodal.shape[-1])))
@@ -74,7 +74,7 @@ class Fragments:
         return cls(
             varying(geometry.position),
             varying(geometry.coordinate),
-            None if paper is None else varying(paper.coordinate),
+            None if image is None else varying(image.coordinate),
             None if geometry.planar else varying(geometry.normal),
         )
 
@@ -105,9 +105,9 @@ class Fragments:
         """Yield parts of at most ``count`` fragments, with their slices."""
         for start in range(0, len(self), count):
             part = slice(start, start + count)
-            noise, normal = (None if v is None else v[part] for v in (self.noise, self.normal))
+            image, normal = (None if v is None else v[part] for v in (self.image, self.normal))
             nodes = None if self.nodes is None else self.nodes[part]
-            yield part, Fragments(self.position[part], self.coordinate[part], noise, normal, nodes)
+            yield part, Fragments(self.position[part], self.coordinate[part], image, normal, nodes)
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:

@@ -13,12 +13,13 @@ from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
+from flowtex.rendering.cpu.image import ImageLookup, ImageMips
 from flowtex.rendering.cpu.mipmaps import Mips
-from flowtex.rendering.cpu.noise import PaperImages, PaperNoise, PaperPicture, SpaceNoise
+from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
-from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
+from flowtex.rendering.cpu.texture import LookupMaker, Summing
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures.texture_set import TextureSet
@@ -31,8 +32,8 @@ PART = 1 << 14
 class Picture:
     """A flow texture as numbers, row 0 at the top; NaN where there is no surface."""
 
-    #: The texture before it is laid over a colour, (H, W), of mean zero and of deviation one. For a
-    #: picture in place of the noise, its mean colours times opacity, and opacity, (H, W, 4).
+    #: The texture before it is laid over a colour, (H, W), of mean zero and of deviation one. For
+    #: an image instead of noise, its mean colours times opacity, and opacity, (H, W, 4).
     value: Floats
     covered: Bools  #: Pixels that show the surface, (H, W).
     #: Texture coordinates (u, v) in the slices, (H, W, 2); of triangles the shares of the second
@@ -95,7 +96,7 @@ def render(
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
     for selection, part in fragments.parts(PART):
         part_lookup = make(part, values)
-        summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
+        summing = Summing(slices, values, part_lookup, by_lag=textures.image is not None)
         value.append(summing.texture(part.place, level[selection], part.by))
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
@@ -143,21 +144,12 @@ def slices_at(
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:
-    """Return the look-up of the textures' noise or picture."""
-    paper, planar = textures.paper, textures.geometry.planar
-    if paper is None:
+    """Return the look-up of the noise, or of the textures' image."""
+    image, planar = textures.image, textures.geometry.planar
+    if image is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
-    images = PaperImages(paper)
-    kind = PaperPicture if paper.picture else PaperNoise
-
-    def make(fragments: Fragments, values: Values) -> Lookup:
-        if fragments.noise is None:
-            raise FieldError(
-                "the fragments have no noise coordinates; expected those of a noise texture"
-            )
-        return kind(fragments.noise, images, values)
-
-    return make
+    mips = ImageMips(image)
+    return lambda fragments, values: ImageLookup(fragments, values, mips)
 
 
 def _image(data: AnyArray, pixel: Indices, size: tuple[int, int]) -> Floats:

@@ -28,8 +28,8 @@ class Sums:
 class Lookup(Protocol):
     """Values that are summed along the paths of N fragments, and how sums become the texture."""
 
-    #: Distance between two samples of each fragment, (N,), as a length; with the paper's textures
-    #: in units of lag at unit speed.
+    #: Distance between two samples of each fragment, (N,), as a length; with an image in
+    #: units of lag at unit speed.
     spacing: Floats
     level: Floats  #: Level of detail of the values, (N,), to be shown.
 
@@ -41,7 +41,7 @@ class Lookup(Protocol):
         """Values (N, C) at displacements (N, 3) from the fragments, ``length`` (N,) on the way."""
 
     def blend(self, sums: Sums) -> Floats:
-        """Texture from the sums: (N,), or the colours and opacity of a picture, (N, 4)."""
+        """Texture from the sums: (N,), or the colours and opacity of an image, (N, 4)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +102,11 @@ def shared(apart: Floats, near: Floats) -> Floats:
 class Summing:
     """The loop over the samples of some fragments; values are the uniforms.
 
-    Slopes may be those of the paper's noise texture.
+    Slopes may be in image coordinates, ``by_lag`` instead of by length.
     """
 
-    def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, paper: bool) -> None:
-        self._slices, self._values, self._lookup, self._paper = slices, values, lookup, paper
+    def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, by_lag: bool) -> None:
+        self._slices, self._values, self._lookup, self._by_lag = slices, values, lookup, by_lag
         self._lags = np.asarray(values["u_lags"])
 
     def texture(self, coordinate: Places, level: Floats, by: Floats) -> Floats:
@@ -136,7 +136,7 @@ class Summing:
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, count)
         value = lookup.blend(sums)
-        if value.ndim > 1:  # a picture keeps its colours
+        if value.ndim > 1:  # a image keeps its colours
             return value
         return np.asarray(value * self.faded(coordinate, level, certainty))
 
@@ -186,8 +186,8 @@ class Summing:
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
         speed = np.linalg.norm(base[:, :3], axis=-1)
-        scale = np.ones(len(base)) if self._paper else base[:, 3] * self._values["u_unit"]
-        spacing = self._lookup.spacing * speed if self._paper else self._lookup.spacing
+        scale = np.ones(len(base)) if self._by_lag else base[:, 3] * self._values["u_unit"]
+        spacing = self._lookup.spacing * speed if self._by_lag else self._lookup.spacing
         sides = ((-1.0, 0), (1.0, len(self._lags)))  # and the layers before their first slices
         for sign, before in sides[: self._values["u_sides"]]:
             next_ = self._slices.layer(coordinate, before + 1, level)
@@ -231,6 +231,6 @@ class Summing:
             sums.squares += weights**2
             sums.neighbours += weights * before
             before = weights
-            if not self._paper:
+            if not self._by_lag:
                 # From the speed at this point, so that samples are evenly spaced in length.
                 step = side.step(lag)

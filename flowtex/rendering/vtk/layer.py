@@ -42,7 +42,7 @@ from flowtex.rendering.uniforms import (
 from flowtex.rendering.vtk.mesh import (
     COORDINATE,
     CORNERS,
-    NOISE,
+    IMAGE,
     POSITION,
     FlowMapper,
     MappedColours,
@@ -171,7 +171,7 @@ class FlowLayer:
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
-        self._retire(*(["u_noiseImage"] if same else self._gpu))
+        self._retire(*(["u_image"] if same else self._gpu))
         self._variant = None
 
     def set_moment(self, before: int, after: int, between: float) -> None:
@@ -237,8 +237,8 @@ class FlowLayer:
         arrays = {"flowtexCoordinate": COORDINATE, "flowtexPosition": POSITION}
         if self.textures.geometry.corners is not None:
             arrays["flowtexCorners"] = CORNERS
-        if self.textures.paper is not None:
-            arrays["flowtexNoise"] = NOISE
+        if self.textures.image is not None:
+            arrays["flowtexImage"] = IMAGE
         if not self.deferred:
             self._write_position()
         map_attributes(self._mapper, {} if self.deferred else arrays)
@@ -330,7 +330,6 @@ class FlowLayer:
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
         """Return the function that loads the texture of each sampler of the shader."""
-        paper = self.textures.paper
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
         colours, geometry = self._colours, self.textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
@@ -343,9 +342,11 @@ class FlowLayer:
         }
         if (corners := geometry.corners) is not None:
             loaders["u_corners"] = lambda: single(_corners(corners))
-        if paper is not None:
-            loaders["u_noiseImage"] = partial(send, paper.noise_texels, repeat=paper.noise_repeat)
-            loaders["u_stepImage"] = partial(send, paper.step_texels, repeat=paper.repeat)
+        if (image := self.textures.image) is not None:
+            loaders["u_image"] = partial(send, image.texels[None], repeat=(True, True))
+            loaders["u_stepImage"] = partial(
+                send, image.step[None, :, :, None], repeat=image.repeat
+            )
         return loaders
 
     def _slices(self, number: int) -> dict[str, Any]:
@@ -457,7 +458,7 @@ def is_deferred(actor: pv.Actor, renderer: Any, textures: TextureSet) -> bool:
     What is seen through it has pixels of its own, and passes of the renderer's may have others.
     """
     return bool(
-        textures.paper is None
+        textures.image is None
         and actor.prop.opacity == 1
         and actor.prop.style == "Surface"
         and not actor.GetForceTranslucent()

@@ -27,7 +27,7 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 #: takes them to single precision as they are.
 FAR_EXTENTS = 1e3
 #: Point arrays of the mesh.
-POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
+POSITION, COORDINATE, IMAGE = "flowtex position", "flowtex coordinate", "flowtex image"
 CORNERS = "flowtex corners"
 NORMAL = "Normals"
 #: Greatest share of the range of a colour map.
@@ -62,8 +62,8 @@ def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
     if (corners := geometry.corners) is not None:
         mesh.point_data[CORNERS] = corners
-    if textures.paper is not None:
-        mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
+    if textures.image is not None:
+        mesh.point_data[IMAGE] = textures.image.coordinate.reshape(-1, 2)
 
 
 def map_attributes(mapper: Any, arrays: Mapping[str, str]) -> None:

@@ -41,7 +41,7 @@ from flowtex.rendering.webgl.velocity import (
     parameter_rows,
 )
 from flowtex.settings import NEEDS, TABLE, Settings
-from flowtex.textures.paper import PaperTextures
+from flowtex.textures.images import ImageTextures
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import (
     BLOCK_CELLS,
@@ -231,7 +231,7 @@ class ClientData:
             "background": colours.background and plain_list(colours.background),
             "lighting": bool(colours.lighting),
             "opacity": float(colours.opacity),
-            "paper": None if textures.paper is None else _paper(textures.paper),
+            "image": None if textures.image is None else _image(textures.image),
             "constants": client_constants(),
             "mesh": {"tileCells": BLOCK_CELLS},
             "earth": self._earth(),
@@ -266,9 +266,8 @@ class ClientData:
             parts |= velocity.surface_parts(self.textures, self._depth)
         else:
             parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
-        if self.textures.paper is not None:
-            parts["step"] = half(self.textures.paper.step)
-            parts["noise"] = half(self.textures.paper.noise)
+        if (image := self.textures.image) is not None:
+            parts["step"], parts["image"] = half(image.step), half(image.texels)
         if self.bodies is not None:
             parts |= self.bodies.parts(geometry)
         land, tiled = colours.land is not None, self.pyramid is not None
@@ -481,18 +480,14 @@ def _pyramid(pyramid: Pyramid, finest: int) -> Header:
     }
 
 
-def _paper(paper: PaperTextures) -> Header:
-    """Return the header of the noise texture, or of the picture in its place."""
-    height, width = paper.step.shape
+def _image(image: ImageTextures) -> Header:
+    """Return the header of the image in place of the noise."""
     return {
-        "size": [int(width), int(height)],
-        "grain": float(paper.grain),
-        "corrected": bool(paper.corrected),
-        "deviations": plain_list(paper.deviations),
-        "repeat": [bool(r) for r in paper.repeat],
-        "picture": bool(paper.picture),
-        "alongI": plain_list(paper.along_i),
-        "alongJ": plain_list(paper.along_j),
+        "size": list(image.texels.shape[1::-1]),
+        "stepSize": list(image.step.shape[::-1]),
+        "repeat": [bool(r) for r in image.repeat],
+        "alongI": plain_list(image.along_i),
+        "alongJ": plain_list(image.along_j),
     }
 
 

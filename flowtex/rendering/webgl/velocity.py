@@ -68,14 +68,14 @@ class PackedStep:
 class Packing:
     """Packed slices of a texture set; those requested last are cached.
 
-    A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
+    A slope has so many ``channels``, two in a plane and in image coordinates. ``extra`` are the
     layers whose fourth channel says something: unit, reach, speed, how far the direction is not
     known, reach forward, that again, and speed again.
     """
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
-        self.channels = 2 if textures.geometry.planar or textures.paper is not None else 4
+        self.channels = 2 if textures.geometry.planar or textures.image is not None else 4
         unknown = [UNCERTAIN_LAYER] if textures.geometry.field.uncertainty else []
         ahead = [len(textures.lags) + n for n in (1, *unknown)] if textures.sides == 2 else []
         last = [textures.count - 1] if textures.in_cells else []
@@ -117,7 +117,7 @@ def can_trace(textures: TextureSet) -> bool:
     Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
     """
     field, store = textures.geometry.field, textures.store
-    structured = isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
+    structured = isinstance(textures.geometry, SurfaceGeometry) and textures.image is None
     if not structured or field.sign_free or store.given:
         return False
     sizes = _sizes(textures) / _size(textures)

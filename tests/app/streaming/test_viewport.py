@@ -35,7 +35,7 @@ def state(view: Viewport) -> tuple[Any, ...]:
 
 @pytest.mark.parametrize("act", ["show", "compare", "time"])
 def test_a_flow_that_is_refused_leaves_the_comparison(act: str) -> None:
-    view = Viewport(on_grid(), noise="texture", samples=5)  # which triangles do not have
+    view = Viewport(on_grid(), image=np.ones((2, 2)), samples=5)  # which triangles do not have
     view.compare({"contrast": 0.0})
     view.clock = 0.5
     before = state(view)
@@ -60,7 +60,7 @@ def test_a_flow_that_is_refused_leaves_the_comparison(act: str) -> None:
 
 def test_a_comparison_that_the_new_flow_refuses_leaves_both() -> None:
     view = Viewport(on_grid(), samples=5)
-    view.compare({"noise": "texture"})
+    view.compare({"image": np.ones((2, 2))})
     before = state(view)
     with pytest.raises(SettingsError):
         view.show(on_triangles())

@@ -344,12 +344,14 @@ def test_supersampling_shows_the_same_more_smoothly(opengl: object) -> None:
     assert np.corrcoef(plain[inside].ravel(), aliased[inside].ravel())[0, 1] < 0.5
 
 
-@pytest.mark.parametrize("noise", ["texture"])
-def test_supersampling_keeps_the_size_of_textures_too(noise: str, opengl: object) -> None:
+def test_supersampling_keeps_the_size_of_images_too(
+    opengl: object, rng: np.random.Generator
+) -> None:
+    image = rng.random((64, 128))
     plain, fine = (
-        flowtex.render(
-            shear(), size=(160, 120), samples=9, noise=noise, resolution=256, supersampling=k
-        ).astype(float)
+        flowtex.render(shear(), size=(160, 120), samples=9, image=image, supersampling=k).astype(
+            float
+        )
         for k in (1, 2)
     )
     inside = (slice(20, 100), slice(20, 140))
