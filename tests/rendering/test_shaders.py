@@ -26,7 +26,8 @@ def test_variants_are_defined_first_and_in_order() -> None:
 
 
 def test_files_ask_for_every_variant() -> None:
-    texts = [path.read_text() for path in Path(flowtex.__file__).parent.rglob("*.py")]
+    folders = (Path(flowtex.__file__).parent / name for name in ("rendering", "plotting"))
+    texts = [path.read_text() for folder in folders for path in folder.rglob("*.py")]
     named = {name for text in texts for name in re.findall(r'"(FLOWTEX_[A-Z]+)"', text)}
     sources = map(shaders.shader_source, shaders.shader_names())
     asked = {n for s in sources for line in re.findall(r"#(?:if|elif).*", s) for n in WORD(line)}
