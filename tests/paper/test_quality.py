@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
-from measures import grain as other_grain
-from measures import streaks as other_streaks
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from flowtex.errors import FieldError
-from paper import quality
+from paper import measures, quality
 
 Floats = NDArray[np.float64]
 SIZE = (160, 200)
@@ -73,31 +68,6 @@ def test_grain_follows_a_bent_flow() -> None:
     assert result.across < 1.2
 
 
-def test_the_measures_agree_with_the_tests_own(rng: np.random.Generator) -> None:
-    picture, u, v = noise(rng, 0.8, 6.0), np.ones(SIZE), np.zeros(SIZE)
-    ours, theirs = (
-        quality.alignment(picture, u, v, EVERYWHERE),
-        other_streaks(picture, u, v, EVERYWHERE),
-    )
-    assert ours.angle == pytest.approx(theirs["angle"], abs=0.5)
-    assert ours.coherence == pytest.approx(theirs["coherence"], abs=0.05)
-    grains, others = (
-        quality.grain(picture, u, v, EVERYWHERE),
-        other_grain(picture, u, v, EVERYWHERE),
-    )
-    assert grains.along == pytest.approx(others["along"], rel=0.1)
-
-
-def test_missing_pixels_do_not_spread(rng: np.random.Generator) -> None:
-    picture, u, v = stripes(30)
-    holed = picture.copy()
-    holed[:12] = np.nan
-    whole = quality.alignment(picture, u, v, EVERYWHERE)
-    assert quality.alignment(holed, u, v, EVERYWHERE).coherence == pytest.approx(
-        whole.coherence, abs=0.02
-    )
-
-
 def test_a_sense_is_that_of_heads() -> None:
     ramps = np.tile((np.arange(SIZE[1]) % 25.0) ** 3, (SIZE[0], 1))
     colours = np.repeat(ramps[..., None] / ramps.max() * 255, 3, axis=-1).astype(np.uint8)
@@ -126,26 +96,28 @@ def test_spacing_tells_even_marks_from_random_ones(rng: np.random.Generator) -> 
     assert quality.spacing(random) == pytest.approx(np.sqrt(4 / np.pi - 1), rel=0.05)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("ab", ONES, ONES), r"^picture is <U2 of shape \(\); expected numbers of shape"),
-        ((np.full(SIZE, np.nan), ONES, ONES), r"^picture is NaN everywhere"),
-        ((ONES, ONES[:-1], ONES), r"^u has shape \(159, 200\); expected \(160, 200\)"),
-        ((ONES, ONES, ONES, ONES[:2]), r"^mask has shape \(2, 200\)"),
-        ((ONES, 0 * ONES, 0 * ONES), r"^mask is False everywhere"),
-    ],
-)
-def test_what_does_not_fit_together_is_refused(arguments: Any, message: str) -> None:
-    for measure in (quality.alignment, quality.grain, quality.sense):
-        with pytest.raises(FieldError, match=message):
-            measure(*arguments)
+def test_evenness_tells_stretched_and_uneven_grains(rng: np.random.Generator) -> None:
+    even = measures.evenness(noise(rng, 1.5, 1.5), EVERYWHERE)
+    assert even.stretch < 1.2 and even.spread < 1.2
+    assert measures.evenness(noise(rng, 1.0, 3.0), EVERYWHERE).stretch > 2.2
+    uneven = noise(rng, 1.0, 1.0)
+    uneven[:, 100:] = noise(rng, 3.0, 3.0)[:, 100:]
+    assert measures.evenness(uneven, EVERYWHERE).spread > 2
+    nothing = measures.evenness(uneven, np.zeros(SIZE, bool))
+    assert np.isnan(nothing.spread)
 
 
-def test_points_and_pairs_are_checked() -> None:
-    with pytest.raises(FieldError, match=r"^points has shape \(1, 2\); expected \(N, 2\)"):
-        quality.spacing([[0.0, 1.0]])
-    with pytest.raises(FieldError, match=r"^first has shape \(159, 200\) and second \(160, 200\)"):
-        quality.sticking(ONES[:-1], ONES, 0, 0)
-    with pytest.raises(FieldError, match=r"^picture has shape \(159, 200\) and reference"):
-        quality.aliasing(ONES[:-1], ONES)
+def test_aliasing_of_a_picture_is_its_error_over_the_deviation(rng: np.random.Generator) -> None:
+    truth = noise(rng, 2.0, 2.0)
+    assert quality.aliasing(truth, truth, EVERYWHERE) == 0
+    off = truth + 0.5 * truth[EVERYWHERE].std()
+    assert quality.aliasing(off, truth, EVERYWHERE) == pytest.approx(0.5)
+    assert measures.likeness(3 - 2 * truth, truth, EVERYWHERE) == pytest.approx(-1)
+    assert abs(measures.likeness(noise(rng), noise(rng), EVERYWHERE)) < 0.05
+
+
+def test_blur_takes_sharpness(rng: np.random.Generator) -> None:
+    picture = noise(rng, 1.0, 1.0)
+    blurred = gaussian_filter(picture, 2)
+    before, after = (measures.sharpness(p, EVERYWHERE) for p in (picture, blurred))
+    assert after < 0.3 * before

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from flowtex.examples import (
     double_gyre_field,
 )
 from paper.redundancy import Redundancy, error_in_texels, redundancy
-from paper.redundancy.prediction import COMPOSED, Predictor, SliceGrid
+from paper.redundancy.prediction import Predictor, SliceGrid
 
 
 def some_times(field: FlowField, count: int) -> FlowField:
@@ -62,13 +61,6 @@ def off_by(one: TraceSlices, other: TraceSlices) -> Floats:
 # --- prediction -----------------------------------------------------------------------------
 
 
-def uniform_field() -> FlowField:
-    """A flow that is the same everywhere."""
-    points = np.stack(np.meshgrid(np.arange(40.0), np.arange(30.0)), axis=-1)
-    velocity = np.broadcast_to([1.0, 0.5], points.shape)
-    return FlowField.from_arrays(points, velocity, periodic="")
-
-
 @pytest.mark.parametrize("degree", [1, 2, 3])
 def test_a_polynomial_in_lag_is_predicted_exactly(degree: int, rng: np.random.Generator) -> None:
     slices = slices_of("steady gyre")
@@ -85,35 +77,6 @@ def test_a_polynomial_in_lag_is_predicted_exactly(degree: int, rng: np.random.Ge
             checked += 1
         predictor.add(np.asarray(displacement))
     assert checked >= 2 * (len(lags) - degree)
-
-
-def test_long_paths_are_composed_of_two_halves() -> None:
-    """Where paths bend, composition is fifty times as near as any way along one path."""
-    slices = slices_of("steady gyre")
-    predictor = Predictor(SliceGrid.of(slices), -slices.rate, slices.reach)
-    for lag in range(len(slices.lags)):
-        true = np.asarray(slices.displacement[:, lag], float)
-        whole = slices.reach > slices.lags[lag]
-        if lag >= len(slices.lags) - 3:
-            errors = {
-                way: float(np.abs(predictor.predict(way) - true)[whole].mean())
-                for way in predictor.ways()
-            }
-            composed = errors.pop(COMPOSED)
-            assert composed < 0.2
-            assert composed < 0.02 * min(errors.values())
-        predictor.add(true)
-
-
-def test_a_uniform_flow_is_predicted_from_its_first_slice() -> None:
-    slices = trace(uniform_field(), lags=[1.0, 2.0, 4.0], compose=False, progress=False)
-    predictor = Predictor(SliceGrid.of(slices), -slices.rate, slices.reach)
-    for lag in range(3):
-        true = np.asarray(slices.displacement[:, lag], float)
-        inside = slices.reach > slices.lags[lag]
-        for way in predictor.ways():
-            np.testing.assert_allclose(predictor.predict(way)[inside], true[inside], atol=1e-4)
-        predictor.add(true)
 
 
 # --- exactly --------------------------------------------------------------------------------
@@ -162,15 +125,6 @@ def test_no_entry_is_off_by_more_than_the_bound(name: str, bound: float) -> None
     assert decoded.displacement.dtype == slices.displacement.dtype
 
 
-@pytest.mark.parametrize("name", ["steady gyre", "cylinder"])
-def test_between_the_lags_an_eighth_is_added_at_most(name: str) -> None:
-    slices, bound = slices_of(name), 0.2
-    decoded = redundancy(slices, bound).decoded
-    for lag in np.geomspace(slices.lags[0] / 20, slices.lags[-1], 60):
-        error = np.abs(slices.positions(lag) - decoded.positions(lag)).sum(axis=-1)
-        assert error.max() <= 1.125 * bound + 1e-5
-
-
 def test_texels_count_where_the_paths_lead() -> None:
     """Noise with a hundred times as many texels on the right: paths that end there matter."""
     slices = slices_of("steady gyre")
@@ -198,14 +152,6 @@ def test_texels_count_where_the_paths_lead() -> None:
     assert error == pytest.approx(worst(even.decoded))
 
 
-def test_texels_wrap_along_a_periodic_axis() -> None:
-    slices = slices_of("cylinder")
-    texels = np.ones((*slices.shape, 2))
-    texels[:, :4] = texels[:, -4:] = 50.0
-    decoded = redundancy(slices, 0.5, texels=texels, periodic=(False, True)).decoded
-    assert error_in_texels(slices, decoded, texels, (False, True)) <= 0.5
-
-
 # --- the redundancy -------------------------------------------------------------------------
 
 
@@ -230,31 +176,6 @@ def test_fewer_bits_are_left(name: str, exact: float, bounded: float) -> None:
     assert redundancy(halved(slices)).by_neighbours.mean() < 4.5
 
 
-def test_fewer_bits_are_left_of_the_post(data_dir: Path) -> None:
-    slices = trace(FlowField.from_file(data_dir / "postxyz.bin", plane="k=20"), progress=False)
-    measured = redundancy(slices, 0.1)
-    assert off_by(slices, measured.decoded).sum(axis=-1).max() <= 0.1
-    assert measured.raw / measured.by_neighbours.mean() > 10
-
-
-@pytest.mark.parametrize("bound", [None, 0.05])
-@pytest.mark.parametrize("name", FLOWS)
-def test_neighbouring_slices_predict_much_of_each_other(name: str, bound: float | None) -> None:
-    measured = redundancy(slices_of(name), bound)
-    assert measured.alone.shape == (len(sides(slices_of(name))), len(measured.lags))
-    assert (measured.by_neighbours <= measured.by_lag).all()
-    assert (measured.by_lag <= measured.alone).all()
-    assert measured.by_neighbours.max() < measured.raw == 32
-    assert measured.share > 0.18
-    assert measured.predicted > 0.4
-
-
-def test_a_uniform_flow_follows_from_one_slice() -> None:
-    slices = trace(uniform_field(), lags=[1.0, 2.0, 4.0, 8.0], compose=False, progress=False)
-    measured = redundancy(slices, 0.01)
-    assert measured.by_lag[:, 1:].max() < 0.05
-
-
 def test_noise_predicts_nothing_of_its_neighbours(rng: np.random.Generator) -> None:
     slices = slices_of("gyre")
     data = rng.normal(size=slices.displacement.shape).astype(np.float32)
@@ -264,14 +185,3 @@ def test_noise_predicts_nothing_of_its_neighbours(rng: np.random.Generator) -> N
 
 
 # --- errors ---------------------------------------------------------------------------------
-
-
-def test_wrong_arguments_are_refused() -> None:
-    slices = slices_of("steady gyre")
-    for bound in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(ValueError, match="expected a positive number of texels"):
-            redundancy(slices, bound)
-    with pytest.raises(ValueError, match=r"texels has shape \(3,\); expected .*\(31, 61, 2\)"):
-        redundancy(slices, 0.1, texels=[1, 2, 3])
-    with pytest.raises(ValueError, match="texels goes from 0 to 0"):
-        redundancy(slices, 0.1, texels=0)

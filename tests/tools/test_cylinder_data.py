@@ -12,9 +12,7 @@ import pytest
 from cylinder_flow import (
     CylinderFlow,
     CylinderSetup,
-    _first_derivative,
     _running_integral,
-    _Tridiagonal,
 )
 from numpy.typing import NDArray
 from scipy import fft
@@ -22,41 +20,6 @@ from scipy import fft
 from flowtex.examples import _shipped
 
 SMALL = CylinderSetup(modes=24, intervals=64, step=0.02)
-
-
-def compact_error(intervals: int) -> float:
-    """Error of w'' - (2 + x) w = s on [0, 1] for w = exp(x) sin(3 x)."""
-    x = np.linspace(0.0, 1.0, intervals + 1)
-    exact = np.exp(x) * np.sin(3.0 * x)
-    bend = np.exp(x) * (6.0 * np.cos(3.0 * x) - 8.0 * np.sin(3.0 * x))
-    coefficient = (2.0 + x)[None]
-    solver = _Tridiagonal(coefficient, 1.0 / intervals)
-    source = (bend - (2.0 + x) * exact)[None].astype(np.complex128)
-    found = solver.solve(source, exact[0], exact[-1])
-    return float(np.abs(found[0] - exact).max())
-
-
-def test_the_compact_scheme_is_of_fourth_order() -> None:
-    coarse, fine = compact_error(16), compact_error(32)
-    assert fine < 1e-6
-    assert 14.0 < coarse / fine < 18.0
-
-
-def test_modes_do_not_mix_in_the_shared_tridiagonal_matrix(rng: np.random.Generator) -> None:
-    coefficient = rng.uniform(0.0, 9.0, (3, 12))
-    source = rng.standard_normal((3, 12)) + 1j * rng.standard_normal((3, 12))
-    together = _Tridiagonal(coefficient, 0.1).solve(source, 0.5, -1.0j)
-    for mode in range(3):
-        one = slice(mode, mode + 1)
-        alone = _Tridiagonal(coefficient[one], 0.1).solve(source[one], 0.5, -1.0j)
-        np.testing.assert_allclose(together[one], alone, atol=1e-12)
-
-
-def test_differences_and_integrals_are_exact_for_low_powers() -> None:
-    x = np.linspace(0.0, 2.0, 11)
-    np.testing.assert_allclose(_first_derivative(11, 0.2) @ x**4, 4.0 * x**3, atol=1e-12)
-    cubic = (x**3).astype(np.complex128)
-    np.testing.assert_allclose(_running_integral(cubic, 0.2), x**4 / 4.0, atol=1e-12)
 
 
 def test_without_vorticity_the_flow_is_the_potential_flow() -> None:
@@ -86,20 +49,6 @@ def test_the_wall_holds_the_fluid_and_the_circulation_stays() -> None:
         flow.advance()
     assert np.abs(flow._wall_residual(flow.vorticity, flow._psi)).max() < 1e-9
     assert circulation() == pytest.approx(before, abs=2e-3)
-
-
-def test_a_symmetric_flow_has_no_lift() -> None:
-    flow = CylinderFlow(SMALL, np.zeros((24, 65), dtype=np.complex128))
-    for _ in range(50):
-        flow.advance()
-    drag, lift = flow.forces()
-    assert drag > 1.0
-    assert abs(lift) < 1e-10
-
-
-def test_a_state_of_another_grid_is_refused_by_name() -> None:
-    with pytest.raises(ValueError, match=r"vorticity has shape \(3, 4\), expected \(24, 65\)"):
-        CylinderFlow(SMALL, np.zeros((3, 4), dtype=np.complex128))
 
 
 def test_the_steady_wake_at_reynolds_number_40_is_the_published_one() -> None:
@@ -137,15 +86,6 @@ def test_the_code_still_makes_the_shipped_flow() -> None:
     np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[1, :, :-1], atol=1e-4)
 
 
-def test_forces_are_computed_again_as_shipped() -> None:
-    forces = _shipped.load(_shipped.CYLINDER)["forces"]
-    flow = cylinder_run.restart()
-    np.testing.assert_allclose(flow.forces(), forces[0], atol=1e-4)
-    for _ in range(20):
-        flow.advance()
-    np.testing.assert_allclose(flow.forces(), forces[20], atol=1e-3)
-
-
 def test_a_coarser_grid_makes_the_whole_period_as_well() -> None:
     """Half the nodes and steps: the full grid is compared over the first steps, above."""
     _, velocity, _, times = _shipped.cylinder_arrays()
@@ -170,15 +110,6 @@ def _analytic(signal: NDArray[np.float64]) -> NDArray[np.complex128]:
     return np.asarray(fft.ifft(modes))
 
 
-def test_vorticity_of_a_rigid_rotation_and_of_a_point_vortex() -> None:
-    points = _shipped.cylinder_arrays()[0][:, :-1]
-    turned = np.stack([-points[..., 1], points[..., 0]], axis=-1)
-    squared = np.sum(points**2, axis=-1, keepdims=True)
-    found = cylinder_run.polar_vorticity(np.stack([turned, turned / squared]))
-    np.testing.assert_allclose(found[0], 2.0, atol=1e-6)
-    np.testing.assert_allclose(found[1], 0.0, atol=1e-9)
-
-
 def test_vorticity_is_derived_as_the_solver_has_it() -> None:
     _, velocity, vorticity, _ = _shipped.cylinder_arrays()
     derived = vorticity[0, :, :-1]
@@ -189,16 +120,6 @@ def test_vorticity_is_derived_as_the_solver_has_it() -> None:
     wall = fft.irfft(flow.vorticity[:, 0], 160, norm="forward")
     assert np.abs(wall).max() > 15.0
     np.testing.assert_allclose(derived[0], wall, atol=0.2)
-
-
-def test_refining_keeps_the_flow() -> None:
-    flow = CylinderFlow(SMALL)
-    for _ in range(20):
-        flow.advance()
-    fine = cylinder_run.refine(flow, replace(SMALL, modes=32, intervals=128))
-    assert fine.time == flow.time
-    np.testing.assert_allclose(fine.vorticity[:24, ::2], flow.vorticity, atol=1e-12)
-    assert not fine.vorticity[24:].any()
 
 
 def test_a_whole_run_in_small_is_written_and_read(
@@ -216,22 +137,3 @@ def test_a_whole_run_in_small_is_written_and_read(
     step = np.abs(shedding.velocity).max() / packing.STEPS
     np.testing.assert_allclose(velocity[:, :, :-1], shedding.velocity, atol=0.51 * step)
     np.testing.assert_array_equal(times, shedding.times)
-
-
-def test_a_run_too_short_to_shed_says_so() -> None:
-    with pytest.raises(ArithmeticError, match="the wake is not shedding yet"):
-        cylinder_run.run(durations=(0.1, 0.1, 0.1), coarse=SMALL, full=SMALL)
-
-
-def test_a_run_that_blows_up_says_so() -> None:
-    coarse = replace(SMALL, step=2.0)
-    with (
-        np.errstate(all="ignore"),
-        pytest.raises(ArithmeticError, match=r"time step smaller than 2\.0"),
-    ):
-        cylinder_run.run(durations=(4000.0, 0.1, 0.1), coarse=coarse, full=SMALL)
-
-
-def test_the_shipped_files_are_small() -> None:
-    for file in (_shipped.DATA / _shipped.CYLINDER, cylinder_run.RESTART):
-        assert file.stat().st_size < 1.5e6
