@@ -224,35 +224,6 @@ def test_a_python_block_that_does_not_run_names_its_test_or_the_reason() -> None
             assert test is None or page.name in (ROOT / test).read_text(), f"{page}: {test}"
 
 
-@pytest.mark.parametrize("page", [*PAGES, *ROOT.glob("benchmarks/*.md")], ids=lambda p: p.stem)
-def test_rows_of_tables_are_whole(page: Path) -> None:
-    text = "".join(f"{line}\n" for line in page.read_text().splitlines())
-    for block in code_blocks(page):
-        text = text.replace(block.code, "")
-    tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
-    for table in tables:
-        head, rule, *rows = (re.sub(r"`[^`]*`|\\\|", "", row) for row in table.splitlines())
-        assert re.fullmatch(r"\|( *:?-+:? *\|)+", rule), f"{page}: {head}"
-        for row in (head, *rows):
-            assert row.endswith("|") and row.count("|") == rule.count("|"), f"{page}: {row}"
-
-
-def test_each_page_of_the_site_is_once_in_its_navigation() -> None:
-    docs = ROOT / "docs"
-    found: list[Path] = []
-    for page in PAGES[1:]:
-        for block in code_blocks(page):
-            if block.language == "{toctree}":
-                entries = [line.rpartition(" <")[2].rstrip(">") for line in block.code.split("\n")]
-                files = [(page.parent / f"{entry}.md").resolve() for entry in entries if entry]
-                found += [file for file in files if file.exists()]
-    pages = {docs / name for name in ("index.md", "gallery.md")}
-    assert sorted(found) == sorted({*PAGES[1:]} - pages)
-    guide = {"data", "earth", "troubleshooting", "method", "accuracy"}
-    (tree,) = (b.code for b in code_blocks(docs / "guide.md") if b.language == "{toctree}")
-    assert guide <= {*tree.split()}
-
-
 def test_commands_of_the_docs_have_flags_that_exist() -> None:
     commands = import_module("flowtex.cli.commands")
     lines = [

@@ -17,6 +17,7 @@ from matplotlib.colors import LogNorm, NoNorm, PowerNorm
 from matplotlib.figure import Figure
 
 import flowtex
+import flowtex.xarray
 from flowtex import FieldError, FlowField, TraceSlices
 from flowtex.field.earth import Projection
 from flowtex.field.formula.make import line_field
@@ -383,6 +384,11 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([torus()], "the surface is curved ... with flowtex.render"),
         ({"mesh": plane(), "beside": {"lod": False}}, "beside makes two views ... omit it"),
         ({"mesh": plane(), "camera": [(0, 0, 9), (0, 0, 0), (0, 1, 0)]}, "camera is ... Omit it"),
+    ],
+    lambda **given: flowtex.examples.weather().flowtex.plot(**given): [
+        ({"u": "u"}, "u='u' is given; expected u and v"),
+        ({"transform": 3}, "transform is 3; expected ccrs.PlateCarree() or none"),
+        ({"col": "level", "ax": 1}, "ax is given, but row and col make their own axes"),
     ],
     flowtex.export: [
         ([plane(), "a.pdf"], "a.pdf'; expected a name that ends in .html, .htm, .mjs"),

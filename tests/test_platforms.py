@@ -45,14 +45,8 @@ def test_a_file_is_not_called_as_a_device_of_windows(name: str) -> None:
     assert files.plain_name("console.vts") == "console.vts"
 
 
-#: Tests of fields, paths, widgets and pages, which the same tests with everything barred end soon.
-BARRED = (
-    "field/test_field.py",
-    "trace/test_paths.py",
-    "host/test_widget.py",
-    "host/test_tile_feed.py",
-    "host/test_export.py",
-)
+#: Tests of fields, paths and widgets, which end soon without threads.
+BARRED = ("field/test_field.py", "trace/test_paths.py", "host/test_tile_feed.py")
 
 
 @pytest.mark.slow
@@ -69,7 +63,7 @@ def test_the_core_needs_neither_vtk_nor_threads_nor_processes() -> None:
     )
     assert done.returncode == 0, done.stdout
     passed = re.search(r"(\d+) passed", done.stdout)
-    assert passed is not None and int(passed[1]) >= 150, done.stdout
+    assert passed is not None and int(passed[1]) >= 60, done.stdout
 
 
 @pytest.mark.parametrize(

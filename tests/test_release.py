@@ -17,7 +17,6 @@ ROOT = Path(__file__).resolve().parents[1]
 PYPROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 PROJECT: dict[str, Any] = PYPROJECT["project"]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
-FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 RECIPE = ROOT / "distribution" / "conda" / "recipe.yaml"
 LOCKS = ROOT / "tools" / "locks"
 #: Names on conda-forge that differ by more than capital letters: its `eccodes` is the library in C,
@@ -126,26 +125,6 @@ def test_a_workflow_may_do_nothing_but_what_its_jobs_ask_for(path: Path) -> None
                 assert re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", uses), uses
             # What is put into a script by an expression could hold commands.
             assert "${{" not in step.get("run", "")
-
-
-def test_an_action_is_the_same_everywhere() -> None:
-    text = "\n".join(path.read_text("utf-8") for path in WORKFLOWS)
-    pins = set(re.findall(r"uses: (\S+)@(\S+) # (v\S+)", text))
-    assert len({action for action, *_ in pins}) == len(pins)
-    assert text.count("uses:") == len(re.findall(r"uses: \S+@\S+ # v", text))
-
-
-@pytest.mark.parametrize("path", FORMS, ids=lambda p: p.stem)
-def test_a_form_has_what_the_forge_asks_for(path: Path) -> None:
-    form = read_yaml(path)
-    if path.stem == "config":
-        return
-    assert form["name"]
-    assert form["description"]
-    fields = [part for part in form["body"] if part["type"] != "markdown"]
-    ids = [part["id"] for part in fields]
-    assert len(set(ids)) == len(ids)
-    assert all(part["attributes"]["label"] for part in fields)
 
 
 def test_binder_has_the_extras_that_notebooks_name() -> None:

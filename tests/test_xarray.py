@@ -128,26 +128,3 @@ def test_facets_have_one_range_of_colours(opengl: Any) -> None:
     assert len(limits) == 1 and limits.pop()[1] > 70, "the fastest winds are at 250 hPa"
     panels.fig.canvas.draw()
     plt.close("all")
-
-
-def test_what_is_no_dataset_is_told_in_the_words_of_xarray(tmp_path: Path) -> None:
-    ds = few_winds()
-    with pytest.raises(FieldError, match=r"DataArray .u. .* of one scalar; expected an"):
-        flowtex.render(ds.u)
-    with pytest.raises(SettingsError, match=r"'month' does not exist; .* use sel={'month': 1}$"):
-        flowtex.render(ds.expand_dims("month"), month=1)
-    with pytest.raises(FieldError, match=r"the folder '.*none' does not exist; create"):
-        flowtex.export(ds, tmp_path / "none" / "page.html")
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"u": "u"}, "u='u' is given; expected u and v"),
-        ({"transform": 3}, r"transform is 3; expected ccrs.PlateCarree\(\) or none"),
-        ({"col": "level", "ax": 1}, "ax is given, but row and col make their own axes"),
-    ],
-)
-def test_words_of_a_plot_that_do_not_fit_are_refused(options: Any, words: str) -> None:
-    with pytest.raises(FieldError, match=words):
-        few_winds().flowtex.plot(**options)
