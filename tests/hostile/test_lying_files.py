@@ -15,7 +15,6 @@ import pyvista as pv
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.sources import reader_errors
-from flowtex.sources.inspection import vtk_legacy
 from flowtex.sources.inspection.inspect_file import inspect_file
 
 
@@ -197,23 +196,3 @@ def test_a_member_of_a_series_is_looked_into(tmp_path: Path) -> None:
         '<DataSet timestep="1" file="series.pvd"/></Collection></VTKFile>'
     )
     assert f"{tmp_path / 'step.vtu'}: the file is truncated" in refused(tmp_path / "series.pvd")
-
-
-def test_a_file_is_looked_into_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks = 0
-    check = vtk_legacy.check_vtk_legacy
-
-    def counted(data: vtk_legacy.Data) -> None:
-        nonlocal looks
-        looks += 1
-        check(data)
-
-    monkeypatch.setattr(vtk_legacy, "check_vtk_legacy", counted)
-    path = tmp_path / "mesh.vtk"
-    pv.ImageData(dimensions=(3, 3, 1)).save(path)
-    inspect_file(path)
-    inspect_file(path)
-    assert looks == 1
-    pv.ImageData(dimensions=(4, 4, 1)).save(path)
-    inspect_file(path)
-    assert looks == 2

@@ -12,18 +12,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.files import BlockSummary, describe
+from flowtex.sources.files import describe
 from flowtex.sources.meshes.plot3d import find_grid, find_layout, find_solution
 from flowtex.sources.reader_errors import errors_of_file
 
 pv = pytest.importorskip("pyvista")
 
-Floats = NDArray[np.float64]
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -76,11 +74,6 @@ def test_a_structured_grid(tmp_path: Path, suffix: str) -> None:
     assert list(field.scalars) == ["p"]
 
 
-def test_a_path_as_text(tmp_path: Path) -> None:
-    flowing().save(tmp_path / "flow.vts")
-    assert FlowField.from_file(str(tmp_path / "flow.vts")).shape == (3, 4)
-
-
 @pytest.mark.parametrize(
     ("grid", "suffix"),
     [
@@ -97,13 +90,6 @@ def test_other_grids_and_the_options(tmp_path: Path, grid: Any, suffix: str) -> 
     assert field.periodic == (False, True)
     assert field.shape == (3, 5)
     assert np.array_equal(field.velocity[0, :, :4], mesh["b"].reshape(2, 3, 4, 3)[1])
-
-
-def test_blanking_survives_a_file(tmp_path: Path) -> None:
-    grid = flowing()
-    grid.hide_points([5])
-    grid.save(tmp_path / "flow.vts")
-    assert np.argwhere(~FlowField.from_file(tmp_path / "flow.vts").valid).tolist() == [[1, 1]]
 
 
 def test_a_series_and_one_time_of_it(tmp_path: Path) -> None:
@@ -140,31 +126,6 @@ def test_one_of_several_blocks(tmp_path: Path) -> None:
     inner = pv.MultiBlock({"hull": flowing(), "top": flowing(6)})
     pv.MultiBlock({"inside": flowing(5), "boundary": inner}).save(path)
     assert FlowField.from_file(path, block="top").shape == (3, 6), "boundary/top"
-
-
-def test_one_block_of_a_series(tmp_path: Path) -> None:
-    series(tmp_path)
-    flowing(6).save(tmp_path / "other.vts")
-    path = tmp_path / "both.pvd"
-    lines = [
-        f'<DataSet timestep="{n}" part="{part}" file="{file}"/>'
-        for n in (0, 1)
-        for part, file in enumerate((f"step{n}.vts", "other.vts"))
-    ]
-    text = f'<VTKFile type="Collection"><Collection>{"".join(lines)}</Collection></VTKFile>'
-    path.write_text(text, encoding="utf-8")
-    field = FlowField.from_file(path, block=0)
-    assert field.times.tolist() == [0, 1]
-    assert field.velocity[:, 0, 1, 0].tolist() == [1.5, 2]
-    assert FlowField.from_file(path, block=1).shape == (3, 6)
-    assert FlowField.from_file(path, block=1, time=1).steady
-
-
-def test_the_time_is_kept_by_the_file(tmp_path: Path) -> None:
-    grid = flowing()
-    grid.field_data["TimeValue"] = [3.5]
-    grid.save(tmp_path / "flow.vts")
-    assert FlowField.from_file(tmp_path / "flow.vts").times.tolist() == [3.5]
 
 
 # --- PLOT3D ---------------------------------------------------------------------------------
@@ -317,33 +278,6 @@ def test_a_grid_without_its_solution(tmp_path: Path) -> None:
         FlowField.from_file(path)
 
 
-@pytest.mark.vtk_log_allowed("the solution is cut off")
-def test_a_solution_that_is_cut_off(tmp_path: Path) -> None:
-    Plot3D().save(tmp_path / "a.xyz", tmp_path / "a.q")
-    whole = (tmp_path / "a.q").read_bytes()
-    (tmp_path / "a.q").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(FieldError) as caught:
-        FlowField.from_file(tmp_path / "a.xyz", plane="k=0")
-    missing = len(whole) - len(whole) // 2
-    assert str(caught.value) == (
-        f"{tmp_path / 'a.xyz'}: the file is truncated or damaged: a.q declares {len(whole):,} "
-        f"bytes, but the file has {len(whole) // 2:,}, and {missing:,} are missing; write or "
-        "copy it again"
-    )
-
-
-@pytest.mark.parametrize("length", [5, 100, 700])
-def test_a_grid_that_is_cut_off(tmp_path: Path, length: int) -> None:
-    Plot3D().save(tmp_path / "a.xyz", tmp_path / "a.q")
-    whole = (tmp_path / "a.xyz").read_bytes()
-    (tmp_path / "a.xyz").write_bytes(whole[:length])
-    assert len(whole) > length
-    with says(
-        f"{tmp_path / 'a.xyz'}: unknown format (not a PLOT3D grid in any layout); expected " + KNOWN
-    ):
-        FlowField.from_file(tmp_path / "a.xyz")
-
-
 def test_random_bytes_are_no_plot3d(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     for size in (1, 4, 12, 100, 4096):
@@ -367,13 +301,6 @@ def test_the_post(data_dir: Path) -> None:
     tangents = np.linalg.norm(field.surface.tangents, axis=-1)
     assert (tangents[0].max() / tangents[0].min()) * (tangents[1].max() / tangents[1].min()) > 100
     assert FlowField.from_file(data_dir / "postq.bin", plane="k=20").shape == (76, 38)
-
-
-def test_the_post_tells_what_it_is(data_dir: Path) -> None:
-    summary = describe(data_dir / "postxyz.bin")
-    assert summary.size == "38 x 76 x 38 nodes"
-    assert summary.candidates == ("Velocity",)
-    assert summary.problem == ""
 
 
 # --- what cannot be read --------------------------------------------------------------------
@@ -565,24 +492,6 @@ def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
         vtkOutputWindow.GetInstance().DisplayWarningText("odd")
 
 
-def test_a_surface_without_vectors(tmp_path: Path) -> None:
-    path = tmp_path / "hull.vtp"
-    pv.Sphere().save(path)
-    with pytest.raises(FieldError) as caught:
-        FlowField.from_file(path)
-    assert str(caught.value).startswith(f"{path}: the mesh has no vectors that could be the")
-
-
-def test_faults_of_the_field_start_with_the_path(tmp_path: Path) -> None:
-    path = tmp_path / "flow.vts"
-    flowing().save(path)
-    with says(
-        f"{path}: vectors is 'w', but the mesh has no such array. Its arrays, with their numbers "
-        "of components: v (points, 3), p (points, 1)"
-    ):
-        FlowField.from_file(path, vectors="w")
-
-
 # --- summaries ------------------------------------------------------------------------------
 
 
@@ -606,36 +515,6 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
     assert found["c"] == ("cells", 1, 1, 5)
     assert list(found) == ["v", "p", "empty", "c"]
     assert np.isnan(found["empty"][2:]).all()
-    assert summary.problem == ""
-
-
-def test_what_makes_no_field_names_its_file(tmp_path: Path) -> None:
-    for n, mesh in enumerate((flowing(), pv.Plane().triangulate())):
-        mesh["v"] = np.ones((mesh.n_points, 3))
-        mesh["IBlank"] = np.zeros(mesh.n_points, dtype=int)
-        path = tmp_path / f"still{n}.{'vtp' if n else 'vts'}"
-        mesh.save(path)
-        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: .*usable"):
-            FlowField.from_file(path, vectors="v")
-
-
-def test_what_can_be_drawn_has_no_problem_and_tells_its_times(tmp_path: Path) -> None:
-    flowing().save(tmp_path / "flow.vts")
-    one, several = describe(tmp_path / "flow.vts"), describe(series(tmp_path))
-    assert one.problem == several.problem == ""
-    assert one.times == () and several.times == (0.5, 1.0, 2.0)
-    FlowField.from_file(tmp_path / "flow.vts")
-
-
-def test_blocks_are_listed(tmp_path: Path) -> None:
-    path = tmp_path / "flow.vtm"
-    pv.MultiBlock({"hull": pv.Sphere(), "sea": flowing()}).save(path)
-    summary = describe(path)
-    assert summary.blocks == (
-        BlockSummary("hull", 0, "PolyData", "842 points, 1,680 cells"),
-        BlockSummary("sea", 1, "StructuredGrid", "4 x 3 x 1 nodes"),
-    )
-    assert summary.size == "4 x 3 x 1 nodes"
     assert summary.problem == ""
 
 

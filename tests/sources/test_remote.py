@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import xarray as xr
-from cfd_files import CGNS, TIMES, box, write_ensight, write_exodus
+from cfd_files import CGNS, TIMES, box
 from child_handler import is_gone
 from earth_data import winds
 from lying_files import crashing
@@ -27,7 +27,6 @@ from flowtex.errors import FieldError, Notice
 from flowtex.field.steps import LazySteps
 from flowtex.sources.open_source import open_source
 from flowtex.sources.remote import (
-    Reader,
     RemoteSource,
     describe_source,
     open_remote,
@@ -220,22 +219,6 @@ def test_the_process_ends_with_what_needs_it(
     wait_until(lambda: is_gone(pid))
 
 
-def test_steps_that_nobody_has_any_more_are_forgotten(tmp_path: Path) -> None:
-    reader = Reader()
-    reader({"do": "open", "paths": [str(weather(tmp_path / "weather.nc"))]})
-    ask = {"do": "field", "vectors": None, "plane": None, "block": None}
-    first = reader(dict(ask))[0]["value"]["arrays"]["velocity"]["steps"]
-    second = reader(dict(ask))[0]["value"]["arrays"]["velocity"]["steps"]
-    assert first != second
-    reader({"do": "step", "steps": second, "number": 1, "forgotten": [first]})
-    with pytest.raises(KeyError):
-        reader({"do": "step", "steps": first, "number": 1})
-    with pytest.raises(RuntimeError, match="no file is open"):
-        Reader()({"do": "part", "block": None})
-    with pytest.raises(FieldError, match=r"no\.vts: the file does not exist"):
-        Reader()({"do": "open", "paths": [str(tmp_path / "no.vts")]})
-
-
 # --- files that change ------------------------------------------------------------------------
 
 
@@ -275,24 +258,6 @@ def test_a_file_whose_reader_crashes_takes_nobody_along(tmp_path: Path) -> None:
     path.write_bytes(crashing())
     with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: the reader .* crashed"):
         open_remote([path])
-
-
-@pytest.mark.parametrize("name", ["flow.case", "flow.cgns", "flow.ex2"])
-def test_a_file_that_is_cut_off(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str
-) -> None:
-    path = tmp_path / name
-    if name.endswith(".case"):
-        write_ensight(path, [("tip", TIP), ("body", BODY)])
-    else:
-        wing(path) if name.endswith(".cgns") else write_exodus(path, points=TIP)
-    whole = path.read_bytes()
-    capfd.readouterr()
-    for share in (0.1, 0.6):
-        path.write_bytes(whole[: int(share * len(whole))])
-        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: "):
-            open_remote([path])
-    assert "".join(capfd.readouterr()) == ""
 
 
 # --- answers that make no sense ---------------------------------------------------------------

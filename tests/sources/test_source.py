@@ -1,14 +1,12 @@
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 import pyvista as pv
 
-from flowtex import FlowField, examples
-from flowtex._util import progress
+from flowtex import examples
 from flowtex.errors import FieldError
 from flowtex.sources.open_source import FlowSource
 
@@ -31,12 +29,6 @@ def test_a_block_offers_its_planes_and_vectors() -> None:
     field = source.field()
     assert field.name == "block" and np.all(field.scalars["height"] == 2)
     assert source.field(plane="i=3", vectors="water").speed.max() == pytest.approx(2)
-
-
-def test_a_surface_has_no_planes() -> None:
-    source = FlowSource(examples.double_gyre())
-    assert source.planes == {} and source.vectors == ("velocity",)
-    assert source.field().shape == examples.double_gyre_field().shape
 
 
 def test_a_field_is_given_as_it_is() -> None:
@@ -66,39 +58,3 @@ def test_a_series_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     field = source.field(plane="k=1")
     assert list(field.times) == [0.0, 0.5, 1.0]
     assert field.velocity[2, 0, 0, 0] == pytest.approx(3 * field.velocity[0, 0, 0, 0])
-
-
-@pytest.mark.vtk_log_allowed("the file is damaged")
-def test_a_broken_file_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "broken.vts"
-    path.write_text("<VTKFile")
-    with pytest.raises(FieldError, match=r"broken\.vts"):
-        FlowSource.from_file(path)
-
-
-@pytest.mark.skipif(not os.environ.get("FLOWTEX_DATA"), reason="FLOWTEX_DATA is not set")
-def test_planes_of_the_post_are_quick() -> None:
-    source = FlowSource.from_file(Path(os.environ["FLOWTEX_DATA"]) / "postxyz.bin")
-    assert source.vectors[0] == "Velocity" and list(source.planes.values()) == [
-        38,
-        76,
-        38,
-        101,
-        101,
-        101,
-    ]
-    assert source.field(plane="k=20").shape == (76, 38)
-
-
-def test_a_trace_can_be_stopped() -> None:
-    from flowtex.trace.trace import trace
-
-    x, y = np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30))
-    points = np.stack([x, y, 0 * x], axis=-1)
-    spin = np.stack([0.5 - y, x - 0.5, 0 * x], axis=-1)
-    field = FlowField.from_arrays(points, spin)
-    asked = iter([False, False, True, False])
-    with pytest.raises(progress.Stopped), progress.stoppable(lambda: next(asked)):
-        trace(field)
-    assert list(asked) == [False]  # it did not go on to the next piece of work
-    progress.check()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from earth_data import components, east_and_north, winds
+from earth_data import east_and_north, winds
 from lying_files import grib2
 
 from flowtex import FlowField
@@ -63,21 +63,6 @@ def test_netcdf_zarr_and_json_are_the_same_field(tmp_path: Path) -> None:
     assert str(field.start) == "2016-04-30 12:00:00"
 
 
-def test_files_of_several_days_are_one_series(tmp_path: Path) -> None:
-    paths = []
-    for day in (3, 1, 2):
-        ds = day * winds(np.arange(0.0, 20.0), np.arange(0.0, 10.0))
-        for name, other in (("u", "eastward_wind"), ("v", "northward_wind")):
-            ds[name].attrs = {"standard_name": other, "units": "m/s"}
-        paths.append(tmp_path / f"winds_2002010{day}.nc")
-        ds.expand_dims(time=[37000.0 + day]).to_netcdf(paths[-1])
-    field = FlowField.from_file(paths, globe=True)
-    assert field.times.tolist() == [0.0, 86400.0, 172800.0]
-    assert str(field.start)[:10] == "2002-01-01"
-    means = [np.asarray(field.speed[n]).mean() for n in range(3)]
-    assert np.allclose(np.divide(means, means[0]), [1, 2, 3])
-
-
 def test_files_that_are_not_drawn_are_told(tmp_path: Path) -> None:
     air, sea = winds(LON, LAT), winds(LON, LAT).rename(u="uo", v="vo")
     for name, along in (("uo", "eastward"), ("vo", "northward")):
@@ -109,25 +94,6 @@ def test_json_of_another_form_is_refused(tmp_path: Path, content: str, words: st
     with pytest.raises(FieldError, match=words) as error:
         FlowField.from_file(path)
     assert str(error.value).startswith(str(path))
-
-
-def test_broken_files_end_in_one_error(tmp_path: Path) -> None:
-    good = tmp_path / "good.nc"
-    winds(LON, LAT).to_netcdf(good)
-    content = good.read_bytes()
-    for name, share in (("a.nc", 0.0), ("b.nc", 0.02), ("c.nc", 0.5), ("d.grib", 0.5)):
-        path = tmp_path / name
-        path.write_bytes(content[: int(share * len(content))])
-        with pytest.raises((FieldError, ModuleNotFoundError)):
-            FlowField.from_file(path)
-    (tmp_path / "e.zarr").mkdir()
-    (tmp_path / "e.zarr" / "zarr.json").write_text("{}")
-    with pytest.raises(FieldError):
-        FlowField.from_file(tmp_path / "e.zarr")
-    with pytest.raises(FieldError, match="plane applies to meshes"):
-        FlowField.from_file(good, plane="k=3")
-    with pytest.raises(FieldError, match="the file does not exist"):
-        FlowField.from_file(tmp_path / "none.nc")
 
 
 def reference(lon: Any, lat: Any, u: Any, v: Any) -> Any:
@@ -211,8 +177,3 @@ def test_roms_and_globcurrent_are_read_without_a_word() -> None:
     currents = FlowField.from_file(days)
     assert len(currents.times) == 8 and currents.times[1] == 86400.0
     assert 0.1 < (~currents.valid).mean() < 0.4
-
-
-def test_components_are_those_of_the_rotation() -> None:
-    u, v = components(0.0, 90.0)
-    assert np.isfinite(u) and np.isfinite(v)

@@ -10,7 +10,6 @@ import xarray as xr
 from earth_data import RATE, c_grid, components, on_sphere, turning, winds
 
 from flowtex import FlowField
-from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.sources.notices import DatasetNotice
@@ -34,35 +33,6 @@ def test_a_globe_has_the_velocities_of_the_earth() -> None:
     assert field.speed.max() == pytest.approx(RATE, rel=1e-2)
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda ds: ds.isel(lat=slice(None, None, -1)),
-        lambda ds: ds.isel(lon=slice(None, None, -1)),
-        lambda ds: ds.transpose("lon", "lat"),
-        lambda ds: ds.assign_coords(lon=ds.lon % 360).sortby("lon"),
-        lambda ds: ds.roll(lon=17, roll_coords=True),
-    ],
-    ids=["south to north", "east to west", "transposed", "0 to 360", "rolled"],
-)
-@pytest.mark.parametrize("projection", ["globe", "platecarree", "robinson"])
-def test_the_order_of_the_axes_changes_nothing(change: Any, projection: str) -> None:
-    ds = winds(LON, LAT[1:-1])
-    one, other = (
-        FlowField.from_xarray(d, projection=projection).at_step(0) for d in (ds, change(ds))
-    )
-
-    def table(field: FlowField) -> Floats:
-        flat = [field.points.reshape(-1, 3), np.asarray(field.velocity)[0].reshape(-1, 3)]
-        rows = np.concatenate(flat, axis=1)[field.valid.ravel()]
-        rows = np.unique(np.round(rows, 3) + 0.0, axis=0)
-        return rows[np.lexsort(rows.T[::-1])]
-
-    a, b = table(one), table(other)
-    assert a.shape == b.shape
-    assert np.abs(a - b).max() < 0.01
-
-
 @pytest.mark.parametrize("kind", ["nemo", "roms", "mitgcm", "comodo"])
 @pytest.mark.parametrize("turn", [0.0, 40.0, 90.0, 200.0])
 def test_a_staggered_grid_may_be_turned(kind: str, turn: float) -> None:
@@ -78,6 +48,20 @@ def test_a_staggered_grid_may_be_turned(kind: str, turn: float) -> None:
         assert globe_error(field) < 1e-3 * RATE
     assert errors[0] < 1e-4 * RATE
     assert errors[1] < 0.3 * errors[0]
+
+
+def test_what_a_long_name_calls_zonal_is_along_the_grid_on_sides_of_cells() -> None:
+    ds = c_grid("comodo", 30.0)[0]
+    for name, word in (("U", "Zonal"), ("V", "Meridional")):
+        ds[name].attrs = {"long_name": f"{word} velocity", "units": "m s-1"}
+    field = FlowField.from_xarray(ds, globe=True)
+    assert globe_error(field, np.s_[1:-1, 1:-1]) < 1e-3 * RATE
+
+
+@pytest.mark.parametrize(("south", "name"), [(70.0, "north"), (30.0, "platecarree")])
+def test_a_region_around_a_pole_is_drawn_around_it(south: float, name: str) -> None:
+    field = FlowField.from_xarray(winds(np.arange(0.0, 60.0, 2.0), np.arange(south, south + 20)))
+    assert field.projection is not None and field.projection.family == name
 
 
 def test_coordinates_of_another_model_do_not_count() -> None:
@@ -107,21 +91,6 @@ def test_a_flat_map_has_the_paths_of_particles() -> None:
         # Colours are of the speed on the Earth, whatever the map does to lengths.
         true = np.hypot(*components(a, b))
         assert np.allclose(np.asarray(field.scalars["speed"])[0], true, atol=1e-6)
-
-
-def test_a_global_flat_map_closes() -> None:
-    field = FlowField.from_xarray(winds(LON, LAT[1:-1]), projection="platecarree")
-    assert field.periodic == (False, True)
-    assert field.points[0, 0, 0] == pytest.approx(-field.points[0, -1, 0])
-    assert np.array_equal(field.velocity[0][:, 0], field.velocity[0][:, -1])
-
-
-def test_a_region_across_the_date_line_is_one_piece() -> None:
-    lon = np.concatenate([np.arange(170.0, 180.0), np.arange(-180.0, -165.0)])
-    field = FlowField.from_xarray(winds(lon, np.arange(-20.0, 20.0)))
-    assert field.valid.all()
-    assert np.ptp(field.points[..., 0]) < np.radians(26) * EARTH_RADIUS
-    assert (np.diff(field.points[0, :, 0]) > 0).all()
 
 
 def test_all_times_are_there_and_read_when_they_are_shown() -> None:
@@ -154,21 +123,6 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
     assert one.steady and str(one.start)[:10] == "2000-01-03"
     with pytest.raises(FieldError, match="time is '2001-01-01'; expected one of 2000-01-01"):
         FlowField.from_xarray(ds, time="2001-01-01")
-
-
-def test_scalars_of_one_time_are_read_when_they_are_asked_for() -> None:
-    dask = pytest.importorskip("dask.array")
-    read: list[int] = []
-
-    def block(block_info: Any) -> Any:
-        read.append(len(block_info))
-        return np.ones((30, 40))
-
-    ds = winds(np.linspace(0, 20, 40), np.linspace(0, 15, 30))
-    ds["heat"] = ("lat", "lon"), dask.map_blocks(block, chunks=(30, 40), meta=np.empty(()))
-    field = FlowField.from_xarray(ds, globe=True)
-    assert field.steady and not read
-    assert np.asarray(field.scalars["heat"]).mean() == 1 and read
 
 
 def levels() -> Any:
@@ -253,14 +207,6 @@ def test_units_are_those_of_velocities_and_the_same() -> None:
     ds["v"].attrs["units"] = "kg"
     with pytest.raises(FieldError, match="'kg', which is not a unit of velocity"):
         FlowField.from_xarray(ds, "u", "v")
-
-
-def test_a_pair_in_another_unit_is_told_of() -> None:
-    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
-    for name in "uv":
-        ds[name].attrs = {"units": "furlong"}
-    with pytest.raises(FieldError, match=r"^the unit of 'u' is 'furlong', which is not a unit"):
-        FlowField.from_xarray(ds)
 
 
 def test_a_region_is_cut_from_the_dataset() -> None:

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from earth_data import DEGREES, components, winds
 
-import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.sources.datasets.coordinates import Places
@@ -88,34 +87,3 @@ def test_columns_of_the_earth_reach_from_edge_to_edge(projection: str, first: fl
     assert x[[0, -1]] == pytest.approx(
         field.projection.positions(np.array([-180, 180]), np.zeros(2))[:, 0]
     )
-
-
-@pytest.mark.parametrize("west", [-180.0, -178.0])
-def test_the_same_winds_are_the_same_picture_across_the_date_line(opengl: Any, west: float) -> None:
-    del opengl
-    ds = winds(np.arange(west, 180.0, 4.0), np.arange(-90.0, 90.1, 4.0))
-    shifted = ds.assign_coords(lon=ds.lon % 360).sortby("lon").isel(lat=slice(None, None, -1))
-    options: dict[str, Any] = {"size": (120, 120), "scalars": False, "coastlines": False}
-    options |= {"graticule": False, "lighting": False, "samples": 9}
-    for view in ({"globe": True}, {"projection": "platecarree"}, {"projection": "south"}):
-        one, other = (flowtex.render(d, **view, **options).astype(float) for d in (ds, shifted))
-        assert one.std() > 10
-        assert np.abs(one - other).mean() < 2, view
-
-
-def test_an_orthographic_map_is_half_of_the_earth() -> None:
-    ds = winds(np.arange(-180.0, 180.0, 4.0), np.arange(-88.0, 88.1, 4.0))
-    field = FlowField.from_xarray(ds, projection="+proj=ortho +lat_0=30")
-    assert 0.35 < field.valid.mean() < 0.65
-
-
-@pytest.mark.parametrize("steps", [1, 2])
-def test_mask_that_hides_everything_is_not_used(steps: int) -> None:
-    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
-    for name, way in (("u", "eastward"), ("v", "northward")):
-        ds[name].attrs["standard_name"] = f"{way}_sea_water_velocity"
-    times = np.datetime64("2024-01-01", "ns") + np.arange(steps) * np.timedelta64(1, "h")
-    series = xr.concat([ds] * steps, "time").assign_coords(time=times)
-    land = (("time", "lat", "lon"), np.ones((steps, 20, 30)))
-    field = FlowField.from_xarray(series.assign(LANDMASK=land))
-    assert field.valid.all() and "LANDMASK is not used" in str(field.reading)

@@ -24,7 +24,6 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.open_source import DatasetSource
-from flowtex.sources.opening.dataset_files import as_datasets
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -51,14 +50,6 @@ def test_the_turning_earth_is_what_every_convention_has(name: str) -> None:
     _, at = cKDTree(field.points[0]).query(like.points[0])
     assert np.allclose(field.points[0, at], like.points[0], atol=10.0)  # bounds are rounded
     assert np.allclose(field.velocity[0][0, at], like.velocity[0][0], atol=1e-3)
-
-
-def test_means_of_faces_are_better_on_finer_meshes() -> None:
-    rms = [
-        np.sqrt(np.mean(faults(FlowField.from_xarray(fvcom(globe(n)), globe=True)) ** 2))
-        for n in (400, 1600)
-    ]
-    assert rms[1] < rms[0] / 1.9
 
 
 def test_levels_and_times_have_names_and_are_read_late() -> None:
@@ -248,14 +239,6 @@ def test_what_is_missing_is_told() -> None:
     nodes = xr.zeros_like(ds.height).assign_attrs(ds.ucy.attrs)
     with pytest.raises(FieldError, match="expected both at nodes, or both in faces"):
         FlowField.from_xarray(ds.assign(ucy=nodes), "ucx", "ucy")
-
-
-def test_it_is_known_again_when_it_was_prepared() -> None:
-    for build, _ in CONVENTIONS.values():
-        once = as_datasets(build(globe(100)))
-        twice = as_datasets(once)
-        assert [list(a.dims) for a in once] == [list(a.dims) for a in twice]
-        assert [set(a.variables) for a in once] == [set(a.variables) for a in twice]
 
 
 @pytest.fixture

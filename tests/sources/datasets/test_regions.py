@@ -10,7 +10,6 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex._util.arrays import even_runs
 from flowtex.field.field_arrays import GridArrays
 from flowtex.field.options import FieldOptions
 from flowtex.field.validation import NO_DATA
@@ -156,12 +155,6 @@ def test_grids_that_are_no_lines_are_read_whole() -> None:
     )  # it may close, as longitude does
 
 
-def test_a_globe_closes_though_land_lies_at_its_seam() -> None:
-    data = dataset(LONGITUDES["from zero"], LATITUDES["north"])
-    data["u"][..., :3] = np.nan
-    assert FlowField.from_xarray(data, globe=True).periodic == (False, True)
-
-
 def test_the_largest_models_are_recognised_by_their_lines() -> None:
     dask = pytest.importorskip("dask.array")
     zeros = dask.zeros((50_000, 200_000), chunks=10_000, dtype="f4")
@@ -181,18 +174,3 @@ def test_the_largest_models_are_recognised_by_their_lines() -> None:
     assert regions.lines.shape == (50_000, 200_001) and regions.lines.periodic == "i"
     nodes = regions.nodes(0, slice(49_000, 49_100), slice(199_990, 200_001))
     assert nodes.velocity.shape == (100, 11, 3) and not nodes.velocity.any()
-
-
-def test_numbers_are_slices_where_they_can_be() -> None:
-    numbers = np.arange(12)
-    for some, slices in (
-        ([5, 6, 7, 0, 1], 2),
-        ([9, 8, 7, 6], 1),
-        ([3], 1),
-        ([0, 2, 4, 6, 7], 2),
-        ([7, 0], 2),
-        ([2, 1, 0], 1),
-    ):
-        runs = list(even_runs(np.array(some)))
-        assert len(runs) == slices
-        assert np.concatenate([numbers[run] for run in runs]).tolist() == some

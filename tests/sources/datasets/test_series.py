@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import os
 from pathlib import Path
 from typing import Any
 
@@ -53,15 +52,6 @@ def test_paths_datasets_and_what_xarray_joined_are_the_same(tmp_path: Path) -> N
     with xr.open_mfdataset(paths) as opened:
         assert same(field, FlowField.from_xarray(opened))
     assert all("Unit" in ds.time.attrs and "units" not in ds.time.attrs for ds in steps)
-
-
-@pytest.mark.skipif("FLOWTEX_DATA" not in os.environ, reason="the folder of real data is absent")
-def test_globcurrent_is_a_series_as_paths_and_as_a_dataset() -> None:
-    paths = sorted(Path(os.environ["FLOWTEX_DATA"]).glob("globcurrent_*.nc"))
-    with xr.open_mfdataset(paths) as opened:
-        field = FlowField.from_xarray(opened)
-        assert same(field, FlowField.from_file(paths))
-    assert np.array_equal(field.times, np.arange(8) * 86400.0)
 
 
 @pytest.mark.parametrize("key", ["Unit", "Units", "unit", "UNITS"])

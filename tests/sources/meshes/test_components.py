@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from flowtex import FlowField
-from flowtex.errors import FieldError, Notice
+from flowtex.errors import FieldError
 from flowtex.sources.files import describe
 from flowtex.sources.meshes.vectors import find_vectors
 from flowtex.sources.open_source import FlowSource
@@ -112,12 +112,6 @@ def test_three_components(where: str, vectors: str | None) -> None:
     assert set(field.scalars) == {*NAMES, "p"}, "components stay to colour by"
 
 
-@pytest.mark.parametrize("vectors", [None, "X Velocity, Y Velocity"])
-def test_two_components_of_a_flat_mesh(vectors: str | None) -> None:
-    field = FlowField.from_pyvista(mesh(NAMES[:2]), vectors=vectors)
-    assert np.all(field.velocity == (1, 2, 0))
-
-
 def test_components_in_another_order() -> None:
     field = FlowField.from_pyvista(mesh(), vectors="Z Velocity,X Velocity,Y Velocity")
     assert np.all(field.velocity == (3, 1, 2))
@@ -143,22 +137,6 @@ def test_an_array_whose_own_name_has_commas_wins() -> None:
     grid = mesh(("u", "v", "w"))
     grid["u,v,w"] = np.full((grid.n_points, 3), 7.0)
     assert np.all(FlowField.from_pyvista(grid, vectors="u,v,w").velocity == 7)
-
-
-def test_of_several_triples_the_one_that_is_named_so_is_the_velocity() -> None:
-    told = r'the velocity is "Velocity", chosen by its name; .* as in vectors="u,v,w"'
-    with pytest.warns(Notice, match=told):
-        field = FlowField.from_pyvista(mesh((*NAMES, "u", "v", "w")))
-    assert np.all(field.velocity == FlowField.from_pyvista(mesh()).velocity)
-
-
-def test_several_triples_are_asked_about() -> None:
-    with says(
-        "the mesh has 2 arrays that could be the velocity: B_x,B_y,B_z (points, 3 from "
-        "B_x, B_y, B_z), u,v,w "
-        '(points, 3 from u, v, w); choose one, as in vectors="u,v,w"'
-    ):
-        FlowField.from_pyvista(mesh(("B_x", "B_y", "B_z", "u", "v", "w")))
 
 
 LISTED = (
@@ -190,13 +168,6 @@ def test_components_that_make_no_vector(vectors: str, fault: str) -> None:
     grid.cell_data["q"] = np.ones(grid.n_cells)
     with says(f"vectors is {vectors!r}{fault}{LISTED}"):
         FlowField.from_pyvista(grid, vectors=vectors)
-
-
-def test_a_step_without_a_component() -> None:
-    second = mesh()
-    second.point_data.remove("Y Velocity")
-    with pytest.raises(FieldError, match=r"^step 1 has no array Y Velocity \(points, 1\), which"):
-        FlowField.from_pyvista([mesh(), second])
 
 
 def test_components_of_a_file(tmp_path: Path) -> None:

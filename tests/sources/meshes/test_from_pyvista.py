@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -106,10 +105,6 @@ def test_a_plane_of_a_solid_mesh(make: Any, plane: str, wanted: Floats) -> None:
     np.testing.assert_array_equal(field.velocity[0], wanted + SHIFT)
 
 
-def test_a_flat_mesh_may_be_told_its_plane() -> None:
-    assert FlowField.from_pyvista(flowing(), plane="k=0").shape == (3, 4)
-
-
 def test_an_image_that_is_turned_and_shifted() -> None:
     grid = pv.ImageData(dimensions=(4, 3, 2), spacing=(1, 2, 3), origin=(5, 6, 7))
     grid.direction_matrix = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
@@ -118,16 +113,6 @@ def test_an_image_that_is_turned_and_shifted() -> None:
     field = FlowField.from_pyvista(grid, plane="k=1")
     wanted = np.asarray(grid.points).reshape(2, 3, 4, 3)[1]
     np.testing.assert_allclose(field.points, wanted, atol=1e-12)
-
-
-def test_integer_coordinates_become_real() -> None:
-    grid = structured()
-    points = pv.vtk_points(np.asarray(grid.points).astype(np.int32), force_float=False)
-    grid.SetPoints(points)
-    grid["v"] = np.ones((12, 3))
-    field = FlowField.from_pyvista(grid)
-    assert field.points.dtype == np.float64
-    assert np.array_equal(field.points, expected(np.arange(4)[None], np.arange(3)[:, None], 0))
 
 
 def test_a_bare_vtk_mesh_is_a_mesh() -> None:
@@ -162,13 +147,6 @@ def test_the_active_vectors_win() -> None:
     grid.set_active_vectors("w")
     assert (FlowField.from_pyvista(grid).velocity == 7).all()
     assert (FlowField.from_pyvista(grid, vectors="v").velocity != 7).any()
-
-
-def test_two_components_and_integers_when_named() -> None:
-    grid = structured()
-    grid["uv"] = np.arange(24).reshape(12, 2)
-    field = FlowField.from_pyvista(grid, vectors="uv")
-    assert field.velocity[0, 2, 3].tolist() == [22, 23, 0]
 
 
 def test_zero_everywhere_warns() -> None:
@@ -235,14 +213,6 @@ def test_a_plane_of_nodes_has_the_cells_of_extract_subset() -> None:
 
 
 # --- cells ----------------------------------------------------------------------------------
-
-
-def test_cell_vectors_become_means_around_the_nodes() -> None:
-    grid = structured()
-    grid.cell_data["v"] = np.arange(18.0).reshape(6, 3)
-    field = FlowField.from_pyvista(grid)
-    wanted = grid.cell_data_to_point_data()["v"].reshape(3, 4, 3)
-    np.testing.assert_allclose(field.velocity[0], wanted)
 
 
 @pytest.mark.parametrize("plane", ["k=0", "k=2", "k=3", "j=1", "i=4"])
@@ -330,28 +300,6 @@ def test_cell_vectors_agree_on_both_sides_of_a_seam() -> None:
     np.testing.assert_allclose(apart.velocity[0, 0, 0], cells[0, 0])
 
 
-def test_cells_do_not_go_round_a_ring_that_lacks_its_last_ones() -> None:
-    grid = annulus().extract_subset([0, 11, 0, 3, 0, 0])
-    cells = np.random.default_rng(0).random((3, 11, 3))
-    grid.cell_data["v"] = cells.reshape(-1, 3)
-    field = FlowField.from_pyvista(grid)
-    assert field.shape == (4, 13)
-    np.testing.assert_allclose(field.velocity[0, 0, 0], cells[0, 0])
-    np.testing.assert_allclose(field.velocity[0, 0, 11], cells[0, -1])
-    np.testing.assert_allclose(field.velocity[0, 0, 12], cells[0, 0])
-
-
-def test_a_hidden_cell_beside_a_seam_stays_hidden() -> None:
-    grid = with_flow(annulus())
-    ghosts = np.zeros((3, 12), np.uint8)
-    ghosts[0, 0] = HIDDEN_CELL
-    grid.cell_data["vtkGhostType"] = ghosts.ravel()
-    field = FlowField.from_pyvista(grid)
-    assert field.periodic == (False, True)
-    assert not field.surface.cells[0, 0]
-    assert field.surface.cells[2].all()
-
-
 # --- hidden points --------------------------------------------------------------------------
 
 
@@ -370,21 +318,6 @@ def test_hidden_points_are_not_valid(how: str) -> None:
         grid[how] = flags
     assert np.argwhere(~FlowField.from_pyvista(grid, plane="k=1").valid).tolist() == [[1, 2]]
     assert FlowField.from_pyvista(grid, plane="k=0").valid.all()
-
-
-def test_other_codes_of_iblank_carry_data() -> None:
-    grid = flowing()
-    grid["IBlank"] = np.array([0, -1, 2, 1, -3, 5, 1, 1, 1, 1, 1, 1], np.int32)
-    assert np.argwhere(~FlowField.from_pyvista(grid).valid).tolist() == [[0, 0]]
-
-
-def test_what_a_sampling_filter_missed_is_not_valid() -> None:
-    source = pv.ImageData(dimensions=(6, 6, 1))
-    source["v"] = np.ones((36, 3))
-    target = pv.ImageData(dimensions=(10, 6, 1)).sample(source)
-    field = FlowField.from_pyvista(target, vectors="v")
-    assert field.valid[:, :6].all()
-    assert not field.valid[:, 6:].any()
 
 
 # --- series ---------------------------------------------------------------------------------
@@ -417,10 +350,6 @@ def test_steps_without_times_are_numbered() -> None:
         assert FlowField.from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
 
 
-def test_a_single_mesh_keeps_its_time() -> None:
-    assert FlowField.from_pyvista(at_time(7.0)).times.tolist() == [7]
-
-
 def test_one_structured_block_is_the_mesh() -> None:
     blocks = pv.MultiBlock([None, pv.Sphere(), pv.MultiBlock([at_time(None, 5.0), None])])
     field = FlowField.from_pyvista(blocks)
@@ -428,10 +357,6 @@ def test_one_structured_block_is_the_mesh() -> None:
     assert (field.velocity == 5).all()
     steps = [pv.MultiBlock([at_time(1.0, 1.0)]), pv.MultiBlock([at_time(2.0, 2.0)])]
     assert FlowField.from_pyvista(steps).times.tolist() == [1, 2]
-
-
-def test_a_block_of_a_single_row_is_not_the_mesh() -> None:
-    assert FlowField.from_pyvista(pv.MultiBlock([flowing(4, 1, 1), flowing()])).shape == (3, 4)
 
 
 def test_a_node_hidden_at_one_time_is_hidden_at_all() -> None:
@@ -466,11 +391,6 @@ def test_a_reader_of_a_series_is_read_through_and_left_as_it_was() -> None:
     assert FlowField.from_pyvista(Reader({3.0: at_time(None)})).times.tolist() == [3]
 
 
-def test_a_reader_of_pyvista_is_a_reader(tmp_path: Path) -> None:
-    flowing().save(tmp_path / "flow.vts")
-    assert FlowField.from_pyvista(pv.get_reader(tmp_path / "flow.vts")).shape == (3, 4)
-
-
 def test_parts_of_one_mesh_are_no_steps() -> None:
     left, right = flowing(), moved()
     with says(
@@ -480,12 +400,6 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
         FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}))
     field = FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}), block="right")
     assert field.points[..., 0].min() == 3
-
-
-def test_rounded_nodes_have_not_moved() -> None:
-    second = at_time(1.0)
-    second.points = np.asarray(second.points) * (1 + 1e-9)
-    assert len(FlowField.from_pyvista([at_time(0.0), second]).times) == 2
 
 
 def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
@@ -500,15 +414,6 @@ def test_a_gap_in_time_is_told() -> None:
     with pytest.warns(Notice, match=r"^no data lie between the times 0 and 5, .* are 0\.25 apart"):
         FlowField.from_pyvista(meshes)
     FlowField.from_pyvista(meshes[1:])
-
-
-def test_a_step_of_several_blocks() -> None:
-    with says(
-        "step 0 has 2 blocks that are not time steps of one mesh: 0 (Block-00, 4 x 3 x 1 nodes), "
-        '1 (Block-01, 5 x 3 x 1 nodes); choose one, as in block="Block-00"'
-    ):
-        FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
-    assert FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])], block=1).shape == (3, 5)
 
 
 # --- what is wrong with a mesh ---------------------------------------------------------------
@@ -672,20 +577,6 @@ def moved() -> Any:
 def test_what_is_wrong_is_told(mesh: Any, given: dict[str, Any], text: str) -> None:
     with says(text):
         FlowField.from_pyvista(mesh, **given)
-
-
-def test_the_advice_to_sample_works() -> None:
-    mesh = pv.Plane(i_size=4, j_size=4, i_resolution=8, j_resolution=8).triangulate()
-    mesh["v"] = np.ones((mesh.n_points, 3))
-    field = FlowField.from_pyvista(pv.create_grid(mesh, (21, 11, 1)).sample(mesh))
-    assert field.shape == (11, 21)
-    assert field.valid.any()
-    solid = pv.ImageData(dimensions=(5, 5, 5)).to_tetrahedra()
-    solid["v"] = np.ones((solid.n_points, 3))
-    blocks = pv.MultiBlock([solid])
-    field = FlowField.from_pyvista(pv.create_grid(blocks, (9, 8, 7)).sample(blocks), plane="k=3")
-    assert field.shape == (8, 9)
-    assert field.valid.all()
 
 
 # --- manners --------------------------------------------------------------------------------

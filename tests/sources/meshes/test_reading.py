@@ -73,34 +73,6 @@ def test_two_components_lie_in_the_plane_of_a_mesh(axis: str, kind: str, where: 
     )
 
 
-@pytest.mark.parametrize(
-    ("axis", "names"),
-    [
-        ("y", ("u", "w")),
-        ("y", ("Velocity X", "Velocity Z")),
-        ("y", ("u", "v")),
-        ("x", ("v", "w")),
-        ("x", ("vel_y", "vel_z")),
-        ("z", ("u", "v")),
-    ],
-)
-@pytest.mark.parametrize("kind", ["PolyData", "ImageData"])
-def test_components_in_a_plane_are_found_by_their_names(
-    axis: str, names: tuple[str, str], kind: str
-) -> None:
-    mesh, axes = flat(axis, kind), list(AXES[axis])
-    for name, values in zip(
-        names, flow(*np.asarray(mesh.points.T[axes], dtype=float)).T, strict=True
-    ):
-        mesh[name] = values
-    field, notices = read(mesh)
-    expected = np.zeros((*field.shape, 3))
-    expected[..., axes] = flow(*np.moveaxis(field.points[..., axes], -1, 0))
-    np.testing.assert_allclose(field.velocity[0], expected, atol=1e-6)
-    assert not notices
-    assert f"{', '.join(names)} combined" in field.reading.of("components")
-
-
 @pytest.mark.parametrize("names", [("u", "w"), ("w", "u"), ("x", "z"), ("c_X", "c_Z")])
 def test_named_components_are_along_their_axes(names: tuple[str, str]) -> None:
     for mesh in (flat("y"), pv.Sphere(), pv.ImageData(dimensions=(4, 5, 6))):
@@ -130,15 +102,6 @@ def test_two_components_of_a_volume_are_along_x_and_y(options: dict[str, str]) -
     assert any(told in notice for notice in notices)
     for level in ({"plane": "k=2"}, {"slice": "z=2"}):
         assert not read(mesh, **level)[1]
-
-
-def test_two_components_without_a_plane() -> None:
-    mesh = pv.ImageData(dimensions=(4, 3, 1))
-    mesh["u"] = np.ones(12)
-    assert (read(mesh, vectors="u,u")[0].velocity == (1, 1, 0)).all()
-    mesh["IBlank"] = np.zeros(12, int)
-    with pytest.raises(FieldError, match="usable"):
-        read(mesh, vectors="u,u")
 
 
 # --- the normal component ------------------------------------------------------------------------
@@ -187,28 +150,6 @@ def test_the_record_tells_each_step() -> None:
     ]
 
 
-def test_reasons_for_the_velocity_are_recorded() -> None:
-    mesh = flat("z")
-    mesh["U"] = np.ones((mesh.n_points, 2))
-    assert read(mesh)[0].reading[0] == (
-        "select",
-        'the velocity is "U", the only point array with 2 components',
-        False,
-        "",
-    )
-    mesh["V"] = np.ones((mesh.n_points, 3))
-    assert "as selected" in read(mesh, vectors="V")[0].reading[0].text
-    mesh.set_active_vectors("V")
-    assert "the active vectors of the mesh" in read(mesh)[0].reading[0].text
-    volume = pv.ImageData(dimensions=(4, 4, 4))
-    volume["U"] = np.ones((64, 3))
-    field, notices = read(volume)
-    assert field.reading[1].notable and field.reading[1].text == notices[0]
-    assert "plane j = 3 of 4 x 4 x 4 nodes (I x J x K)" in read(volume, plane="j=-1")[0].reading.of(
-        "select"
-    )
-
-
 # --- masks ---------------------------------------------------------------------------------------
 
 
@@ -246,25 +187,6 @@ def test_a_fill_value_of_one_step_is_one_in_the_following_steps() -> None:
         steps.append(mesh)
     field, notices = read(steps)
     assert np.abs(field.velocity).max() < 10 and len(notices) == 1
-
-
-def test_fill_values_of_hidden_nodes_are_not_told() -> None:
-    mesh = pv.ImageData(dimensions=(20, 20, 1))
-    mesh["U"] = np.random.default_rng(0).normal(size=(400, 2))
-    mesh["U"][:40] = -999
-    mesh["IBlank"] = (np.arange(400) >= 40).astype(int)
-    field, notices = read(mesh)
-    assert not notices
-    assert field.reading.of("mask") == ("10% of the nodes are hidden by IBlank",)
-
-
-def test_cells_that_are_hidden_are_recorded() -> None:
-    mesh = flat("z", "ImageData")
-    mesh["U"] = np.ones((mesh.n_points, 2))
-    mesh.cell_data["vtkGhostType"] = np.r_[np.full(6, 32), np.zeros(24)].astype(np.uint8)
-    assert read(mesh, vectors="U")[0].reading.of("mask") == (
-        "20% of the cells are hidden by vtkGhostType",
-    )
 
 
 # --- series --------------------------------------------------------------------------------------
@@ -356,33 +278,12 @@ def test_nodes_at_one_place_are_matched_by_their_labels_only() -> None:
         read([doubled, other], vectors="U")
 
 
-def test_a_mesh_that_moves_raises() -> None:
-    for kind in ("grid", "triangles", "tetrahedra"):
-        moved = step(kind, 2.0)
-        moved.points = np.asarray(moved.points) + 0.01 * np.sin(np.asarray(moved.points)[:, ::-1])
-        with pytest.raises(FieldError, match=r"the nodes of step 1 are up to .* away from"):
-            read([step(kind, 1.0), moved])
-
-
 def test_steps_are_sorted_by_time() -> None:
     field, notices = read([step("grid", time) for time in (3.0, 1.0, 2.0)])
     assert field.times.tolist() == [1, 2, 3]
     np.testing.assert_allclose(field.velocity[2], 3 * field.velocity[0], atol=1e-12)
     assert field.scalars["p"][:, 0, 0].tolist() == [1, 2, 3]
     assert notices == ["the steps are sorted by their times"]
-
-
-def test_blocks_are_recorded() -> None:
-    blocks = pv.MultiBlock([step("grid", time) for time in (1.0, 2.0)])
-    assert read(blocks)[0].reading.of("align") == (
-        "2 blocks with the same nodes are the time steps",
-    )
-    far = step("faces", 1.0)
-    far.points = np.asarray(far.points) + np.array([3, 0, 0])
-    together = pv.MultiBlock({"a": step("faces", 1.0), "b": far})
-    field, notices = read(together)
-    assert field.reading.of("align") == ("2 blocks are drawn together: a, b",)
-    assert notices[0] == "2 blocks are drawn together: a, b"
 
 
 def test_notices_name_the_line_that_calls() -> None:

@@ -71,14 +71,6 @@ def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:
     assert summary.problem == ""
 
 
-def test_steady_cgns_has_no_times(tmp_path: Path) -> None:
-    with CGNS.write(tmp_path / "flow.cgns") as file:
-        file.base("Base", [("Plate", box(4, 3, 1))])
-    assert describe(tmp_path / "flow.cgns").times == ()
-    assert describe(tmp_path / "flow.cgns").problem == ""
-    assert FlowField.from_file(tmp_path / "flow.cgns").shape == (3, 4)
-
-
 def ensight(path: Path) -> Path:
     write_ensight(path, [("wing tip", TIP), ("body", BODY)])
     return path
@@ -94,12 +86,6 @@ def test_parts_of_ensight(tmp_path: Path) -> None:
     summary = describe(path)
     assert summary.times == TIMES
     assert [block.name for block in summary.blocks] == ["wing tip", "body"]
-
-
-def test_times_of_ensight_that_stand_still(tmp_path: Path) -> None:
-    write_ensight(tmp_path / "flow.case", [("only", TIP)], times=[2.5])
-    field = FlowField.from_file(tmp_path / "flow.case", plane="k=0")
-    assert field.times.tolist() == [2.5]
 
 
 @pytest.mark.parametrize("write", [cgns, ensight])
@@ -119,16 +105,6 @@ def test_blocks_with_times_are_read_when_they_are_asked_for(
     assert source.field(block=source.blocks[0]).shape == (3, 4)
     with pytest.raises(FieldError, match=r"block is 'nowhere'; expected one of "):
         source.field(block="nowhere")
-
-
-def test_blocks_of_a_large_series_are_read_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.sources.open_source.MAX_SERIES_BYTES", 0)
-    source = FlowSource.from_file(cgns(tmp_path / "flow.cgns"))
-    field = source.field(block="Wing/Zone 2", plane="k=0")
-    assert np.allclose(field.velocity[1], turning(BODY, 2.0)[0])
-    (tmp_path / "flow.cgns").unlink()
 
 
 def test_nested_blocks(tmp_path: Path) -> None:

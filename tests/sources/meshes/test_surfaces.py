@@ -292,12 +292,6 @@ def test_hidden_parts_of_a_volume_are_not_cut() -> None:
     assert np.array_equal(field.valid, field.points[..., 0] > 0.39)
 
 
-def test_flow_across_a_surface_is_told() -> None:
-    with pytest.warns(Notice, match=r"^\d\d% of the flow is normal to the surface and is not"):
-        field = FlowField.from_pyvista(uniform(box()), slice="y=0.3")
-    assert field.normal_share > 0.5
-
-
 @pytest.mark.parametrize(
     ("choice", "text"),
     [
@@ -344,19 +338,6 @@ def test_a_list_of_surfaces_is_a_series() -> None:
     assert len(FlowField.from_pyvista(steps, slice="1,1,1", times=[0, 7]).times) == 2
     blocks = pv.MultiBlock([at_time(1.0), at_time(3.0)])
     assert FlowField.from_pyvista(blocks, vectors="v").times.tolist() == [1, 3]
-
-
-def test_another_surface_is_no_step() -> None:
-    other = at_time(2.0, pv.Sphere(theta_resolution=12))
-    with says("step 1 has a surface of 338 nodes and 672 triangles and the first step has one of"):
-        FlowField.from_pyvista([at_time(1.0), other], vectors="v")
-    moved = at_time(2.0)
-    moved.points = moved.points + np.array([1.0, 0, 0])
-    with says("the nodes of step 1 are up to 1 away"):
-        FlowField.from_pyvista([at_time(1.0), moved], vectors="v")
-    with says("step 1 has 842 points, 1,680 cells and the first step has 6 x 5 x 1 nodes"):
-        grid = uniform(pv.ImageData(dimensions=(6, 5, 1)))
-        FlowField.from_pyvista([grid, at_time(2.0)], vectors="v")
 
 
 @pytest.mark.filterwarnings(ACROSS)
@@ -454,14 +435,6 @@ def test_a_volume_offers_its_cuts() -> None:
     assert surface.planes == {} and surface.default_plane == ""
 
 
-def test_a_structured_volume_is_cut_in_space_too() -> None:
-    source = FlowSource(uniform(box()))
-    assert source.default_plane == "k=2" and source.field().triangles is None
-    field = source.field(plane="y=0.3")
-    assert field.triangles is not None
-    np.testing.assert_allclose(field.points[..., 1], 0.3, atol=1e-6)
-
-
 # --- any surface ----------------------------------------------------------------------------------
 
 
@@ -488,22 +461,6 @@ def test_any_triangles_make_a_field_or_an_error(
             return
     assert np.isfinite(field.points).all() and np.isfinite(field.velocity).all()
     assert field.valid[0, field.triangles].shape[1] == 3 and 0 <= field.normal_share <= 1
-
-
-@property_test(15)
-@given(st.integers(0, 2**31))
-def test_any_slice_of_a_turning_flow(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    mesh = turning(pv.ImageData(dimensions=(7, 7, 7), origin=(-3, -3, -3)))
-    normal, point = random.normal(size=3), random.uniform(-2, 2, size=3)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Notice)
-        field = FlowField.from_pyvista(mesh, slice=(normal, point))
-    places = field.points[0]
-    np.testing.assert_allclose(
-        (places - point) @ normal, 0, atol=1e-5 * float(np.linalg.norm(normal))
-    )
-    np.testing.assert_allclose(field.velocity[0, 0], np.cross([0, 0, 1.0], places), atol=1e-4)
 
 
 @pytest.mark.filterwarnings(ACROSS)

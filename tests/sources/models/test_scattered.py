@@ -13,12 +13,9 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
-from flowtex.field.options import FieldOptions
 from flowtex.field.units import factor
-from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.models.conventions import healpix_centres
 from flowtex.sources.models.mesh import join_points
-from flowtex.sources.notices import Record
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -89,28 +86,6 @@ def cube(n: int = 8) -> xr.Dataset:
     )
 
 
-def test_reduced_gaussian_grid_covers_the_globe() -> None:
-    field = FlowField.from_xarray(along(*reduced()), globe=True)
-    assert field.triangles is not None and field.shape == (1, 1600)
-    assert len(field.triangles) == 2 * 1600 - 4  # closed, also at the poles
-    assert faults(field) < 1e-6
-
-
-def test_faces_of_cube_are_one_globe() -> None:
-    field = FlowField.from_xarray(cube(), globe=True)
-    assert field.triangles is not None and len(field.triangles) == 2 * 6 * 64 - 4
-    assert faults(field) < 1e-6
-
-
-def test_selected_face_is_a_curvilinear_grid() -> None:
-    for field in (
-        FlowField.from_xarray(cube(), isel={"nf": 2}, globe=True),
-        FlowField.from_xarray(cube().isel(nf=2), globe=True),
-    ):
-        assert field.triangles is None and field.shape == (8, 8)
-        assert faults(field) < 1e-6
-
-
 def test_components_along_rows_of_faces_raise() -> None:
     ds = cube()
     for name in "UV":
@@ -173,12 +148,6 @@ def test_strips_beside_a_gap_stay_apart(stretched: float) -> None:
 def test_a_missing_point_is_bridged() -> None:
     p = flat(np.delete(lattice(30, 20), 310, axis=0))
     assert np.isclose(area(p, join_points(p, on_sphere=False)), 29 * 19)
-
-
-def test_density_may_differ() -> None:
-    dense = RANDOM.uniform(0.4, 0.6, (3000, 2))
-    p = flat(np.concatenate([RANDOM.uniform(0, 1, (3000, 2)), dense]))
-    assert area(p, join_points(p, on_sphere=False)) > 0.93
 
 
 @pytest.mark.parametrize("degrees", [40.0, 1e-3])
@@ -252,17 +221,6 @@ def test_feature_type_of_trajectories_raises() -> None:
         FlowField.from_xarray(ds)
 
 
-def test_stations_beside_a_grid_are_not_drawn() -> None:
-    lon, lat = np.arange(0.0, 40, 2), np.arange(10.0, 50, 2)
-    u, v = components(*np.meshgrid(lon, lat))
-    dims = ("lat", "lon")
-    grid = xr.Dataset({"u": (dims, u, EAST), "v": (dims, v, NORTH)}, {"lon": lon, "lat": lat})
-    beside = along(RANDOM.uniform(0, 9, 50), RANDOM.uniform(0, 9, 50), "station")
-    beside = beside.rename(u="us", v="vs")
-    field = FlowField.from_xarray(grid.merge(beside))
-    assert field.triangles is None and field.shape == (20, 20)
-
-
 def test_sections_along_stations_stay() -> None:
     along_line, depth = ("depth", "station"), np.arange(0.0, 50, 5)
     values = np.ones((10, 40))
@@ -280,32 +238,6 @@ def test_sections_along_stations_stay() -> None:
         },
     )
     assert FlowField.from_xarray(ds, "u", "w").shape == (10, 40)
-
-
-def test_stacked_grid_matches() -> None:
-    lon, lat = np.arange(0.0, 40, 2), np.arange(10.0, 50, 2)
-    u, v = components(*np.meshgrid(lon, lat))
-    dims = ("lat", "lon")
-    grid = xr.Dataset({"u": (dims, u, EAST), "v": (dims, v, NORTH)}, {"lon": lon, "lat": lat})
-    field = FlowField.from_xarray(grid.stack(cell=dims), globe=True)
-    assert field.triangles is not None and len(field.triangles) == 2 * 19 * 19
-    assert faults(field) < 1e-6
-
-
-def test_missing_positions_are_left_out() -> None:
-    lon, lat = reduced()
-    ds = along(lon, np.where(np.arange(lon.size) == 700, np.nan, lat))
-    field = FlowField.from_xarray(ds, globe=True)
-    assert field.shape == (1, 1599) and faults(field) < 1e-6
-
-
-def test_grid_is_described() -> None:
-    ds = along(*reduced())
-    for name in "uv":
-        ds[name].attrs = {}
-    known = read_flow(ds, FieldOptions(), Record())
-    assert known.grid == "1,600 points joined by 3,196 triangles; velocity at nodes"
-    assert known.orientation.along == "earth"
 
 
 def test_levels_and_times_of_points() -> None:

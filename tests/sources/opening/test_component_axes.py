@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flowtex import FlowField, render
+from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.datasets import is_dataset
 from flowtex.sources.opening.tables import split_components
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
@@ -68,11 +67,6 @@ def test_third_component_is_a_scalar() -> None:
     assert np.allclose(field.scalars["w"][0], 3 * np.meshgrid(A, B)[1] + 9)
 
 
-def test_single_plane_of_volume() -> None:
-    array = flow("xz", ["x", "y", "z"]).expand_dims(y=[0.5])
-    check(FlowField.from_xarray(array), 0, 2)
-
-
 def test_volume_has_levels() -> None:
     values = np.ones((16, 9, 5, 3)) * [1.0, 2, 3] * np.arange(1.0, 6)[:, None]
     array = xr.DataArray(values, dims=(*"xyz", "vdims"), coords={"x": A, "y": B, "z": C})
@@ -94,11 +88,6 @@ def test_directions_of_the_earth() -> None:
     assert np.allclose(split["wind_eastward"], 4) and np.allclose(split["wind_northward"], 3)
 
 
-def test_variables_of_dataset_are_split() -> None:
-    ds = flow("xy", ["u", "v"], "component").to_dataset(name="velocity").assign(p=("x", A))
-    check(FlowField.from_xarray(ds), 0, 1)
-
-
 def test_bounds_are_not_components() -> None:
     ds = xr.Dataset({"lat_bnds": (("lat", "two"), np.zeros((5, 2)))})
     assert set(split_components(ds)) == {"lat_bnds"}
@@ -112,7 +101,3 @@ def test_scalar_raises() -> None:
 def test_arrays_of_components_are_a_pair() -> None:
     ds = flow("xy", ["u", "v"]).to_dataset("vdims")
     check(FlowField.from_xarray([ds["u"], ds["v"]]), 0, 1)
-
-
-def test_front_ends_accept_arrays() -> None:
-    assert is_dataset(flow("xy", None)) and render(flow("xy", None)).ndim == 3

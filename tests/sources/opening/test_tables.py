@@ -13,7 +13,7 @@ import pytest
 from earth_data import on_sphere
 from scipy.spatial import cKDTree
 
-from flowtex import FlowField, render
+from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS
 from flowtex.sources.opening.tables import of_table
@@ -75,33 +75,11 @@ def test_times_are_a_series(table: pd.DataFrame) -> None:
     assert str(field.start).startswith("2024-01-01")
 
 
-def test_steps_keep_their_values() -> None:
-    table = scattered()
-    frame = pd.concat([table.assign(time=t, u=t) for t in pd.date_range("2024", periods=3)])
-    frame["u"] = (frame["time"] - frame["time"].min()).dt.days.astype(float)
-    field = FlowField.from_xarray(frame)
-    for step in range(3):
-        assert np.allclose(np.asarray(field.velocity[step])[..., 0], step)
-
-
 def test_index_and_units_of_columns() -> None:
     frame = lattice().rename(columns={"x": "x [mm]", "u": "u (cm/s)"}).set_index(["y", "x [mm]"])
     ds = of_table(frame)
     assert ds["x"].attrs["units"] == "mm" and ds["u"].attrs["units"] == "cm/s"
     assert dict(ds.sizes) == {"y": 21, "x": 40}
-
-
-def test_longitudes_are_on_the_earth() -> None:
-    frame = scattered().rename(columns={"x": "Longitude", "y": "LATITUDE"})
-    field = FlowField.from_xarray(frame, globe=True)
-    assert field.surface.on_globe
-
-
-def test_levels_are_an_axis() -> None:
-    frame = pd.concat([lattice().assign(depth=d) for d in (0.0, 10.0)])
-    frame.loc[frame["depth"] == 10.0, "u"] = 9.0
-    assert np.allclose(FlowField.from_xarray(frame, level=10).velocity[0][..., 0], 9)
-    check(FlowField.from_xarray(frame, level=0))
 
 
 def test_repeated_rows_raise() -> None:
@@ -134,10 +112,6 @@ def test_table_without_positions_raises() -> None:
 def test_polars() -> None:
     polars = pytest.importorskip("polars")
     check(FlowField.from_xarray(polars.DataFrame(scattered().to_dict("list"))))
-
-
-def test_front_ends_accept_tables() -> None:
-    assert render(scattered()).ndim == 3
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t", "  "])
