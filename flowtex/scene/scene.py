@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
-from flowtex._util.cache import WeakCache, digest
+from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex._util.colours import (
     ZERO_SHARE,
     ColourScale,
@@ -30,6 +30,7 @@ from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.options import FieldOptions
+from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
@@ -41,6 +42,7 @@ from flowtex.textures.tiles.shared import (
     coarsened_field,
     drawn_speeds,
     ends_of,
+    has_pyramid,
     shared_pyramid,
     usual_ends,
     widened,
@@ -57,6 +59,8 @@ Notice = Callable[[Change], None]
 
 #: Memory of a field with what is derived of it, over that of its arrays.
 DERIVED_FACTOR = 4
+#: Memory of fields and traces that are kept after a picture.
+KEPT_BYTES = 500_000_000
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
@@ -563,6 +567,25 @@ class TracedFlow:
     def nbytes(self) -> int:
         """Size in memory, in bytes, with what is derived of the field."""
         return DERIVED_FACTOR * self.field.nbytes + self.store.nbytes
+
+    def keep(self) -> TracedFlow:
+        """Keep the flow for the next picture of the same numbers, and return it.
+
+        :func:`~flowtex.scene.fields.share_field` finds the field, and a store of the same numbers
+        its slices. The least recently drawn is dropped first. For a field with lazy steps, which
+        holds a file open, only the slices are kept.
+        """
+        field = self.field
+        if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
+            for slices in self.store.traced:
+                kept_flows.put(id(slices), slices)
+        elif not has_pyramid(field):
+            kept_flows.put(id(self.store), self)
+        return self
+
+
+#: Flows that were drawn last, by the memory that they take.
+kept_flows: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
 
 
 def _shared_textures(

@@ -184,13 +184,14 @@ class Data(Controller):
 
     def _traced(self, flow: LoadedFlow) -> LoadedFlow:
         """Trace the nodes of a flow that are to be shown."""
-        name, times = flow.name if flow.whole else "", flow.shown.times
-        traced = self.library.trace(name, flow.choice, flow.shown, self.settings)
+        times, traced = flow.shown.times, TracedFlow.of(flow.shown, self.settings)
+        steps = {len(times) - 1}
         # Another part of the same data is shown at the same time.
         if np.array_equal(times, self.viewport.field.times):
-            for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
-                traced.store.at(step)
-        return replace(flow, traced=traced)
+            steps.update(steps_around(times, self.viewport.handle.time)[:2])
+        for step in sorted(steps):
+            traced.store.at(step)
+        return replace(flow, traced=traced.keep())
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Replace the flow by another one; if that fails, it stays."""
@@ -429,10 +430,10 @@ class FileBeside(Controller):
         library, name = self.context.library, request.name
         choice = library.nearest(name, request.choice)
         field = library.field(name, choice)
-        flow = library.trace(name, choice, field, self.settings)
+        flow = TracedFlow.of(field, self.settings)
         for step in sorted(set(steps_around(field.times, time_in(self.area.scene, field))[:2])):
             flow.store.at(step)
-        return choice, flow
+        return choice, flow.keep()
 
     def _show(self, request: LoadRequest, choice: Choice, flow: TracedFlow) -> None:
         units = [field.length_unit for field in (self.viewport.field, flow.field)]

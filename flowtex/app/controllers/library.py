@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import os
 import threading
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
+from copy import copy
 from dataclasses import dataclass
-from functools import wraps
 from pathlib import Path
-from typing import Any, Concatenate, ParamSpec, TypeVar
-from weakref import WeakKeyDictionary
+from typing import Any
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from flowtex._util.arguments import checked_source
 from flowtex._util.cache import ByteCache
@@ -27,8 +28,6 @@ from flowtex.field.options import FieldOptions
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.fields import read_field
-from flowtex.scene.scene import TracedFlow
-from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.files import Identity, file_identity, members_of
 from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
@@ -46,14 +45,15 @@ SUFFIXES = frozenset(
         *EARTH_SUFFIXES,
     ]
 )
-#: Depth to which a folder is searched, and most files that are listed.
-FOLDER_DEPTH, MOST_FILES = 4, 500
-#: Files, and flows, that stay open at most, and bytes of each of the two together.
-MOST_SOURCES, MOST_FLOWS = 4, 12
-SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
+#: Depth to which a folder is searched.
+FOLDER_DEPTH = 4
+#: Most files of a folder that are listed.
+MOST_FILES = 500
+#: Most files that stay open.
+MOST_SOURCES = 4
+#: Most bytes of the files that stay open.
+SOURCE_BYTES = 2_000_000_000
 
-P = ParamSpec("P")
-T = TypeVar("T")
 Opener = Callable[[], Source]
 #: Zoom, and the point of the mesh to look at.
 Look = tuple[float, tuple[float, ...] | None]
@@ -75,19 +75,6 @@ class Choice:
     block: str = ""
 
 
-def _at_home(
-    method: Callable[Concatenate[Library, str, P], T],
-) -> Callable[Concatenate[Library, str, P], T]:
-    """Call a method on the library to which the flow of a name belongs."""
-
-    @wraps(method)
-    def called(library: Library, name: str, /, *arguments: P.args, **options: P.kwargs) -> T:
-        shared = None if name in library._named else library._shared
-        return method(shared or library, name, *arguments, **options)
-
-    return called
-
-
 class Library:
     """The flows that a page can open, by name.
 
@@ -103,8 +90,6 @@ class Library:
         Initial zoom and focus of flows, by name; the others are first shown as a whole.
     typed
         Whether users may type formulas, which are the names of their flows.
-    shared
-        A library whose flows are offered besides those of this one, and stay open there.
 
     Raises
     ------
@@ -130,22 +115,22 @@ class Library:
         looks: Mapping[str, Look] | None = None,
         *,
         typed: bool = False,
-        shared: Library | None = None,
     ) -> None:
-        self._shared = shared
-        self.typed: bool = typed or (shared is not None and shared.typed)
+        self.typed = typed
         self._named = dict(openers)
-        self._python = dict(python or {})
-        self._looks = dict(looks or {})
+        self._python, self._looks = dict(python or {}), dict(looks or {})
         self._folder = None if folder is None else checked_source(folder)
-        self._sources: ByteCache[str, Source] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
-        self._flows: ByteCache[tuple[str, Choice], TracedFlow] = ByteCache(
-            FLOW_BYTES, max_count=MOST_FLOWS
-        )
+        #: Flows that a branch has for itself, and all that could be opened when last listed.
+        self._own: dict[str, Opener] = {}
+        self._openers: dict[str, Opener] = {}
+        #: Files of the folder that cannot be shown, with the reasons.
+        self.unshown: dict[str, str] = {}
+        # Branches have these in common.
+        self._sources: ByteCache[Opener, Source] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
+        self._fields = WeakValueDictionary[tuple[Opener, Choice], FlowField]()
         #: The state of the files from which each field was made.
-        self._identities: WeakKeyDictionary[FlowField, Identity] = WeakKeyDictionary()
-        self._making: dict[str, threading.Lock] = {}
-        self._unshown: dict[str, str] = {}
+        self._identities = WeakKeyDictionary[FlowField, Identity]()
+        self._making: defaultdict[Opener, threading.Lock] = defaultdict(threading.Lock)
         if self._folder is not None or any(isinstance(o, _Files) for o in openers.values()):
             prepare_readers()
         if not self.names:
@@ -156,12 +141,14 @@ class Library:
 
     def branch(self) -> Library:
         """Return a library of the same flows, to which a page can add its own."""
-        return Library({}, shared=self)
+        other = copy(self)
+        other._own = {}
+        return other
 
     def add(self, name: str, path: Path) -> str:
         """Add a file to this branch; return the name by which it can be opened."""
         name = _free(name, self.names)
-        self._named[name] = _Files((path,))
+        self._own[name] = self._openers[name] = _Files((path,))
         return name
 
     @classmethod
@@ -198,20 +185,12 @@ class Library:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all flows; the folder is searched again."""
-        openers = dict(self._named)
-        if self._folder is not None:
-            files = find_files(self._folder)
-            openers |= {n: _Files((path,)) for n, path in files if not _reason(path)}
-            self._unshown = {name: reason for name, path in files if (reason := _reason(path))}
-        self._openers = openers
-        return (*(self._shared.names if self._shared else ()), *openers)
+        files = [] if self._folder is None else find_files(self._folder)
+        self.unshown = {name: reason for name, path in files if (reason := _reason(path))}
+        found = {n: _Files((path,)) for n, path in files if n not in self.unshown}
+        self._openers = {**self._named, **found, **self._own}
+        return tuple(self._openers)
 
-    @property
-    def unshown(self) -> Mapping[str, str]:
-        """Files of the folder that cannot be shown, with the reasons."""
-        return self._shared.unshown if self._shared else self._unshown
-
-    @_at_home
     def source(self, name: str) -> Source:
         """Return a source, and open it if it is not open or its file has changed.
 
@@ -222,13 +201,14 @@ class Library:
         """
         opener = self._opener(name)
         return self._sources.get(
-            name, opener, lambda source: source.alive and source.identity == _identity(opener)
+            opener, opener, lambda source: source.alive and source.identity == _identity(opener)
         )
 
     def _opener(self, name: str) -> Opener:
-        if (opener := self._openers.get(name)) is None:
-            if self._is_line(name):
-                return lambda: FlowSource(line_field(name))
+        opener = self._openers.get(name)
+        if opener is None and self._is_line(name):
+            return _Line(name)
+        if opener is None:
             label = repr(shortened(name, 80))
             raise FieldError(f"the file {label} is not among those that may be opened here")
         return opener
@@ -236,17 +216,15 @@ class Library:
     def _is_line(self, name: str) -> bool:
         return self.typed and is_line(name)
 
-    @_at_home
     def is_file(self, name: str) -> bool:
         """Return whether a name belongs to a file."""
-        return not self._is_line(name) and isinstance(self._named.get(name, _Files(())), _Files)
+        opener = self._openers.get(name)
+        return isinstance(opener, _Files) or (opener is None and not self._is_line(name))
 
-    @_at_home
     def look(self, name: str) -> Look:
         """Return the initial zoom and focus of a flow."""
         return self._looks.get(name, (1.0, None))
 
-    @_at_home
     def python(self, name: str) -> str | None:
         """Return the expression that makes a flow, or ``None`` for a file."""
         if self.is_file(name):
@@ -273,7 +251,6 @@ class Library:
         plane = "" if part.plane_number(choice.plane) is None else choice.plane
         return self.complete(name, Choice(vectors, plane, block))
 
-    @_at_home
     def field(self, name: str, choice: Choice) -> FlowField:
         """Return a flow, and make it if necessary; nothing is traced.
 
@@ -282,35 +259,19 @@ class Library:
         FieldError
             When the file does not exist, or the choice does not contain a flow.
         """
-        flow = self._flows.peek((name, choice))
-        known = None if flow is None else self._identities.get(flow.field, ())
-        if flow is not None and known == _identity(self._opener(name)):
-            return flow.field
-        source = self.source(name)
-        with self._making.setdefault(name, threading.Lock()):
-            field = source.field(
-                vectors=choice.vectors or None,
-                plane=choice.plane or None,
-                block=choice.block or None,
-            )
-        self._identities[field] = source.identity
+        opener = self._opener(name)
+        field = self._fields.get((opener, choice))
+        if field is None or self._identities[field] != _identity(opener):
+            source = self.source(name)
+            with self._making[opener]:
+                field = source.field(
+                    vectors=choice.vectors or None,
+                    plane=choice.plane or None,
+                    block=choice.block or None,
+                )
+            self._identities[field] = source.identity
+            self._fields[opener, choice] = field
         return field
-
-    @_at_home
-    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
-        """Make the traces for the first picture of a flow, and keep the flow open.
-
-        Raises
-        ------
-        Stopped
-            When the page has requested something else meanwhile.
-        """
-        flow = self._flows.peek((name, choice))
-        if flow is None or flow.field is not field:
-            flow = TracedFlow.of(field, settings)
-            flow.store.at(len(field.times) - 1)
-            self._flows.put((name, choice), flow)
-        return flow
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> Source:
@@ -349,6 +310,16 @@ class _Files:
     @property
     def _is_store(self) -> bool:
         return len(self.paths) == 1 and has_parts(self.paths[0])
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Opener of a formula that somebody has typed."""
+
+    text: str
+
+    def __call__(self) -> Source:
+        return FlowSource(line_field(self.text))
 
 
 def _identity(opener: Opener) -> Identity:

@@ -11,10 +11,8 @@ import numpy as np
 
 from flowtex._util.arguments import checked_size, sized
 from flowtex._util.array_types import Bytes
-from flowtex._util.cache import ByteCache
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
-from flowtex.field.steps import LazySteps
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import point_camera
@@ -26,8 +24,6 @@ from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, TracedFlow, share_field
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
-from flowtex.textures.tiles.shared import has_pyramid
-from flowtex.trace.slices import TraceSlices
 
 #: Longest side of a drawing, in pixels.
 LONGEST_SIDE = 16_384
@@ -39,8 +35,6 @@ NOTHING_SEEN = (
     "The surface is outside the picture; check zoom, focus and camera, which are in the mesh's "
     "own units."
 )
-#: Memory of fields and traces that are kept after a picture.
-KEPT_BYTES = 500_000_000
 
 
 class OffscreenPlotter:
@@ -302,23 +296,5 @@ def render(
         if clock and scene.settings.motion == "off":
             notify(f"clock is {clock!r}, but motion is 'off', and nothing moves")
         picture = plotter.picture(time=time, clock=clock)
-        _keep(scene)
+        TracedFlow(scene.field, scene.store, scene.pyramid).keep()
         return picture
-
-
-_drawn: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
-
-
-def _keep(scene: Scene) -> None:
-    """Keep the field of a scene and its traces, for a script that draws the same numbers again.
-
-    :func:`flowtex.scene.scene.share_field` finds the field, and a store of the same numbers its
-    slices. The least recently drawn is dropped first. For a field with lazy steps, which holds a
-    file open, only the slices are kept.
-    """
-    field, store = scene.field, scene.store
-    if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
-        for slices in store.traced:
-            _drawn.put(id(slices), slices)
-    elif not has_pyramid(field):
-        _drawn.put(id(store), TracedFlow(field, store, scene.pyramid))

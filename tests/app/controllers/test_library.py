@@ -16,7 +16,7 @@ from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
 from flowtex.errors import FieldError
 from flowtex.pyramid import build
-from flowtex.scene.scene import Scene
+from flowtex.scene.scene import Scene, TracedFlow
 from flowtex.settings import Settings
 from flowtex.sources.files import file_identity
 from flowtex.sources.open_source import FlowSource
@@ -137,14 +137,13 @@ def test_a_file_that_is_written_anew_is_opened_anew(tmp_path: Path) -> None:
     library = Library.of(tmp_path if gyre(path, 0.0) else path)
     choice = library.complete("latest.vts", Choice())
     source, field = library.source("latest.vts"), library.field("latest.vts", choice)
-    library.trace("latest.vts", choice, field, Settings())
+    TracedFlow.of(field, Settings()).keep()
     assert library.source("latest.vts") is source
     assert library.field("latest.vts", choice) is field, "what has not changed is not read again"
     new = gyre(path, 2.5)
     again = library.field("latest.vts", choice)
     assert mean_speed(again) == pytest.approx(new) != pytest.approx(mean_speed(field))
-    # What was traced of the old file does not pass for the new one.
-    library.trace("latest.vts", choice, field, Settings())
+    TracedFlow.of(field, Settings()).keep()
     assert mean_speed(library.field("latest.vts", choice)) == pytest.approx(new)
     assert library.source("latest.vts") is not source
 
@@ -226,8 +225,9 @@ def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.Monke
 
     made = SliceStore._trace
     monkeypatch.setattr(SliceStore, "_trace", counted)
-    library, settings = Library.of(field), Settings()
-    flow = library.trace("flow", Choice(), field, settings)
+    settings = Settings()
+    flow = TracedFlow.of(field, settings)
+    flow.store.at(0)
     scene = Scene(field, settings)
     assert scene.pyramid is flow.pyramid is not None
     assert scene.store is flow.store and flow.store.field is scene.whole

@@ -18,8 +18,9 @@ from flows import swinging
 
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
-from flowtex.plotting.offscreen.plotter import OffscreenPlotter, _drawn
+from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.scene.options import Options
+from flowtex.scene.scene import kept_flows
 from flowtex.sources.notices import DatasetNotice
 from flowtex.trace import store
 
@@ -28,7 +29,7 @@ SMALL: dict[str, Any] = {"size": (64, 48), "samples": 3}
 
 @pytest.fixture(autouse=True)
 def _nothing_kept() -> None:
-    _drawn.clear()
+    kept_flows.clear()
     gc.collect()
 
 
@@ -66,10 +67,10 @@ def test_what_is_kept_fits_into_some_memory(
 ) -> None:
     fields = [examples.double_gyre_field(shape=(21, 25 + n)) for n in range(3)]
     flowtex.render(fields[0], **SMALL)
-    monkeypatch.setattr(_drawn, "max_bytes", int(1.5 * _drawn.nbytes))
+    monkeypatch.setattr(kept_flows, "max_bytes", int(1.5 * kept_flows.nbytes))
     flowtex.render(fields[1], **SMALL)
     flowtex.render(fields[1], **SMALL)
-    assert len(_drawn) == 1 and len(traced) == 2
+    assert len(kept_flows) == 1 and len(traced) == 2
     gone = weakref.ref(fields.pop(0))
     gc.collect()
     assert gone() is None
@@ -128,7 +129,7 @@ def test_what_is_kept_of_a_file_does_not_hold_it_open(tmp_path: Path) -> None:
         warnings.simplefilter("ignore", DatasetNotice)
         thinned(examples.weather()).to_netcdf(tmp_path / "winds.nc")
         flowtex.render(tmp_path / "winds.nc", **SMALL)
-    assert len(_drawn) and all(isinstance(kept, TraceSlices) for kept in _drawn.values())
+    assert len(kept_flows) and all(isinstance(kept, TraceSlices) for kept in kept_flows.values())
 
 
 def test_a_picture_of_one_moment_is_that_of_a_steady_flow() -> None:
