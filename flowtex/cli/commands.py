@@ -28,6 +28,7 @@ from flowtex._util.child import FORKS, fork_server
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import Ended, ended_by_signals
 from flowtex.cli.console import announcer, complain, describe, require_app
+from flowtex.cli.doctor import doctor
 from flowtex.cli.info import info
 from flowtex.cli.options import ServeFlags, UsageError
 from flowtex.cli.serve import pyramid, serve
@@ -64,14 +65,8 @@ running_words: ContextVar[Sequence[str]] = ContextVar("words", default=())
 _host: ContextVar[Callable[[MakeApp, str], None] | None] = ContextVar("host", default=None)
 
 
-for _command in (render, movie, export, formula, info, pyramid, serve):
+for _command in (render, movie, export, formula, info, doctor, pyramid, serve):
     app.command(_command)
-
-
-@app.command
-def doctor() -> int:
-    """Check the system that flowtex runs on, and name what is missing."""
-    return diagnostics.main()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,10 +1,10 @@
-"""Diagnosis of the installation: which OpenGL is used, what is missing, and what installs it.
+"""Diagnosis of OpenGL: which one is used, and what installs it where it is missing.
 
 VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so OpenGL
 is tried in a second process, which draws a picture of 16 x 16 pixels, reads it back and prints its
 report as one line of JSON::
 
-    opengl_report()  ->  python diagnostics.py --try  ->  OpenGLReport, also after a crash
+    opengl_report()  ->  python diagnostics.py  ->  OpenGLReport, also after a crash
 
 The second process is started once per process. It runs this file alone, without the package, so
 nothing of that is imported before it is needed.
@@ -25,14 +25,10 @@ from collections.abc import Sequence
 from concurrent.futures import Future
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Literal
 
 WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
-TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
+TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()))
 TRIAL_TIMEOUT_S = 120.0
-REQUIRED = ("numpy", "scipy", "pyvista", "vtk", "h5py")
-OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
-OF_PYVISTA = {"trame-pyvista": "export_html and pages in notebooks", "imageio": "open_gif"}
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
@@ -79,23 +75,6 @@ class OpenGLReport:
     max_texture_size: int = 0
     texture_units: int = 0
     failure: str = ""
-    remedy: str = ""
-
-
-@dataclass(frozen=True)
-class Check:
-    """One line of the diagnosis: subject, status, result and remedy.
-
-    Examples
-    --------
-    >>> from flowtex.rendering.diagnostics import Check
-    >>> Check("OpenGL", "fail", "not found", "apt-get install libegl1").status
-    'fail'
-    """
-
-    name: str
-    status: Literal["ok", "warn", "fail"]
-    detail: str
     remedy: str = ""
 
 
@@ -233,92 +212,6 @@ def install_command(*packages: str) -> str:
     return f"{sudo}apt-get update && {install}"
 
 
-def diagnose() -> list[Check]:
-    """Check everything that flowtex needs; never raises.
-
-    Examples
-    --------
-    >>> from flowtex.rendering.diagnostics import diagnose
-    >>> [check.name for check in diagnose()][:4]
-    ['Python', 'OpenGL', 'Display', 'Shaders']
-    """
-    python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
-    found = "none: pictures and the browser work, windows do not open"
-    if has_display():
-        found = os.environ.get("DISPLAY") or "the system's"
-    return [python, _opengl(), Check("Display", "ok", found), _shaders(), *_packages()]
-
-
-def _opengl() -> Check:
-    report = opengl_report()
-    if not report.usable:
-        return Check("OpenGL", "fail", report.failure, report.remedy)
-    kind = "the processor draws" if report.software else "a graphics card draws"
-    return Check(
-        "OpenGL",
-        "ok",
-        f"{report.version}; {report.renderer} ({report.vendor}), {kind}; {report.window_class}; "
-        f"textures up to {report.max_texture_size}, {report.texture_units} at once",
-    )
-
-
-def _shaders() -> Check:
-    from flowtex.rendering import shaders
-
-    remedy = "python -m pip install --force-reinstall --no-deps flowtex"
-    try:
-        folder, names = shaders.shader_folder(), shaders.shader_names()
-    except FileNotFoundError as error:
-        return Check("Shaders", "fail", str(error), remedy)
-    return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", remedy)
-
-
-def _packages() -> list[Check]:
-    from flowtex.errors import install_extra
-
-    checks = []
-    for name in (*REQUIRED, *OPTIONAL, *OF_PYVISTA):
-        extra = OPTIONAL.get(name)
-        try:
-            checks.append(Check(name, "ok", importlib.metadata.version(name)))
-        except importlib.metadata.PackageNotFoundError:
-            remedy = install_extra(extra) if extra else f"python -m pip install {name}"
-            status: Literal["warn", "fail"] = "fail" if name in REQUIRED else "warn"
-            use = "not installed"
-            if extra:
-                use += f"; needed only for the extra {extra!r}"
-            elif name in OF_PYVISTA:
-                use += f"; needed only for PyVista's {OF_PYVISTA[name]}"
-            checks.append(Check(name, status, use, remedy))
-    return checks
-
-
-def print_checks(checks: Sequence[Check]) -> None:
-    """Print the checks as a table, and each remedy on its own line that can be copied."""
-    from rich.table import Table
-    from rich.text import Text
-
-    from flowtex._util.terminal import terminal
-
-    colours = {"ok": "green", "warn": "yellow", "fail": "bold red"}
-    table = Table("", "what", "found", box=None)
-    for check in checks:
-        table.add_row(Text(check.status, colours[check.status]), check.name, Text(check.detail))
-    console = terminal()
-    console.print(table)
-    for check in checks:
-        if check.remedy and check.status != "ok":
-            console.print(f"\n{check.name}, to fix it:")
-            console.print(f"  {check.remedy}", soft_wrap=True)
-
-
-def main() -> int:
-    """Print the diagnosis; return 1 when something that flowtex needs is missing."""
-    checks = diagnose()
-    print_checks(checks)
-    return int(any(check.status == "fail" for check in checks))
-
-
 def try_opengl() -> OpenGLReport:
     """Draw a red picture with VTK and read it back, which may crash the process."""
     import vtkmodules.vtkRenderingOpenGL2 as gl
@@ -350,9 +243,6 @@ def try_opengl() -> OpenGLReport:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--try"]:
-        sys.modules["numpy"] = None  # type: ignore[assignment] # VTK would load it, to no use here
-        prefer_headless()
-        sys.stdout.write(json.dumps(asdict(try_opengl())) + "\n")
-    else:
-        sys.exit(main())
+    sys.modules["numpy"] = None  # type: ignore[assignment] # VTK would load it, to no use here
+    prefer_headless()
+    sys.stdout.write(json.dumps(asdict(try_opengl())) + "\n")

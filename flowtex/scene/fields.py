@@ -1,25 +1,37 @@
-"""Fields of scenes: read from what is drawn, with a further scalar, and shared by equal ones."""
+"""Fields of scenes: read from what is drawn, with a further scalar, and shared by equal ones.
+
+Flows that were drawn last are kept with their traces, by whatever drew them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.arguments import checked_source
-from flowtex._util.cache import WeakCache, digest
+from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import DERIVED, with_vector_scalar
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
+from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.meshes.vectors import with_array
-from flowtex.textures.tiles.shared import has_pyramid
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
+#: Memory of a field with what is derived of it, over that of its arrays.
+DERIVED_FACTOR = 4
+#: Memory of fields and traces that are kept after a picture.
+KEPT_BYTES = 500_000_000
 #: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
 DATA, ARRAY = "Data", "_array"
 
@@ -112,3 +124,50 @@ def _stored(place: Any, options: FieldOptions, time: float | str | None) -> Flow
     if time is not None:
         choices["sel"] = {**choices.get("sel", {}), "time": time}
     return open_store(place, **choices)
+
+
+def is_tiled(field: FlowField, settings: Settings) -> bool:
+    """Return whether a large field is drawn in tiles."""
+    return settings.noise == "procedural" and not field.sign_free
+
+
+@dataclass(frozen=True)
+class TracedFlow:
+    """A field, its traces and its tiles; of a large field the traces of its coarsest level."""
+
+    field: FlowField
+    store: SliceStore
+    pyramid: Pyramid | None
+
+    @classmethod
+    def of(cls, field: FlowField, settings: Settings) -> TracedFlow:
+        """Return the traces from which scenes of a field draw their first picture."""
+        lines, pyramid = chosen_lines(field, settings.lines), None
+        if is_tiled(field, settings):
+            pyramid = shared_pyramid(field, settings.parameter, lines)
+        whole = pyramid.root if pyramid is not None and pyramid.depth else field
+        return cls(field, shared_store(whole, settings.parameter, lines), pyramid)
+
+    @property
+    def nbytes(self) -> int:
+        """Size in memory, in bytes, with what is derived of the field."""
+        return DERIVED_FACTOR * self.field.nbytes + self.store.nbytes
+
+    def keep(self) -> TracedFlow:
+        """Keep the flow for the next picture of the same numbers, and return it.
+
+        :func:`share_field` finds the field, and a store of the same numbers
+        its slices. The least recently drawn is dropped first. For a field with lazy steps, which
+        holds a file open, only the slices are kept.
+        """
+        field = self.field
+        if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
+            for slices in self.store.traced:
+                kept_flows.put(id(slices), slices)
+        elif not has_pyramid(field):
+            kept_flows.put(id(self.store), self)
+        return self
+
+
+#: Flows that were drawn last, by the memory that they take.
+kept_flows: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)

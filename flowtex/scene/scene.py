@@ -9,13 +9,13 @@ that lie in them are the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
-from flowtex._util.cache import ByteCache, WeakCache, digest
+from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import (
     ZERO_SHARE,
     ColourScale,
@@ -30,9 +30,8 @@ from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.options import FieldOptions
-from flowtex.field.steps import LazySteps
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.scene.fields import read_field, share_field, with_scalars
+from flowtex.scene.fields import TracedFlow, is_tiled, read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures.images import as_picture, load_image
@@ -42,7 +41,6 @@ from flowtex.textures.tiles.shared import (
     coarsened_field,
     drawn_speeds,
     ends_of,
-    has_pyramid,
     shared_pyramid,
     usual_ends,
     widened,
@@ -56,11 +54,6 @@ __all__ = ["NO_IMAGE", "Change", "Scene", "TracedFlow", "follow", "lay_image", "
 #: The kind of a change: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
 Notice = Callable[[Change], None]
-
-#: Memory of a field with what is derived of it, over that of its arrays.
-DERIVED_FACTOR = 4
-#: Memory of fields and traces that are kept after a picture.
-KEPT_BYTES = 500_000_000
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
@@ -223,7 +216,7 @@ class Scene:
 
         Noise in a texture, and a sign-free field, are not drawn in tiles.
         """
-        if self._sliced or not _is_tiled(self.field, self.settings):
+        if self._sliced or not is_tiled(self.field, self.settings):
             return None
         if self._pyramid is None:
             self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
@@ -540,52 +533,6 @@ def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None
 
 _coarse_stores: WeakCache[SliceStore] = WeakCache()
 _textures: WeakCache[TextureSet] = WeakCache()
-
-
-def _is_tiled(field: FlowField, settings: Settings) -> bool:
-    return settings.noise == "procedural" and not field.sign_free
-
-
-@dataclass(frozen=True)
-class TracedFlow:
-    """A field, its traces and its tiles; of a large field the traces of its coarsest level."""
-
-    field: FlowField
-    store: SliceStore
-    pyramid: Pyramid | None
-
-    @classmethod
-    def of(cls, field: FlowField, settings: Settings) -> TracedFlow:
-        """Return the traces from which scenes of a field draw their first picture."""
-        lines, pyramid = chosen_lines(field, settings.lines), None
-        if _is_tiled(field, settings):
-            pyramid = shared_pyramid(field, settings.parameter, lines)
-        whole = pyramid.root if pyramid is not None and pyramid.depth else field
-        return cls(field, shared_store(whole, settings.parameter, lines), pyramid)
-
-    @property
-    def nbytes(self) -> int:
-        """Size in memory, in bytes, with what is derived of the field."""
-        return DERIVED_FACTOR * self.field.nbytes + self.store.nbytes
-
-    def keep(self) -> TracedFlow:
-        """Keep the flow for the next picture of the same numbers, and return it.
-
-        :func:`~flowtex.scene.fields.share_field` finds the field, and a store of the same numbers
-        its slices. The least recently drawn is dropped first. For a field with lazy steps, which
-        holds a file open, only the slices are kept.
-        """
-        field = self.field
-        if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
-            for slices in self.store.traced:
-                kept_flows.put(id(slices), slices)
-        elif not has_pyramid(field):
-            kept_flows.put(id(self.store), self)
-        return self
-
-
-#: Flows that were drawn last, by the memory that they take.
-kept_flows: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
 
 
 def _shared_textures(

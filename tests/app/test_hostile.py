@@ -17,18 +17,16 @@ from waiting import PATIENCE_S, until
 
 pytest.importorskip("trame_rca")
 
-from camera_moves import pan, rotate
+from camera_moves import pan
 
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers import data
 from flowtex.app.controllers.library import Choice
-from flowtex.app.streaming import points
 from flowtex.app.streaming.stream import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.scene.probe import probe
 from flowtex.sources.open_source import Source
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -87,42 +85,6 @@ def app() -> Iterator[FlowApp]:
 
 
 # --- what a page may send ------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["theme", "background", "compare", "file_beside", "painter"])
-def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> None:
-    look = app.controllers.appearance
-    handlers: dict[str, Callable[[], None]] = {
-        **dict.fromkeys(("theme", "background"), look.take_background),
-        "compare": look.take_comparison,
-        "file_beside": app.controllers.beside.take_file,
-        "painter": look.take_painter,
-    }
-    handler = handlers[name]
-    before = app.state.get(name)
-    for junk in JUNK:
-        app.state.set(**{name: junk, "problem": ""})
-        handler()
-        kept = app.state.get(name)
-        assert kept == before or isinstance(kept, type(before))
-        assert len(app.state.get("problem")) < 1000
-    app.state.set(**{name: before})
-    handler()
-    assert app.state.get(name) == before
-    assert np.ptp(picture(app)) > 0
-
-
-@pytest.mark.parametrize("name", ["samples", "grain", "lod", "noise"])  # of each kind one
-def test_a_setting_of_any_kind_is_taken_or_left(app: FlowApp, name: str) -> None:
-    element, before = app.area.element, getattr(app.area.settings, name)
-    for junk in JUNK:
-        now = getattr(app.area.settings, name)
-        app.state.set(problem="")
-        element.take_setting([name, junk])
-        assert getattr(app.area.settings, name) == now or app.state.get("problem") == ""
-        assert len(app.state.get("problem")) < 1000
-    element.take_setting([name, before])
-    assert np.ptp(picture(app)) > 0
 
 
 def test_a_view_has_a_size_that_can_be_drawn(app: FlowApp) -> None:
@@ -185,17 +147,6 @@ async def test_a_picture_that_fails_is_not_the_last_one(
         task.cancel()
 
 
-async def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
-    app = page(field())
-    async with playing(app):
-        app.area.server.controller.rc_area_register = lambda stream: None
-        app.area._on_ready()
-        tasks = list(app.area._tasks)
-        for _ in range(5):
-            app.area._on_ready()
-        assert app.area._tasks == tasks and len(tasks) == 1
-
-
 # --- pictures, movies, messages ------------------------------------------------------------------
 
 
@@ -210,28 +161,6 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
         assert app.state.get("out_progress") is None
         assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
     app.state.set(**before, problem="")
-
-
-async def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-
-    app = page(field())
-    copies: list[Viewport] = []
-    copy = Viewport.copy
-
-    def counted(viewport: Viewport) -> Viewport:
-        copies.append(copy(viewport))
-        return copies[-1]
-
-    monkeypatch.setattr(Viewport, "copy", counted)
-    async with playing(app):
-        app.state.set(out_width=40, out_height=30, out_smooth=False)
-        for _ in range(20):
-            app.controllers.sharing.start()
-        await until(lambda: app.state.get("out_file"))
-        assert len(copies) == 1
-        assert len(list(app.controllers.sharing.downloads.folder.iterdir())) == 1
 
 
 async def test_a_picture_that_fails_says_so(
@@ -417,19 +346,6 @@ def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.M
     assert len(str(told.value)) < 300
 
 
-def test_a_page_goes_on_with_a_file_that_the_library_let_go() -> None:
-    library = Library.of(block(), field(name="other"))
-    app = page(library)
-    library._sources.clear()
-    library._openers.clear()
-    app.state.set(index=1)
-    assert (
-        app.controllers.data._requested().plane == "k=1"
-        and app.controllers.data._options()["planes"] == 6
-    )
-    app.close()
-
-
 def test_what_stays_open_is_bounded_in_bytes() -> None:
     library = Library.of(*(field(name=name) for name in "abcde"))
     library._sources.max_bytes = 1
@@ -472,21 +388,6 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
         assert not thread.is_alive(), thread.name
 
 
-def test_a_flow_may_come_between_any_two_tiles() -> None:
-    app = page(field())
-    flows = [field(curved=True), field(steps=2), field()]
-    for number, flow in enumerate(flows * 2):
-        composer = app.stream.painter
-        tiles = composer.full(composer.quick())
-        next(tiles)
-        app.show(flow)
-        app.area.compare({"lod": False} if number % 2 else None)
-        next(tiles, None)
-        tiles.close()
-        assert composer.quick().shape == (64, 96, 3)
-    app.close()
-
-
 def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
     app = page(field(steps=3))
     app.area.element.take_playing(True)
@@ -500,29 +401,6 @@ def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
 
 
 # --- reading -------------------------------------------------------------------------------------
-
-
-async def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = page(field())
-    free = threading.Event()
-    found: list[Any] = []
-
-    def slowly(view: Any, at: Any, **options: Any) -> Any:
-        assert threading.current_thread() is not threading.main_thread()
-        assert free.wait(PATIENCE_S)
-        found.append(probe(view, at, **options))
-        return found[-1]
-
-    monkeypatch.setattr(points, "probe", slowly)
-    async with playing(app):
-        reading = asyncio.create_task(app.area.points.read(0, {"index": [3, 1], "path": True}))
-        await asyncio.sleep(0)
-        app.area.settings.samples = 5  # what is read is not changed on the way
-        free.set()
-        told = await reading
-        assert told is not None
-        assert told["point"]["index"] == [3, 1] and len(told["samples"]) == 3
-        assert found[0].asked == 3
 
 
 # --- where the camera stands ---------------------------------------------------------------------
@@ -550,13 +428,4 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
     for view in app.controllers.viewpoint.views:
         app.controllers.viewpoint.look_from(view)
         assert 0.3 < seen() <= 1.0
-    app.close()
-
-
-def test_another_size_of_the_window_leaves_a_turned_surface_turned() -> None:
-    app = page(field(curved=True))
-    app.viewport.camera = rotate(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
-    before = app.viewport.camera.axes[2]
-    app.stream.update_size("test", {"w": 120, "h": 64, "p": 1})
-    assert app.viewport.camera.axes[2] == pytest.approx(before)
     app.close()

@@ -104,12 +104,6 @@ def test_ways_to_give_a_token_that_others_can_read_are_warned_of(run: Run, tmp_p
     assert "which cannot be read (No such file" in run("serve", tmp_path, "--token-file", "x")[2]
 
 
-def test_the_version_is_printed(run: Run) -> None:
-    import flowtex
-
-    assert run("--version") == (0, flowtex.__version__, "")
-
-
 def test_every_setting_and_option_is_a_flag_with_its_sentence(run: Run) -> None:
     _, out, _ = run("render", "--help")
     plain = "".join(c for c in out if c.isalnum())
@@ -126,13 +120,6 @@ def test_every_setting_and_option_is_a_flag_with_its_sentence(run: Run) -> None:
         assert words in out
 
 
-@pytest.mark.parametrize("command", ["demo", "show"])
-def test_the_other_commands_have_them_too(run: Run, command: str) -> None:
-    _, out, _ = run(command, "--help")
-    assert all(f"--{name.replace('_', '-')}" in out for name in TABLE)
-    assert "--no-browser" in out and "--port" in out
-
-
 def test_a_picture_is_drawn_along_the_flow(
     run: Run, block: Path, tmp_path: Path, opengl: object
 ) -> None:
@@ -147,16 +134,6 @@ def test_a_picture_is_drawn_along_the_flow(
     assert pixels.shape == (150, 200)
     along, across = roughness(pixels)
     assert across > 5 and across > 2.5 * along
-
-
-def test_flags_reach_the_picture(run: Run, block: Path, tmp_path: Path, opengl: object) -> None:
-    base = ("render", block, "--plane", "k=1", "--size", "120x90", "--scalars", "none")
-    one, two, flat = (tmp_path / f"{name}.png" for name in ("one", "two", "flat"))
-    assert run(*base, "--vectors", "wind", "-o", one)[0] == 0
-    assert run(*base, "--vectors", "wind", "-o", two, "--seed", "7", "--no-lod")[0] == 0
-    assert run(*base, "--vectors", "wind", "-o", flat, "--contrast", "0")[0] == 0
-    assert np.abs(grey(one) - grey(two)).mean() > 5
-    assert roughness(grey(flat)[30:60, 40:80])[1] < 1
 
 
 def test_values_beyond_the_colours_are_told(run: Run, tmp_path: Path, opengl: object) -> None:
@@ -189,71 +166,35 @@ def test_flow_that_leaves_the_surface_is_told(
         ("render {tmp}/no.vts -o {tmp}/a.png", "the file does not exist"),
         ("render {gyre} -o {tmp}/a.png --samples 0", "samples is 0; expected"),
         ("render {gyre} -o {tmp}/a.png --samples x", "--samples"),
-        ("render {gyre} -o {tmp}/a.png --kernel flat", "--kernel"),
         ("render {gyre} -o {tmp}/a.png --size 10", "expected width x height"),
         ("render {gyre} -o {tmp}/a.png --zoom 0", "--zoom is 0"),
-        ("render {gyre} -o {tmp}/a.png --focus 1", "two or three coordinates"),
-        ("render {gyre} -o {tmp}/a.png --scalars heat", "the field has no scalar 'heat'"),
-        ("render {gyre} -o {tmp}/a.png --cmap mud", "'mud' does not exist; expected one of 1"),
         ("formula y mu*y-x --mu 1 -o {tmp}/a.html", "a parameter is set by --set mu=1"),
-        ("render {gyre} -o {tmp}/a.png --vectors wind", "wind"),
         ("render {block} -o {tmp}/a.png --plane z=2", "as in --plane k=2"),
-        ("render {gyre} -o {tmp}/a.png --opacity 3", "--opacity is 3.0; expected a number from 0"),
-        (
-            "render {gyre} -o {tmp}/a.png --color blurple",
-            "the colour 'blurple' does not exist; expected a name such as black",
-        ),
         ("render {gyre} -o {tmp}/a.png --camera 1,2", "--camera is '1,2'; expected nine numbers"),
-        (
-            "render {gyre} -o {tmp}/a.png --isel number=x",
-            "--isel is number=x; expected an axis and a whole number",
-        ),
+        ("render {gyre} -o {tmp}/a.png --isel number=x", "--isel is number=x; expected an axis"),
         ("render {gyre} -o {tmp}/a.png --isel number=2", "--isel applies to datasets, but this"),
         ("render {gyre} -o {tmp}/a.png --log-scale --clim 0,1", "--log-scale is True"),
-        (
-            "render {gyre} -o {tmp}/a.png --beside lod",
-            "expected name=value, such as --beside lod=false",
-        ),
-        (
-            "render {gyre} -o {tmp}/a.png --beside lod=maybe",
-            "lod is 'maybe'; expected True or False",
-        ),
+        ("render {gyre} -o {tmp}/a.png --clim 1", "--clim is '1'; expected two numbers"),
+        ("render {gyre} -o {tmp}/a.png --axes scale", "axes is 'scale', but only browsers draw"),
+        ("render {gyre} -o {tmp}/a.png --beside lod", "such as --beside lod=false"),
         ("render {gyre} -o {tmp}/a.png --beside smaples=3", "did you mean 'samples'?"),
-        (
-            "render {gyre} -o {tmp}/a.png --beside samples=x",
-            "samples is 'x'; expected a whole number",
-        ),
         ("render {gyre}", "--output"),
         ("render {gyre} --opacty 1", "did you mean --opacity?"),
-        ("render {gyre} --proj north", "did you mean --projection?"),
         ("render {gyre} --slize z=0", "did you mean --size or --slice?"),
         ("export {gyre} -o {tmp}/page.png", "page.png: expected a name that ends in .html"),
-        ("export {gyre} -o {tmp}/nowhere/page.html", "does not exist; create it"),
         ("export {gyre} -o {tmp}/page.html --steps 0", "--steps is 0; expected 1 to 1"),
-        ("export {gyre} -o {tmp}/page.html --scalars heat", "the field has no scalar 'heat'"),
         ("movie {gyre} -o {tmp}/a.avi", "'.avi' is not a movie format; expected .mp4"),
-        ("movie {gyre} -o {tmp}/nowhere/a.gif", "does not exist; create it"),
-        ("movie {gyre} -o {tmp}/a.gif --motion off", "motion is 'off'; expected"),
-        ("movie {gyre} -o {tmp}/a.mp4 --size 95x64", "MP4 needs even sides"),
-        ("info {tmp}/no.vts", "the file does not exist"),
         ("info {tmp}/u.nc {tmp}/v.nc", "v.nc: no such file; check the path"),
         ("info", "no input file; usage: flowtex info FILE"),
         ("info {tmp}", "this is a folder"),
         ("render {gyre} -o {tmp}/a.png --vmin 0", "no option --vmin; did you mean --clim?"),
         ("render {gyre} -o {tmp}/a.png --duration 3", "of a movie is --seconds 5"),
-        ("movie {gyre} -o {tmp}/a.gif --duration 3", "did you mean --seconds?"),
         ("render {gyre} -o {tmp}/a.png --quiet", "send the output to /dev/null"),
-        ("info {gyre} --colour", "flowtex: info has no option --colour; did you"),
         ("demo --example soup", "the example 'soup' does not exist; expected one of cylinder"),
         ("demo --no-opne", "flowtex: demo has no option --no-opne; did you mean --no-open?"),
         ("demo --no-eyes", "; `flowtex demo --help` lists all options"),
-        ("demo --port 80000", "--port"),
         ("demo --port 80000", "65536"),
-        ("show {tmp}/no.vts", "the file does not exist"),
-        (
-            "show {gyre} --no-browser --allow-host http://a.b",
-            "--allow-host is 'http://a.b'; expected a host name without scheme",
-        ),
+        ("show {gyre} --no-browser --allow-host http://a.b", "--allow-host is 'http://a.b'; exp"),
         ("shwo", "Unknown command"),
     ],
 )
@@ -339,11 +280,6 @@ def test_a_missing_extra_is_told_with_its_command(
         assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
 
 
-def test_debug_shows_where_an_error_came_from() -> None:
-    with pytest.raises(Exception, match="the file does not exist"):
-        main(["info", "/no/such.vts", "--debug"])
-
-
 def test_a_fault_of_the_program_is_not_dressed_up(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError
@@ -421,17 +357,6 @@ def test_components_are_named_with_commas(run: Run, tmp_path: Path) -> None:
     assert "as in --vectors u,v" in out
     code, out, _ = run("info", tmp_path / "flow.vti", "--vectors", "Y Velocity, u")
     assert code == 0 and "What would be drawn" in out
-
-
-def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
-    import pyvista as pv
-
-    mesh = pv.ImageData(dimensions=(9, 7, 1))
-    mesh.point_data["axis"] = np.tile([0.6, 0.8, 0.0], (63, 1)) * np.resize([1, -1], (63, 1))
-    mesh.save(tmp_path / "axis.vti")
-    words = "v and -v mean the same"
-    assert words in run("info", tmp_path / "axis.vti", "--sign-free")[1]
-    assert words not in run("info", tmp_path / "axis.vti")[1]
 
 
 @pytest.mark.usefixtures("opengl")
@@ -518,24 +443,12 @@ def test_messages_are_in_the_words_of_the_shell(said: str, told: str) -> None:
     assert in_flags(said) == told
 
 
-def test_range_and_background_are_flags(run: Run, gyre: Path, tmp_path: Path) -> None:
-    words = ["render", gyre, "-o", tmp_path / "a.png", "--size", "80x60"]
-    assert run(*words, "--background", "black", "--clim", "0,0.1")[0] == 0
-    with Image.open(tmp_path / "a.png") as picture:
-        assert picture.getpixel((0, 0)) == (0, 0, 0)
-    assert "--clim is '1'; expected two numbers" in run(*words, "--clim", "1")[2]
-    assert "the colour 'blurple'" in run(*words, "--background", "blurple")[2]
-    assert "axes is 'scale', but only browsers draw axes" in run(*words, "--axes", "scale")[2]
-
-
 @pytest.mark.parametrize(
     "flags",
     [
         ("--opacity", "0.3"),
         ("--scalars", "none", "--color", "tomato"),
-        ("--log-scale", "--clim", "0.01,1"),
-        ("--lighting", "--cmap", "magma"),
-        ("--camera", "1,0.5,3,1,0.5,0,0.5,1,0"),
+        ("--lighting", "--cmap", "magma", "--log-scale", "--clim", "0.01,1"),
         ("--camera", "parallel,1.0,0.5,3.0,1.0,0.5,0.0,1.0,1.0,0.0,0.4,30.0"),
     ],
 )

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import ctypes.util
-import importlib.metadata
 import os
 import re
 import signal
@@ -12,9 +11,6 @@ import pytest
 from flowtex.rendering import diagnostics
 
 CRASHES = (sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-OK = diagnostics.Check("Thing", "ok", "there", "never shown")
-WARN = diagnostics.Check("trame", "warn", "not installed", 'python -m pip install "flowtex[app]"')
-FAIL = diagnostics.Check("OpenGL", "fail", "it [crashed]", "sudo apt-get install libegl1")
 
 
 @pytest.fixture
@@ -165,46 +161,3 @@ def test_a_display_is_left_alone(name: str, value: str, monkeypatch: pytest.Monk
         monkeypatch.setenv(name, value)
     diagnostics.prefer_headless()
     assert diagnostics.WINDOW_VARIABLE not in os.environ
-
-
-def test_the_diagnosis_covers_what_is_needed() -> None:
-    checks = {check.name: check for check in diagnostics.diagnose()}
-    assert {"Python", "OpenGL", "Display", "Shaders"} <= set(checks)
-    assert {*diagnostics.REQUIRED, *diagnostics.OPTIONAL, *diagnostics.OF_PYVISTA} <= set(checks)
-    assert all(check.remedy for check in checks.values() if check.status != "ok")
-    assert all(checks[name].status == "ok" for name in ("Python", *diagnostics.REQUIRED))
-
-
-def test_a_missing_extra_warns_and_a_missing_requirement_fails(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def version(name: str) -> str:
-        raise importlib.metadata.PackageNotFoundError(name)
-
-    monkeypatch.setattr("importlib.metadata.version", version)
-    checks = {check.name: check for check in diagnostics.diagnose()}
-    assert checks["numpy"].status == "fail"
-    assert checks["numpy"].remedy == "python -m pip install numpy"
-    assert checks["trame"].status == "warn"
-    assert checks["trame"].remedy == 'python -m pip install -e ".[app]"'
-
-
-def test_the_report_shows_every_check_and_the_remedies_that_matter(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    diagnostics.print_checks([OK, WARN, FAIL])
-    shown = capsys.readouterr().out
-    for text in ("Thing", "there", "trame", "not installed", "OpenGL", "it [crashed]"):
-        assert text in shown
-    assert f"  {WARN.remedy}\n" in shown
-    assert f"  {FAIL.remedy}\n" in shown
-    assert OK.remedy not in shown
-
-
-@pytest.mark.parametrize(("checks", "code"), [([OK, WARN], 0), ([OK, FAIL, WARN], 1)])
-@pytest.mark.usefixtures("capsys")
-def test_only_a_failure_changes_the_exit_code(
-    checks: list[diagnostics.Check], code: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(diagnostics, "diagnose", lambda: checks)
-    assert diagnostics.main() == code

@@ -32,7 +32,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
-from flowtex.scene.scene import TracedFlow
+from flowtex.scene.fields import TracedFlow
 from flowtex.sources.open_source import Source
 from flowtex.textures.tiles.shared import coarsened_field
 

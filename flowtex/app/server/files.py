@@ -30,9 +30,10 @@ from flowtex.sources.remote import prepare_readers
 MOST_DOWNLOADS = 4
 #: Bytes of an upload that are written at once.
 CHUNK_BYTES = 1 << 18
-#: Most bytes of a file's name, and of its ending: file systems allow 255, and an incomplete file
-#: has a longer name.
-NAME_BYTES, ENDING_BYTES = 180, 20
+#: Most bytes of a file's name: file systems allow 255, and an incomplete file has a longer name.
+NAME_BYTES = 180
+#: Most bytes of the ending of a name.
+ENDING_BYTES = 20
 #: Names of devices on Windows, whatever their endings are.
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)\s*(\.|$)", re.IGNORECASE)
 #: Content of a file: its bytes or its path; its media type; and the name under which it is saved,
@@ -50,8 +51,10 @@ UPLOAD_SUFFIXES = (
     *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp"),
     *(".nc", ".grib", ".grb", ".json"),
 )
-#: Bytes of a file, and files of a page, at most.
-UPLOAD_BYTES, MOST_UPLOADS = 200_000_000, 8
+#: Most bytes of an upload.
+UPLOAD_BYTES = 200_000_000
+#: Most uploads of a page.
+MOST_UPLOADS = 8
 
 
 class Routes:
@@ -85,43 +88,38 @@ class Routes:
 
     def give(self, name: str, content: Give) -> str:
         """Serve a file, whose content is called at each request; return its address."""
-        if not name or "/" in name:
-            raise FieldError(
-                f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
-            )
         self._content[name] = content
-        return f"flowtex/{self.token}/{quote(name)}"
+        return self._address(name)
 
     def give_each(self, stem: str, content: Callable[[str], Give]) -> str:
         """Serve files of many names; return the common part of their addresses.
 
         ``content`` is called with the rest of a name, and raises a ``LookupError`` or a
-        ``ValueError`` where the file does not exist. The stem is as the name of :meth:`give`,
-        without a full stop.
+        ``ValueError`` where the file does not exist. The stem has no full stop.
         """
         self._families[stem] = content
-        return f"flowtex/{self.token}/{quote(stem)}."
+        return f"{self._address(stem)}."
 
     def take(self, name: str, taker: Take) -> str:
         """Receive files at the address returned, with ``?name=``; a taker's FieldError is shown."""
         self._takers[name] = taker
+        return self._address(name)
+
+    def _address(self, name: str) -> str:
         return f"flowtex/{self.token}/{quote(name)}"
 
-    def withdraw(self, name: str) -> None:
-        """Stop serving a file, or those of a stem."""
-        self._content.pop(name, None)
-        self._families.pop(name, None)
+    def withdraw(self, stem: str) -> None:
+        """Stop serving the files of a stem."""
+        self._families.pop(stem, None)
 
     def close(self) -> None:
         """Stop serving and receiving files."""
-        self._content.clear()
-        self._families.clear()
-        self._takers.clear()
+        for files in (self._content, self._families, self._takers):
+            files.clear()
 
     async def receive(self, name: str, request: web.Request) -> web.StreamResponse:
         """Receive a file; raises ``HTTPNotFound`` if the name receives none."""
-        taker = self._takers.get(name)
-        if taker is None:
+        if (taker := self._takers.get(name)) is None:
             raise web.HTTPNotFound
         try:
             await taker(request.query.get("name", ""), request.content.iter_chunked(CHUNK_BYTES))
@@ -134,11 +132,10 @@ class Routes:
         """Return a file; raises ``HTTPNotFound`` if it does not exist."""
         stem, _, rest = name.partition(".")
         try:
-            give = self._content.get(name) or self._families[stem](rest)
+            content = (self._content.get(name) or self._families[stem](rest))()
         except (LookupError, ValueError):
             raise web.HTTPNotFound from None
         try:
-            content = give()
             body, kind, saved_as = await content if inspect.isawaitable(content) else content
         except FileNotFoundError:
             raise web.HTTPNotFound from None
@@ -154,8 +151,6 @@ class Routes:
                 f"attachment; filename=\"{plain}\"; filename*=UTF-8''{quote(saved_as, safe='')}"
             )
         if isinstance(body, Path):
-            if not body.is_file():
-                raise web.HTTPNotFound
             return web.FileResponse(body, headers=headers)
         return web.Response(body=body, headers=headers)
 

@@ -1,17 +1,10 @@
 """Protection of the page against others.
 
-trame admits everybody who knows the secret, but its default is a public constant, and it does not
-check the origin of a web page: any page open in the same browser could drive the program. So every
-start has its own secret, which only the printed address carries, and a connection from another
-site's page is refused. Without the secret, a browser gets a page that says so (``door.html``). The
-page itself may load nothing from elsewhere.
-
-For a browser, a site whose name suddenly points to this machine (DNS rebinding) is still the same
-site. So the server answers only to numeric addresses and to names that it knows.
-
-Connections are limited. The head of a request has to arrive within :data:`HEAD_S`, also the next
-one of a connection that is kept, and the answer within :data:`ANSWER_S`. Beyond the maximum number
-of connections, new ones are closed.
+trame admits everybody who knows a public constant, from the page of any site. So every start has
+its own secret, which only the printed address carries; without it a browser gets ``door.html``. The
+page may load nothing from elsewhere. For a browser, a site whose name suddenly points to this
+machine (DNS rebinding) is still the same site, so the server answers only to numeric addresses and
+known names. Connections are limited in number, and requests in time.
 """
 
 from __future__ import annotations
@@ -151,11 +144,9 @@ def _split(address: str) -> SplitResult:
 
 def _is_address(name: str) -> bool:
     """Return whether a name is a numeric address, which cannot be redirected."""
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
+    with suppress(ValueError):
+        return bool(ipaddress.ip_address(name))
+    return False
 
 
 def _own_hosts(request: web.Request) -> set[str]:
@@ -169,12 +160,18 @@ def _own_hosts(request: web.Request) -> set[str]:
     return {request.headers.get("Host", ""), forwarded} - {""}
 
 
-#: Seconds for the head of a request, and for finding an answer (an upload lasts until it is read).
-HEAD_S, ANSWER_S = 30.0, 900.0
-#: Connections at one time, at most, and connections that wait to be let in.
-CONNECTIONS, BACKLOG = 512, 64
-#: Seconds in which the rest of a request that was answered may come, and connections end.
-LINGER_S, SHUTDOWN_S = 2.0, 2.0
+#: Seconds for the head of a request, also the next one of a connection that is kept.
+HEAD_S = 30.0
+#: Seconds for finding an answer (an upload lasts until it is read).
+ANSWER_S = 900.0
+#: Most connections at one time.
+CONNECTIONS = 512
+#: Connections that wait to be let in.
+BACKLOG = 64
+#: Seconds in which the rest of a request that was answered may come.
+LINGER_S = 2.0
+#: Seconds in which connections end.
+SHUTDOWN_S = 2.0
 
 #: Answers a request.
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
@@ -244,10 +241,9 @@ class _Refusal(asyncio.Protocol):
 
 def usual_most() -> int:
     """Return the maximum number of connections of this process."""
-    with suppress(ImportError, OSError):  # on Windows
+    with suppress(ImportError):  # on Windows
         import resource
 
         files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-        if files != resource.RLIM_INFINITY:
-            return max(1, min(CONNECTIONS, files // 2))
+        return max(1, min(CONNECTIONS, files // 2)) if files > 0 else CONNECTIONS
     return CONNECTIONS

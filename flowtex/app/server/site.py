@@ -46,10 +46,9 @@ from flowtex.app.server.security import (
     known_hosts,
 )
 from flowtex.app.server.sessions.registry import (
-    ClosedError,
-    FullError,
     OpenSession,
     Sessions,
+    UnavailableError,
     usual_limit,
 )
 from flowtex.errors import FieldError
@@ -63,10 +62,12 @@ REQUEST_BYTES = 4096
 WRONG = "This page opens only with the complete address that flowtex printed, including the secret."
 MALFORMED = "This request is not valid for this page."
 _log = logging.getLogger(__name__)
-#: Records of one place in the code that are written in a window, and its seconds.
-MOST_RECORDS, WINDOW_S = 5, 60.0
-#: Characters of a message, and of a traceback with it.
-MESSAGE_LENGTH, TRACEBACK_LENGTH = 2_000, 8_000
+#: Records of one place in the code that are written in a window.
+MOST_RECORDS = 5
+#: Seconds of a window.
+WINDOW_S = 60.0
+#: Characters of a message, or of a traceback.
+MESSAGE_LENGTH = 8_000
 #: Errors caused by clients, whose tracebacks are not logged.
 OTHERS_FAULTS = HttpProcessingError, web.RequestPayloadError
 
@@ -155,17 +156,8 @@ class Site:
             return _answer(403, words=WRONG)
         try:
             session = await self.sessions.find(token)
-        except FullError:
-            count = self.sessions.limit
-            pages = "one page" if count == 1 else f"{count} pages"
-            words = (
-                f"The limit is {pages} at a time, and all are in use. One becomes free soon after "
-                "somebody closes a page."
-            )
-            return _answer(503, words=words)
-        except ClosedError:
-            words = "The server is shutting down. Start it again to open this page."
-            return _answer(503, words=words)
+        except UnavailableError as error:
+            return _answer(503, words=str(error))
         except (FieldError, OSError) as error:
             return _answer(500, words=f"The page could not be opened: {error}")
         except Exception:
@@ -178,11 +170,9 @@ def _secret_and_token(body: bytes) -> tuple[str, str | None]:
     """Return the secret and token that a door sends; a ValueError without valid texts."""
     try:
         request = json.loads(body)
-    except RecursionError:
-        request = None
-    secret, token = (
-        map(request.get, ("secret", "session")) if isinstance(request, dict) else (None,) * 2
-    )
+        secret, token = request["secret"], request.get("session")
+    except (RecursionError, LookupError, TypeError, AttributeError):
+        raise ValueError(MALFORMED) from None
     if not isinstance(secret, str) or not isinstance(token, str | None):
         raise ValueError(MALFORMED)
     f"{secret}{token}".encode()  # half of a surrogate pair is a UnicodeError, which is a ValueError
@@ -272,7 +262,7 @@ async def serve_until_ended(
         announce(address)
         if open_browser:
             folder = TemporaryFolder()  # removed with the variable
-            loop.run_in_executor(None, _open, _redirection(address, folder.path))
+            loop.run_in_executor(None, webbrowser.open, _redirection(address, folder.path))
         with suppress(asyncio.CancelledError), bounded_log():
             await asyncio.Event().wait()
     finally:
@@ -299,19 +289,12 @@ def _redirection(address: str, folder: Path) -> str:
     return file.as_uri()
 
 
-def _open(address: str) -> None:
-    """Open a browser; without one, the printed address remains."""
-    with suppress(webbrowser.Error):
-        webbrowser.open(address)
-
-
 class RepeatFilter(logging.Filter):
     """Drops repeated records, and shortens long ones; ``clock`` is in seconds."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()
         self._clock = clock
-        self._formatter = logging.Formatter()
         #: For each place in the code: when its window began, and its records since.
         self._windows: dict[object, tuple[float, int]] = {}
 
@@ -320,26 +303,16 @@ class RepeatFilter(logging.Filter):
         kind = record.exc_info[0] if record.exc_info else None
         place, now = (record.pathname, record.lineno, kind), self._clock()
         began, count = self._windows.get(place, (now, 0))
-        dropped = 0
         if now - began >= WINDOW_S:
-            dropped, began, count = max(0, count - MOST_RECORDS), now, 0
+            began, count = now, 0
         self._windows[place] = began, count + 1
-        if count >= MOST_RECORDS:
-            return False
-        message = _cut(record.getMessage(), MESSAGE_LENGTH)
-        record.msg = f"{message} ({dropped:,} more were dropped)" if dropped else message
-        record.args = ()
+        record.msg, record.args = record.getMessage()[:MESSAGE_LENGTH], ()
         if kind and issubclass(kind, OTHERS_FAULTS):
             record.exc_info = record.exc_text = None
-        if record.exc_info:
-            text = self._formatter.formatException(record.exc_info)
-            record.exc_text = _cut(text, TRACEBACK_LENGTH)
-        return True
-
-
-def _cut(text: str, most: int) -> str:
-    """Return a text without its middle where it is long."""
-    return text if len(text) <= most else f"{text[: most // 2]} … {text[-most // 2 :]}"
+        elif record.exc_info:
+            text = logging.Formatter().formatException(record.exc_info)
+            record.exc_text = text[-MESSAGE_LENGTH:]
+        return count < MOST_RECORDS
 
 
 @contextmanager

@@ -19,9 +19,9 @@ from flowtex.plotting.vtk_camera import point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.annotations import Layout, annotate, difference_text
-from flowtex.scene.fields import read_field
+from flowtex.scene.fields import TracedFlow, read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
-from flowtex.scene.scene import Scene, TracedFlow, share_field
+from flowtex.scene.scene import Scene, share_field
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 

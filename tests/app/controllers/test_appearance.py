@@ -52,20 +52,6 @@ def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
     assert series.area.scene.scalar_limits[1] == pytest.approx(3 * 1.7, rel=0.01)
 
 
-def test_themes_change_the_background(flat: FlowApp) -> None:
-    dark = picture(flat)[0, 0]
-    flat.state.set(theme="light")
-    flat.controllers.appearance.take_background()
-    assert picture(flat)[0, 0].min() > 200 > dark.max()
-    flat.state.set(theme="dark")
-    flat.controllers.appearance.take_background()
-
-
-def test_an_unknown_part_of_the_appearance_is_refused(flat: FlowApp) -> None:
-    with pytest.raises(AttributeError, match=r"^FlowArea has no attribute 'cmaps'; did you mean"):
-        flat.area.cmaps = "magma"
-
-
 def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     area, appearance = flat.area, flat.controllers.appearance
     before = area.scene.appearance
@@ -78,14 +64,6 @@ def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     appearance.restore({"colour": "no such", "cmap": "os_system", "opacity": 1.0})
     assert (area.scalars, area.cmap, area.opacity) == ("height", "magma", 1.0)
     area.scene.appearance = before
-
-
-def test_a_second_pane_has_the_colours_of_the_first(flat: FlowApp) -> None:
-    flat.viewport.compare({"lod": False})
-    flat.area.cmap = "magma"
-    assert flat.viewport.panes[1].cmap == "magma"
-    flat.viewport.compare(None)
-    flat.area.cmap = "viridis"
 
 
 def test_a_link_switches_lines_of_a_map() -> None:

@@ -137,21 +137,6 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
     assert opened.evaluate("() => window.pictures") == quiet
 
 
-def test_a_draft_that_follows_a_full_picture_is_not_sharp(opened: Page) -> None:
-    home(opened)
-    sharp = opened.evaluate(
-        """async () => {
-          const view = document.querySelector(".flowtex-views");
-          const picture = await createImageBitmap(view.first.canvas);
-          return [false, true].map((full) => {
-            view.paint(picture, 0, full);
-            return document.querySelector(".flowtex").dataset.sharp;
-          });
-        }"""
-    )
-    assert sharp == ["false", "true"]
-
-
 def test_nothing_is_complained_of_and_nothing_comes_from_outside(
     opened: Page, demo: Served
 ) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +14,8 @@ pytest.importorskip("trame_rca")
 import xarray as xr
 from earth_data import winds
 from lying_files import crashing
-from small_pages import Streamer, panned, playing, zoom_of
-from waiting import PATIENCE_S, until
+from small_pages import Streamer, playing, zoom_of
+from waiting import until
 
 from flowtex import examples
 from flowtex.app import FlowApp, Library
@@ -75,40 +74,6 @@ async def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path:
         assert app.state.get("problem").startswith("torn.vtk: the reader of this file crashed")
         assert app.field is shown and app.state.get("file") == "flow.vts"
         assert library.source("flow.vts").alive
-
-
-async def test_the_view_moves_while_a_later_step_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pytest.importorskip("xarray")
-    daily(4).to_netcdf(tmp_path / "winds.nc")
-    app = FlowApp(tmp_path / "winds.nc", lines="streamlines")
-    app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
-    shown, days = app.viewport.handle.time, [day * 86_400.0 for day in range(4)]
-    asked: list[float] = []
-    slow, read = threading.Event(), app.viewport.trace
-
-    def read_slowly(time: float) -> None:
-        asked.append(time)
-        slow.wait(PATIENCE_S)
-        read(time)
-
-    monkeypatch.setattr(app.viewport, "trace", read_slowly)
-    async with playing(app):
-        streamer = Streamer(app.stream)
-        task = asyncio.create_task(app.stream.run())
-        for day in (days[0], days[1], days[2]):
-            app.area.element.take_time(day)
-        await until(lambda: asked)
-        streamer.sent = 0
-        panned(app.viewport, 0.1, 0.0)
-        app.stream.changed()
-        await until(lambda: streamer.sent)
-        assert (app.viewport.handle.time, app.area.player.time) == (shown, days[2])
-        slow.set()
-        await until(lambda: app.viewport.handle.time == days[2])
-        assert days[1] not in asked, "only the latest is read"
-        task.cancel()
 
 
 def daily(count: int) -> Any:

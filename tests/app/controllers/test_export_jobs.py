@@ -15,8 +15,6 @@ pytest.importorskip("trame_rca")
 from small_pages import difference, panned, small
 from waiting import wait_until
 
-import flowtex
-from flowtex import FieldError
 from flowtex._util.progress import Stopped
 from flowtex.app.controllers.sharing import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.streaming.viewport import Viewport
@@ -87,25 +85,6 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
     assert difference(scene.draw(240, 160), shown) == 0
 
 
-@pytest.mark.parametrize("times", [1, 2])
-def test_a_saved_picture_is_that_of_a_script(
-    tmp_path: Path, times: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.app.controllers.sharing.TILE_PX", 160)
-    field = flowtex.examples.double_gyre_field(shape=(21, 41))
-    marked: dict[str, Any] = {"samples": 5, "critical_points": True, "separatrices": True}
-    view = Viewport(field, **marked)
-    view.set_background("white")
-    size = (400, 240)  # of several tiles
-    view.resize(200, 120)
-    view.home()
-    saved = pixels(run(PictureJob(view, tmp_path / "a.png", size, supersampling=times)))
-    view.close()
-    drawn = flowtex.render(field, size=size, supersampling=times, **marked)
-    assert difference(saved, drawn) < 0.02
-    assert difference(saved, flowtex.render(field, size=size, samples=5)) > 0.3
-
-
 def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: Path) -> None:
     half = np.zeros((40, 60, 4), np.uint8)
     half[:20] = [250, 20, 30, 128]
@@ -119,23 +98,6 @@ def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: P
     assert both.shape == (80, 242, 3) and (both[:, 120:122] == 128).all()
     left, right = (part[32:48, 48:72].std(axis=1).mean() for part in (both[:, :120], both[:, 122:]))
     assert left > 5 * right
-
-
-def test_the_page_goes_on_between_tiles(plain: Viewport, tmp_path: Path) -> None:
-    job = PictureJob(plain, tmp_path / "large.png", (1800, 1200))
-    seen: list[float] = []
-
-    async def watch() -> None:
-        task = asyncio.create_task(job.run())
-        while not task.done():
-            if not seen or job.progress != seen[-1]:
-                seen.append(job.progress)
-            await asyncio.sleep(0)
-        await task
-
-    asyncio.run(watch())
-    assert len(seen) > 8 and seen == sorted(seen) and 0.85 < seen[-1] <= 1
-    assert pixels(job.path).shape == (1200, 1800, 3)
 
 
 @pytest.mark.parametrize("kind", ["gif", "mp4"])
@@ -168,15 +130,6 @@ def shown(path: Path) -> Any:
     av = pytest.importorskip("av")
     with av.open(str(path)) as file:
         return np.array([f.to_ndarray(format="rgb24") for f in file.decode(video=0)], dtype=int)
-
-
-def test_a_movie_that_hardly_moves_has_a_notice(plain: Viewport, tmp_path: Path) -> None:
-    options: dict[str, Any] = {"path": tmp_path / "a.gif", "size": (120, 80), "fps": 10}
-    plain.handle.settings.speed = 40.0
-    assert not MovieJob(plain, seconds=0.5, **options).notice
-    plain.handle.settings.speed = 48.0
-    assert not MovieJob(plain, seconds=2.0, **options).notice
-    assert "at least seconds=2, or speed=96" in MovieJob(plain, seconds=1.0, **options).notice
 
 
 def test_a_movie_of_a_series_shows_all_times(series: Viewport, tmp_path: Path) -> None:
@@ -222,16 +175,6 @@ def test_a_cancelled_job_leaves_nothing(
     assert job.done and not list(tmp_path.iterdir())
     wait_until(lambda: threading.active_count() <= threads)
     assert children() <= processes
-
-
-def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) -> None:
-    path = tmp_path / "none" / "a.png"
-    job = PictureJob(plain, path, (20, 20))
-    with pytest.raises(FileNotFoundError):
-        run(job)
-    assert job.done and not job.cancelled
-    with pytest.raises(FieldError, match="does not exist; create it"):
-        MovieJob(plain, path.with_suffix(".gif"), (20, 20), seconds=0.1)
 
 
 @pytest.mark.parametrize(

@@ -10,18 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from PIL import Image
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, playing, small
+from small_pages import playing, small
 from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.serialization import from_link, to_link
-from flowtex.app.controllers.sharing import PictureJob
 from flowtex.sources.open_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -77,27 +75,6 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         app.state.send(compare="nothing")
         assert len(app.viewport.panes) == 1 and not app.area.element.names
         assert "beside_file" not in app.controllers.sharing.present_state()
-
-
-async def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
-    still = other()
-    halting = FlowField.from_arrays(still.points, still.velocity[0] - np.array([0, 3.0, 0]))
-    app = page(one=small(), two=halting)
-    async with playing(app):
-        await beside(app)
-        app.area.element.take_colours({"log_scale": True})
-        first, second = app.viewport.panes
-        assert first.log_scale is True and second.log_scale is False
-        assert app.state.get("problem") == ""
-
-
-def test_one_file_alone_has_none_beside_it() -> None:
-    app = page(one=small())
-    assert FILE not in app.state.get("comparisons")
-    app.state.set(compare=FILE)
-    app.controllers.appearance.take_comparison()
-    assert app.state.get("compare") == "nothing"
-    app.close()
 
 
 async def test_the_time_is_that_of_the_first_or_the_last() -> None:
@@ -270,19 +247,6 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         await until(lambda: app.state.get("problem"))
         assert "the file '../four'" in app.state.get("problem")
         assert len(app.viewport.panes) == 1
-
-
-async def test_a_picture_shows_both_with_what_is_written_on_them(tmp_path: Path) -> None:
-    app = page(one=small(steps=4), two=other(steps=4))
-    async with playing(app):
-        await beside(app)
-        path = await PictureJob(app.viewport, tmp_path / "both.png", (482, 160)).run()
-        job = PictureJob(app.viewport, tmp_path / "told.png", (482, 160), annotations=True)
-        with Image.open(path) as plain, Image.open(await job.run()) as written:
-            one, told = np.asarray(plain).astype(int), np.asarray(written).astype(int)
-        assert difference(one[:, :240], one[:, 242:]) > 3
-        for half in (slice(0, 240), slice(242, 482)):
-            assert difference(one[:, half], told[:, half]) > 1
 
 
 def test_a_choice_is_taken_as_far_as_a_file_has_it() -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,12 +14,11 @@ from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
 from flowtex.errors import FieldError
 from flowtex.pyramid import build
-from flowtex.scene.scene import Scene, TracedFlow
+from flowtex.scene.fields import TracedFlow
 from flowtex.settings import Settings
 from flowtex.sources.files import file_identity
 from flowtex.sources.open_source import FlowSource
 from flowtex.textures.tiles.shared import has_pyramid
-from flowtex.trace.store import SliceStore
 
 
 @pytest.fixture
@@ -163,23 +160,6 @@ def test_a_member_or_a_file_beside_that_changes_is_read_anew(folder: Path) -> No
         assert np.linalg.norm(hull.velocity, axis=-1).max() == pytest.approx(turn / 2, rel=0.02)
 
 
-def test_a_state_is_path_size_time_of_change_and_number(tmp_path: Path) -> None:
-    path, other = tmp_path / "flow.vts", tmp_path / "other.vts"
-    path.write_text("1")
-    first = path.stat()
-    states = [file_identity([path])]
-    for content, time in (("1", first.st_mtime_ns + 1), ("12", first.st_mtime_ns)):
-        path.write_text(content)
-        os.utime(path, ns=(time, time))
-        states.append(file_identity([path]))
-    other.write_text("1")
-    os.utime(other, ns=(first.st_mtime_ns, first.st_mtime_ns))
-    states.append(file_identity([other]))
-    other.replace(path)
-    states.append(file_identity([path]))
-    assert len(set(states)) == 5
-
-
 def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:
     write_ensight(tmp_path / "wing.case", [("tip", box(4, 3, 2))])
     (tmp_path / "foam").mkdir()
@@ -210,28 +190,6 @@ def test_a_source_whose_process_has_died_is_opened_anew(
 
 
 # --- large fields -------------------------------------------------------------------------------
-
-
-def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
-    x, y = np.linspace(0, 2, 300), np.linspace(0, 1, 150)
-    velocity = np.stack(np.broadcast_arrays(y[:, None] + 1, np.cos(x)), axis=-1)
-    field = FlowField.from_arrays((x, y), velocity)
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
-    traced: list[tuple[int, int]] = []
-
-    def counted(store: SliceStore, step: int) -> Any:
-        traced.append(store.field.shape)
-        return made(store, step)
-
-    made = SliceStore._trace
-    monkeypatch.setattr(SliceStore, "_trace", counted)
-    settings = Settings()
-    flow = TracedFlow.of(field, settings)
-    flow.store.at(0)
-    scene = Scene(field, settings)
-    assert scene.pyramid is flow.pyramid is not None
-    assert scene.store is flow.store and flow.store.field is scene.whole
-    assert traced == [scene.whole.shape] and scene.whole.shape < field.shape
 
 
 def test_a_formula_that_is_typed_is_a_flow_where_that_is_allowed() -> None:

@@ -82,11 +82,8 @@ def test_a_link_is_short_and_safe_and_can_be_read() -> None:
     assert not set(DEFAULTS) & set(TABLE) and not set(STATE) & set(TABLE)
 
 
-def test_an_image_is_not_in_a_link() -> None:
+def test_an_image_and_unknown_settings_are_not_in_a_link() -> None:
     assert to_link({"settings": {"noise": "image", "seed": 3}}) == "seed=3"
-
-
-def test_an_unknown_setting_makes_no_link() -> None:
     with pytest.raises(SettingsError, match="the setting 'smaples'"):
         to_link({"settings": {"smaples": 3}})
 
@@ -95,30 +92,19 @@ def test_an_unknown_setting_makes_no_link() -> None:
     ("link", "told"),
     [
         ("samples=1000", "samples is 1000.0; expected a whole number from 1 to 200"),
-        ("samples=nan", "samples is nan; expected"),
-        ("samples=2.5", "samples is 2.5; expected a whole number"),
         ("grain=1e999", "grain is inf; expected a number from 0.25 to 32"),
         ("lod=maybe", "lod is 'maybe'; expected True or False"),
-        ("noise=__import__", "noise is '__import__'; expected 'procedural' or"),
         ("plane=../etc", "plane is '../etc'; expected an axis and a number, such as k=20"),
-        ("plane=k=1e3", "plane is 'k=1e3'"),
         ("cmap=os.system", "cmap is 'os.system'; expected the name of a colour map"),
         ("clim=2,1", "clim is '2,1'; expected two numbers, the lower one first"),
-        ("clim=0,inf", "clim is '0,inf'; expected two numbers"),
-        ("clim=0", "expected two numbers"),
         ("opacity=x", "opacity is 'x'; expected a number"),
-        ("log_scale=1", "log_scale is '1'; expected 'on' or 'off'"),
-        ("time=nan", "time is 'nan'; expected a number"),
         ("theme=pink", "theme is 'pink'; expected 'dark' or 'light'"),
         ("split=all", "split is 'all'; expected 'nothing' or"),
         ("file=a%00b", "file is 'a\\x00b'; expected a name"),
         ("file=" + "a" * 500, "expected a name of at most 400 printable"),
         ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected nine numbers"),
         ("camera=parallel,0,0,1,0,0,1,0,1,0,1,30", "on one line; expected up to point away"),
-        ("camera=parallel,0,0,1,0,0,0,0,0,1,1,30", "on one line; expected up to point away"),
         ("camera=parallel,0,0,1,0,0,0,0,1,0,-1,30", "camera.parallel_scale is -1.0; expected"),
-        ("camera=parallel,0,0,1,0,0,0,0,1,0,1,200", "camera.view_angle is 200.0; expected"),
-        ("camera=fisheye,0,0,1,0,0,0,0,1,0,1,30", "expected nine numbers"),
         ("evil=1", "the link has the unknown name 'evil'"),
         ("a=1&" * 101, "too many values"),
         ("x" * 9000, "has 9,000 characters"),

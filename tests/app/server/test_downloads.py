@@ -54,10 +54,3 @@ def test_oldest_download_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
         assert asyncio.run(routes.answer(other)).status == 200
     assert len(list(files.folder.iterdir())) == 2
     files.close()
-
-
-def test_downloads_are_removed_with_their_owner() -> None:
-    files = Downloads(Routes())
-    folder = files.folder
-    del files
-    assert not folder.exists()

@@ -20,7 +20,6 @@ import flowtex
 from flowtex.app import FlowApp, FlowArea
 from flowtex.errors import FieldError
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -127,22 +126,6 @@ def test_another_mesh_is_read_as_the_first_one_and_the_view_stays() -> None:
         area.field = pv.Plane()
     assert area.field is shown
     area.close()
-
-
-def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
-    app = large(p=None)
-    told = Told(app, monkeypatch)
-    (first,) = app.area.element.begin("browser")["scenes"]
-    assert "tile/0/0/1/scalars/0" in asking(app, first)("0,0,1.0")
-    monkeypatch.setattr(TextureSet, "layers", None)
-    app.area.scalars = "p"
-    (second,) = told.taken()["scenes"]
-    assert second["parts"] != first["parts"]
-    assert second["header"]["generation"] == first["header"]["generation"]
-    assert second["header"]["scalars"]["name"] == "p"
-    assert "tile/0/0/1/scalars/0/1" in asking(app, second)("0,0,1.0")
-    app.close()
 
 
 def test_where_the_server_draws_the_page_has_what_its_controls_need() -> None:

@@ -20,7 +20,6 @@ from flowtex import FlowField
 from flowtex.app import FlowApp
 from flowtex.app.streaming.points import path_of, words_of
 from flowtex.field.earth import Projection
-from flowtex.scene.options import Appearance
 from flowtex.scene.probe import Probe, locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
@@ -91,16 +90,6 @@ def test_a_point_where_nothing_moves() -> None:
     assert len(told["samples"]) == 1
 
 
-def test_a_picture_shows_its_colours() -> None:
-    dye = np.zeros((4, 4, 4), np.uint8)
-    dye[...] = [255, 0, 0, 51]
-    view = Scene(flat(), Settings(), Appearance(image=dye))
-    view.settings.noise = "image"
-    told = path_of(probe(view, (10.0, 20.0), pixel=0.01), (10.0, 20.0), view.field)
-    assert {sample["colour"] for sample in told["samples"]} == {"#ffcccc"}
-    assert "value" not in [label for label, *_ in told["words"]]
-
-
 def read(app: FlowApp, **at: Any) -> Any:
     return asyncio.run(app.area.points.read(0, at))
 
@@ -145,12 +134,3 @@ def test_a_point_on_triangles_is_told_by_its_place() -> None:
     assert read(app, index=[1.0, 1.0]) is None
     assert np.linalg.norm(read(app, place=[0.0, 0.0])["point"]["position"]) > 0.97
     app.close()
-
-
-def test_a_flow_that_leaves_the_surface_has_the_velocity_in_it() -> None:
-    inside = flat()
-    velocity = inside.velocity + np.array([0.0, 0.0, 0.6])
-    field = FlowField.from_arrays(inside.points, velocity[0], periodic="")
-    told = path_of(probe(view_of(field), (10.0, 28.0), pixel=0.01), (10.0, 28.0), field)
-    assert told["path"]["velocity"] == pytest.approx([1.0, 0.2, 0.0], abs=2e-3)
-    assert told["point"]["values"]["speed"] == pytest.approx(1.02, abs=1e-3)

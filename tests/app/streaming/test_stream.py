@@ -6,7 +6,6 @@ import asyncio
 from functools import partial
 from typing import Any, Literal
 
-import numpy as np
 import pytest
 from waiting import until
 
@@ -14,7 +13,6 @@ pytest.importorskip("trame_rca")
 
 
 from flowtex.app import FlowApp
-from flowtex.app.streaming.frame_clock import FrameClock
 from flowtex.app.streaming.stream import FrameStream
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -96,32 +94,6 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
     asyncio.run(watch())
 
 
-def test_parts_of_a_picture_that_takes_long_are_sent_until_something_changes(
-    flat: FlowApp, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stream, part = flat.stream, np.zeros((2, 3, 3), np.uint8)
-    streamer = Streamer(stream)
-    monkeypatch.setattr("flowtex.app.streaming.stream.PARTIAL_INTERVAL_S", -1.0)
-    monkeypatch.setattr(stream.painter, "full", lambda draft: iter([part, part]))
-    monkeypatch.setattr(stream.painter, "complete", False)
-    stream.clock.share = 1.0
-
-    async def draw() -> None:
-        stream._wake = asyncio.Event()
-        await stream._full(part)
-        assert [sent["sharp"] for sent in streamer.sent] == [False, False, True]
-        stream._wake.set()
-        await stream._full(part)
-        assert len(streamer.sent) == 3
-        # Over a slow connection they would delay the full picture.
-        stream._wake.clear()
-        stream.clock.share = 0.9
-        await stream._full(part)
-        assert [sent["sharp"] for sent in streamer.sent[3:]] == [True]
-
-    asyncio.run(draw())
-
-
 def test_pictures_that_a_new_page_missed_are_not_waited_for(flat: FlowApp) -> None:
     stream = flat.stream
     size = dict(zip("wh", flat.viewport.size, strict=True))
@@ -133,43 +105,3 @@ def test_pictures_that_a_new_page_missed_are_not_waited_for(flat: FlowApp) -> No
     stream.reset()
     stream.update_size("page", size)
     assert stream.clock.on_way == 0
-
-
-def test_no_more_than_two_pictures_are_on_their_way(
-    flat: FlowApp, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stream, streamer = flat.stream, Streamer(flat.stream)
-    streamer.acknowledges = False
-    flat.area.reset_camera()
-    clock = FrameClock(now=lambda: 0.0)
-    monkeypatch.setattr(stream, "clock", clock)
-
-    async def watch() -> None:
-        stream._wake = asyncio.Event()
-        waits: list[int] = []
-        until_at_most = clock.until
-
-        async def waiting(most: int) -> None:
-            waits.append(most)
-            await until_at_most(most)
-
-        clock.until = waiting  # type: ignore[method-assign]
-        task = asyncio.create_task(stream.run())
-        for count in (1, 2, 3):
-            stream.changed()
-            await until(lambda count=count: waits.count(1) == count)
-        await until(partial(streamer.has, 2))
-        for _ in range(20):
-            await asyncio.sleep(0)
-        assert len(streamer.sent) == 2 and clock.on_way == 2
-        streamer.acknowledge()
-        await until(partial(streamer.has, 3))
-        # The full picture waits until all drafts have arrived.
-        await until(lambda: waits[-1] == 0)
-        assert len(streamer.sent) == 3 and clock.on_way == 1
-        streamer.acknowledge()
-        await until(partial(streamer.has, 4))
-        assert [sent["sharp"] for sent in streamer.sent] == [False, False, False, True]
-        task.cancel()
-
-    asyncio.run(watch())

@@ -19,8 +19,8 @@ from flows import swinging
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
+from flowtex.scene.fields import kept_flows
 from flowtex.scene.options import Options
-from flowtex.scene.scene import kept_flows
 from flowtex.sources.notices import DatasetNotice
 from flowtex.trace import store
 

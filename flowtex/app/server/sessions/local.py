@@ -1,10 +1,8 @@
 """A session in this process: an application on a trame server of its own.
 
-Sessions share nothing that can be changed: each has a trame server, a state, a window, and
-its own settings; only fields and their traces are shared, which are never written again. trame
-starts nothing that listens: its generic end point takes messages from any caller, here the web
-server that all pages share (:mod:`flowtex.app.server.site`). trame itself would keep the server of
-a session that has ended for ever.
+Sessions share fields and their traces, which are never written again. trame starts nothing that
+listens: its generic end point takes messages from any caller, here the web server that all pages
+share (``site.py``). trame itself would keep the server of a session that has ended for ever.
 """
 
 from __future__ import annotations
@@ -36,8 +34,10 @@ MakeApp = Callable[[Any], Any]
 #: Page that is shown when a session has ended.
 ENDED = Path(__file__).parents[2] / "ui" / "static" / "ended.html"
 _count = itertools.count(1)
-#: Bytes of a message, and messages that a page may begin before it ends one.
-MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
+#: Most bytes of a message.
+MESSAGE_BYTES = 16_000_000
+#: Messages that a page may begin before it ends one.
+OPEN_MESSAGES = 4
 #: Methods of trame that no page of ours calls.
 UNUSED = ("application.exit", "application.exit.later", "trame.rca.push", "trame.rca.drop")
 #: Events of a page.
@@ -50,13 +50,9 @@ _log = logging.getLogger(__name__)
 class LimitedMessages(UnChunker):
     """The messages of one connection, joined from their pieces, within limits.
 
-    wslink reserves room for a whole message when its first piece announces a length of up to 4 GB,
-    so messages are limited: nothing that the page sends is larger than a picture. trame keeps
-    whatever a page puts into the state, and prints the names of areas and triggers that it does not
-    know; both is prevented here.
-
-    ``declared`` are the names of the state's values, to which a page cannot add others, and
-    ``areas`` the names of its views.
+    wslink reserves room for a message when its first piece announces a length, of up to 4 GB. trame
+    keeps whatever a page puts into the state, beyond the ``declared`` names, and prints the names
+    of ``areas`` and triggers that it does not know.
     """
 
     def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
@@ -120,11 +116,10 @@ def opener(make_app: MakeApp, secret: str) -> OpenSession:
     async def open_session() -> Session:
         server = get_server(f"flowtex-session-{next(_count)}")
         try:
-            app = make_app(server)
+            session = LocalSession(make_app(server))
         except BaseException:
             AVAILABLE_SERVERS.pop(server.name, None)
             raise
-        session = LocalSession(app)
         try:
             await session.start(secret)
         except BaseException:
@@ -220,13 +215,11 @@ class LocalSession(Session):
 def _quiet_trame() -> Iterator[None]:
     """Keep trame from reading this program's arguments and from printing."""
     quiet = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
-    before = {name: os.environ.get(name) for name in quiet}
+    before = {name: os.environ[name] for name in quiet if name in os.environ}
     os.environ.update(quiet)
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+        for name in quiet:
+            del os.environ[name]
+        os.environ.update(before)

@@ -28,8 +28,10 @@ from flowtex.app.server.files import CHUNK_BYTES
 from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
 
-#: Time limits in seconds to open a session, and to end it.
-OPENING_S, ENDING_S = 600.0, 30.0
+#: Seconds in which a session opens.
+OPENING_S = 600.0
+#: Seconds in which it ends.
+ENDING_S = 30.0
 #: Seconds between two checks whether a session is to end.
 CHECK_S = 0.05
 #: Headers of a request, and of an answer, that are passed on.

@@ -1,13 +1,9 @@
 """The sessions of a server: one for each page, in its process or in one of its own.
 
-A session is known by a token that cannot be guessed and lives in its browser tab. It waits for
-its page for some minutes, so that a page that is loaded again comes back to its own state; then
-it ends, and with it its window, its tasks and its trame server, or the process that it is.
-
-What ``flowtex show`` and ``flowtex demo`` serve is a process for each session, where the system
-can fork (:mod:`flowtex.app.server.sessions.process`): a crash ends one page, and pages draw on all
-cores. A script and other systems have all sessions in their own process
-(:mod:`flowtex.app.server.sessions.local`); fields and their traces are shared there.
+A session is known by a token that lives in its browser tab. It waits some minutes for its page, so
+that one that is loaded again has its state; then its window, its tasks and its trame server end, or
+its process. ``flowtex show`` and ``flowtex demo`` serve a process for each session where the system
+can fork (``process.py``); a script and other systems have all in their own process (``local.py``).
 """
 
 from __future__ import annotations
@@ -29,9 +25,10 @@ from flowtex._util.whole_file import remove_stale_folders
 from flowtex.app.server.files import Handler
 from flowtex.app.server.security import new_secret
 
-#: Pages for each core, at most, and the memory that each may come to need, in bytes: a screen of
-#: 2,560 x 1,600 takes about that much. Pages at rest need no core.
-PAGES_PER_CORE, PAGE_BYTES = 8, 250e6
+#: Pages for each core, at most; pages at rest need none.
+PAGES_PER_CORE = 8
+#: Memory that a page may come to need, in bytes, as with a screen of 2,560 x 1,600.
+PAGE_BYTES = 250e6
 #: Seconds without a connection after which a session makes room for a newcomer.
 REPLACE_AFTER_S = 30.0
 #: Seconds that a page may take to load, between its session and its connection.
@@ -122,12 +119,8 @@ class Session(ABC):
 OpenSession = Callable[[], Awaitable[Session]]
 
 
-class FullError(Exception):
-    """The maximum number of sessions is reached."""
-
-
-class ClosedError(Exception):
-    """The server ends, and opens no more sessions."""
+class UnavailableError(Exception):
+    """No session can be opened; the text gives the reason."""
 
 
 def usual_limit() -> int:
@@ -150,9 +143,6 @@ class Sessions:
         self._ready: Session | None = None
         self._opening = asyncio.Lock()
         self._closed = False
-
-    def __len__(self) -> int:
-        return len(self._by_token)
 
     def __iter__(self) -> Iterator[Session]:
         return iter(list(self._by_token.values()))
@@ -189,12 +179,14 @@ class Sessions:
             session.expect()
             return session
         async with self._opening:
-            if self._closed:
-                raise ClosedError
-            if len(self) >= self.limit:
+            if len(self._by_token) >= self.limit:
                 oldest = max(self._by_token, key=lambda other: self._by_token[other].away)
                 if self._by_token[oldest].away < REPLACE_AFTER_S:
-                    raise FullError
+                    pages = "one page" if self.limit == 1 else f"{self.limit} pages"
+                    raise UnavailableError(
+                        f"The limit is {pages} at a time, and all are in use. One becomes free "
+                        "soon after somebody closes a page."
+                    )
                 await self.end(oldest)
             session = await self._begin()
             session.expect()
@@ -204,7 +196,7 @@ class Sessions:
         session = await self._open()
         if self._closed:  # meanwhile
             await session.end()
-            raise ClosedError
+            raise UnavailableError("The server is shutting down. Start it again to open this page.")
         self._by_token[session.token] = session
         session.lost = lambda how: self._forget(session, how)
         return session
