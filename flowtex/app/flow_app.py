@@ -28,8 +28,6 @@ from flowtex.app.server.sessions.local import MakeApp, opener
 from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.element import PAINTERS
-from flowtex.app.streaming.stream import FrameStream
-from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.scene.options import ViewOptions
@@ -94,8 +92,10 @@ class FlowApp:
     ----------
     server, layout
         The trame server, and the layout of the page.
-    area, state
-        The view, and the state of the page, whose names are prefixed for this application.
+    area, viewport, stream
+        The view, what it draws, and the stream of pictures to the page.
+    state
+        The state of the page, whose names are prefixed for this application.
     context, controllers
         The parts that act on the view.
 
@@ -122,6 +122,7 @@ class FlowApp:
         options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
         field, camera = library.field(name, choice), options.pop("camera", None)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
+        self.viewport, self.stream = self.area.viewport, self.area.stream
         if camera is not None:
             self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
@@ -131,16 +132,6 @@ class FlowApp:
         self.context.field_changed.connect(self._name_page)
         self._name_page()
         self.layout = build_page(self.controllers)
-
-    @property
-    def viewport(self) -> Viewport:
-        """The view as it is drawn."""
-        return self.area.viewport
-
-    @property
-    def stream(self) -> FrameStream:
-        """The stream of pictures to the page."""
-        return self.area.stream
 
     @property
     def field(self) -> FlowField:

@@ -22,11 +22,11 @@ from camera_moves import pan
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
-from flowtex.app.controllers import data
 from flowtex.app.controllers.library import Choice
 from flowtex.app.streaming.stream import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
+from flowtex.scene.fields import TracedFlow
 from flowtex.sources.open_source import Source
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -262,7 +262,7 @@ async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
         before, failing = app.field, raising(RuntimeError("reader crashed"))
         places: list[tuple[Any, str]] = [
             (app.controllers.data.library, "field"),
-            (data, "TracedFlow"),
+            (TracedFlow, "of"),
             (app.context, "show"),
         ]
         for owner, name in places:

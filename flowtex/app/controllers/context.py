@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Mapping
-from concurrent.futures import Executor
-from contextlib import asynccontextmanager
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
@@ -16,7 +15,6 @@ from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.server.files import Routes
 from flowtex.app.server.page import PageState, Signal, shortened
 from flowtex.app.streaming.area import FlowArea
-from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
@@ -61,12 +59,8 @@ class Controller:
     def __init__(self, context: Context) -> None:
         self.context = context
         self.state, self.area, self.stream = context.state, context.area, context.area.stream
+        self.viewport = context.area.viewport
         context.controllers.append(self)
-
-    @property
-    def viewport(self) -> Viewport:
-        """The view that is drawn."""
-        return self.area.viewport
 
     @property
     def settings(self) -> Settings:
@@ -101,56 +95,88 @@ class LoadRequest:
         """Whether it is not the latest request."""
         return self.cancelled or self.superseded
 
-    async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
-        """Do work for it in a thread; raises ``Stopped`` if the result is no longer wanted.
+
+class FlowOpener(Controller):
+    """Base of controllers that open flows in a thread: the latest one that is requested."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.library = context.library
+        self._request: LoadRequest | None = None
+        self._opening: asyncio.Task[None] | None = None
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
+
+    def _begin(self, request: LoadRequest, *, follows: bool) -> None:
+        """Open a flow instead of the one being opened, which may be shown if this one follows."""
+        if self._request is not None and follows:
+            self._request.superseded = True
+        elif self._request is not None:
+            self._request.cancelled = True
+        self._request = request
+        self._opening = asyncio.ensure_future(self._announced(request))
+
+    async def _open(self, request: LoadRequest) -> None:
+        """Read and show a flow."""
+        raise NotImplementedError
+
+    def _fail(self) -> None:
+        """Return to the old view."""
+        raise NotImplementedError
+
+    async def _announced(self, request: LoadRequest) -> None:
+        """Open a flow, with its progress on the page, or the reason why it fails."""
+        name, problem = shortened(request.name, NAME_LENGTH), ""
+
+        async def show_busy() -> None:
+            await asyncio.sleep(BUSY_DELAY_S)
+            if not request.over:
+                self.state.send(busy=f"Opening {name}")
+
+        announcement = asyncio.create_task(show_busy())
+        try:
+            await self._open(request)
+        except Stopped:
+            pass
+        except (FieldError, OSError) as error:
+            problem = without_folder(str(error), request.name) or type(error).__name__
+        except Exception as error:
+            _log.exception("%s could not be opened", name)
+            problem = f"{name} could not be opened: {str(error) or type(error).__name__}"
+        finally:
+            announcement.cancel()
+            if not request.over:
+                self.state.send(busy="")
+        if problem and not request.over:
+            self.context.complain(problem)
+            self._fail()
+
+    async def _in_thread(self, request: LoadRequest, work: Callable[[], T], *, quick: bool) -> T:
+        """Do work for a request in a thread; raises ``Stopped`` if the result is not wanted.
 
         Quick work that has begun is finished even if another flow was requested.
         """
 
         def unwanted() -> bool:
-            return self.cancelled if quick else self.over
+            return request.cancelled if quick else request.over
 
         def guarded() -> T:
-            if self.over:
+            if request.over:
                 raise Stopped
             with stoppable(unwanted):
                 return work()
 
-        result = await asyncio.get_running_loop().run_in_executor(worker, guarded)
+        result = await asyncio.get_running_loop().run_in_executor(self._worker, guarded)
         if unwanted():
             raise Stopped
         return result
 
-
-@asynccontextmanager
-async def announced(
-    context: Context, request: LoadRequest, fail: Callable[[], None]
-) -> AsyncIterator[None]:
-    """Show progress on the page; if opening fails, show the reason and call ``fail``."""
-    name, problem = shortened(request.name, NAME_LENGTH), ""
-
-    async def show_busy() -> None:
-        await asyncio.sleep(BUSY_DELAY_S)
-        if not request.over:
-            context.state.send(busy=f"Opening {name}")
-
-    announcement = asyncio.create_task(show_busy())
-    try:
-        yield
-    except Stopped:
-        pass
-    except (FieldError, OSError) as error:
-        problem = without_folder(str(error), request.name) or type(error).__name__
-    except Exception as error:
-        _log.exception("%s could not be opened", name)
-        problem = f"{name} could not be opened: {str(error) or type(error).__name__}"
-    finally:
-        announcement.cancel()
-        if not request.over:
-            context.state.send(busy="")
-    if problem and not request.over:
-        context.complain(problem)
-        fail()
+    def close(self) -> None:
+        """End running tasks."""
+        if self._request is not None:
+            self._request.cancelled = True
+        if self._opening is not None:
+            self._opening.cancel()
+        self._worker.shutdown(wait=False, cancel_futures=True)
 
 
 def without_folder(problem: str, name: str) -> str:

@@ -6,9 +6,7 @@ first shown with few of its nodes, and the view on the page stays until another 
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, astuple, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,10 +16,9 @@ import numpy as np
 
 from flowtex.app.controllers.context import (
     Context,
-    Controller,
+    FlowOpener,
     LoadRequest,
     State,
-    announced,
     without_folder,
 )
 from flowtex.app.controllers.library import Choice
@@ -59,21 +56,17 @@ class LoadedFlow:
         return self.shown is self.field
 
 
-class Data(Controller):
+class Data(FlowOpener):
     """Choice of the flow, initially by ``name`` and ``choice``."""
 
     names: tuple[str, ...]  #: Names of the flows that may be opened, when last listed.
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
-        self.library = context.library
         # This keeps the source, which the library may drop and which is slow to read again.
         source, field = self.library.source(name), self.viewport.field
         self._current = LoadedFlow(name, choice, source, field, field)
         self._goal = (name, choice)
-        self._request = LoadRequest(name, choice)
-        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
-        self._opening: asyncio.Task[None] | None = None
         self.uploads = Uploads(context.routes, self.take_upload)
         self.state.set(busy="", file=name, upload=self.uploads.address, **self._options())
         self.list_files()
@@ -143,32 +136,28 @@ class Data(Controller):
 
     def cancel(self) -> None:
         """Stop opening; the old view stays."""
-        self._request.cancelled = True
+        if self._request is not None:
+            self._request.cancelled = True
         self._goal = (self.name, self.choice)
         self._show_choice()
 
     def open(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
         """Open a flow instead of the one being opened, and call ``then`` once it is shown."""
-        both_typed = is_line(name) and is_line(self._request.name)
-        if (name == self._request.name or both_typed) and then is None:
-            self._request.superseded = True
-        else:
-            self._request.cancelled = True
-        self._request, self._goal = LoadRequest(name, choice, then), (name, choice)
-        self._opening = asyncio.ensure_future(self._open(self._request))
+        before = self._goal[0]
+        is_similar = name == before or (is_line(name) and is_line(before))
+        self._goal = (name, choice)
+        self._begin(LoadRequest(name, choice, then), follows=is_similar and then is None)
 
     async def _open(self, request: LoadRequest) -> None:
-        async with announced(self.context, request, self._fail):
-            flow = await request.in_thread(self._worker, lambda: self._preview(request), quick=True)
-            self._show(flow, request)
-            if not flow.whole:
-                complete = partial(self._traced, replace(flow, shown=flow.field))
-                self._show(await request.in_thread(self._worker, complete, quick=False), request)
-            if request.then is not None and not request.over:
-                request.then()
+        flow = await self._in_thread(request, lambda: self._preview(request), quick=True)
+        self._show(flow, request)
+        if not flow.whole:
+            complete = partial(self._traced, replace(flow, shown=flow.field))
+            self._show(await self._in_thread(request, complete, quick=False), request)
+        if request.then is not None and not request.over:
+            request.then()
 
     def _fail(self) -> None:
-        """Return to the old view."""
         self._goal = (self.name, self.choice)
         self._show_choice()
         if not self._current.whole:  # the old view is a preview
@@ -276,12 +265,9 @@ class Data(Controller):
         return {k: v for k, v in {"file": self.name, **asdict(self.choice)}.items() if v}
 
     def close(self) -> None:
-        """End running tasks."""
-        self._request.cancelled = True
+        """End running tasks, and remove the uploads."""
+        super().close()
         self.uploads.close()
-        if self._opening is not None:
-            self._opening.cancel()
-        self._worker.shutdown(wait=False, cancel_futures=True)
 
 
 def _axis(plane: str) -> str:
@@ -298,7 +284,7 @@ def about(field: FlowField) -> str:
     return " · ".join(words)
 
 
-class FileBeside(Controller):
+class FileBeside(FlowOpener):
     """The same part of another file than ``data`` shows, as far as it exists, in a second pane."""
 
     def __init__(self, context: Context, data: Data) -> None:
@@ -306,11 +292,7 @@ class FileBeside(Controller):
         self._data = data
         self._name, self._choice = "", Choice()
         self._active = False
-        #: What was requested last, and the flow that is shown, whose traces stay with it.
-        self._request: LoadRequest | None = None
-        self._flow: TracedFlow | None = None
-        self._opening: asyncio.Task[None] | None = None
-        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening beside")
+        self._flow: TracedFlow | None = None  #: What is shown, whose traces stay with it.
         self.state.set(file_beside="")
         self.state.on(self.take_file, "file_beside")
         context.field_changed.connect(self.follow)
@@ -351,13 +333,8 @@ class FileBeside(Controller):
 
     def open(self, name: str) -> None:
         """Open a file for the second pane, instead of the one being opened."""
-        if self._request is not None and name == self._request.name:
-            self._request.superseded = True
-        elif self._request is not None:
-            self._request.cancelled = True
-        self._request = LoadRequest(name, self._data.choice)
         self.state.set(file_beside=name)
-        self._opening = asyncio.ensure_future(self._open(self._request))
+        self._begin(LoadRequest(name, self._data.choice), follows=name == self._goal)
 
     def follow(self) -> None:
         """Follow the first pane to another plane, array or file."""
@@ -399,9 +376,7 @@ class FileBeside(Controller):
     def close(self) -> None:
         """End running tasks."""
         self._forget()
-        if self._opening is not None:
-            self._opening.cancel()
-        self._worker.shutdown(wait=False, cancel_futures=True)
+        super().close()
 
     @property
     def _goal(self) -> str:
@@ -419,17 +394,13 @@ class FileBeside(Controller):
         return names[(position + 1) % len(names)]
 
     async def _open(self, request: LoadRequest) -> None:
-        async with announced(self.context, request, self._fail):
-            choice, flow = await request.in_thread(
-                self._worker, lambda: self._read(request), quick=True
-            )
-            self._show(request, choice, flow)
+        found = await self._in_thread(request, lambda: self._read(request), quick=True)
+        self._show(request, *found)
 
     def _read(self, request: LoadRequest) -> tuple[Choice, TracedFlow]:
         """Read a flow, and make the traces for its first picture."""
-        library, name = self.context.library, request.name
-        choice = library.nearest(name, request.choice)
-        field = library.field(name, choice)
+        choice = self.library.nearest(request.name, request.choice)
+        field = self.library.field(request.name, choice)
         flow = TracedFlow.of(field, self.settings)
         for step in sorted(set(steps_around(field.times, time_in(self.area.scene, field))[:2])):
             flow.store.at(step)

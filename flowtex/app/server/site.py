@@ -306,13 +306,18 @@ class RepeatFilter(logging.Filter):
         if now - began >= WINDOW_S:
             began, count = now, 0
         self._windows[place] = began, count + 1
-        record.msg, record.args = record.getMessage()[:MESSAGE_LENGTH], ()
+        record.msg, record.args = _cut(record.getMessage()), ()
         if kind and issubclass(kind, OTHERS_FAULTS):
             record.exc_info = record.exc_text = None
         elif record.exc_info:
-            text = logging.Formatter().formatException(record.exc_info)
-            record.exc_text = text[-MESSAGE_LENGTH:]
+            record.exc_text = _cut(logging.Formatter().formatException(record.exc_info))
         return count < MOST_RECORDS
+
+
+def _cut(text: str) -> str:
+    """Return a text without its middle where it is long."""
+    half = MESSAGE_LENGTH // 2
+    return text if len(text) <= MESSAGE_LENGTH else f"{text[:half]} … {text[-half:]}"
 
 
 @contextmanager

@@ -66,27 +66,19 @@ class Viewport:
         #: Width and height of the whole view, in pixels.
         self.size = (640, 400)
         self._component = FlowtexComponent(self.plotter)
-        self._beside: dict[str, Any] = {}
+        #: Differences of the second pane, as for :meth:`compare`; empty without one.
+        self.differences: dict[str, Any] = {}
         self._stop_following: Callable[[], None] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
         self._still = True
         #: The textures of the views side by side, one or two.
         self.panes: list[FlowHandle] = [self._pane(Scene.from_options(field, first))]
+        self.handle = self.panes[0]  #: The texture of the first pane.
         # Only draw() renders: a texture requests a picture at each change.
         self.plotter.suppress_rendering = True
         self._set_picture(*self.pane_size)
         self.home(zoom=zoom, focus=focus)
-
-    @property
-    def differences(self) -> Mapping[str, Any]:
-        """Differences of the second pane, as for :meth:`compare`; empty without one."""
-        return self._beside
-
-    @property
-    def handle(self) -> FlowHandle:
-        """The texture of the first pane."""
-        return self.panes[0]
 
     @property
     def settings(self) -> Settings:
@@ -151,8 +143,8 @@ class Viewport:
         options = {**vars(self.scene.appearance), **dict(self.settings)}
         options["image"] = None if image is None else as_image(image)
         other = Viewport(self.field, **options)
-        if self._beside:
-            other.compare(self._beside)
+        if self.differences:
+            other.compare(self.differences)
         other.camera = self.camera
         other.set_background(self.background)
         other.set_time(self.handle.time)
@@ -167,7 +159,7 @@ class Viewport:
         """
         camera, flat, times, time = self.camera, self.flat, self.field.times, self.handle.time
         changes: dict[str, Any] = {} if keep_range else {"clim": None}
-        flows = [field, self._beside.get("field", field)]
+        flows = [field, self.differences.get("field", field)]
         scenes: list[Scene] = []
         try:
             for pane, flow in zip(self.panes, flows, strict=False):
@@ -199,10 +191,10 @@ class Viewport:
         self._stop_following = lambda: None
         for pane in self.panes[1:]:
             pane.remove(render=False)
-        self.panes, self._beside = panes, changes
+        self.panes, self.differences = panes, changes
         if len(panes) > 1:
             left, right = panes
-            self._stop_following = follow(lambda: left.scene, lambda: right.scene, self._beside)
+            self._stop_following = follow(lambda: left.scene, lambda: right.scene, self.differences)
             self.clock = self.handle.clock
         self.resize(*self.size)
 
@@ -231,19 +223,19 @@ class Viewport:
     @property
     def time_beside(self) -> float:
         """Time of the second pane, which may be its own."""
-        return _time_beside(self.scene, self._beside)
+        return _time_beside(self.scene, self.differences)
 
     @time_beside.setter
     def time_beside(self, time: float) -> None:
-        self._beside["time"] = time
+        self.differences["time"] = time
         self.set_time(self.handle.time)
 
     @property
     def time_shift(self) -> float | None:
         """Difference of the second pane's time; ``None`` if that is its own."""
-        if "time" in self._beside:
+        if "time" in self.differences:
             return None
-        other = self._beside.get("field", self.field)
+        other = self.differences.get("field", self.field)
         with suppress(TypeError, ValueError):  # no dates, or of two calendars
             return float((self.field.start - other.start).total_seconds())
         return 0.0

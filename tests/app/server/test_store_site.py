@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+import shutil
 import signal
 import urllib.request
 from collections.abc import Awaitable, Callable
@@ -26,6 +27,7 @@ from served import start
 
 from flowtex import FlowField
 from flowtex.app.server.store_site import ServedStore, store_application
+from flowtex.errors import FieldError
 from flowtex.pyramid import build
 
 TILE = "0/flow/c/0/1/0/0"
@@ -84,14 +86,44 @@ def test_only_the_whole_address_opens(store: Path) -> None:
     visit(store, "word", ask)
 
 
-def test_objects_come_whole(store: Path) -> None:
-    async def ask(client: Client, at: str) -> None:
-        for name in (TILE, "1/velocity/c/0/0/0/0", "zarr.json"):
-            answer = await client.get(f"{at}/{name}", headers={"Range": "bytes=5-9"})
-            assert answer.status == 200
-            assert await answer.read() == (store / name).read_bytes()
+NO_NAMES = [
+    *("", "..", "../a.zarr/zarr.json", "/etc/passwd", "0", "0/flow", "0/flow/c", "c/0"),
+    *("0/velocity/c/0/0", "0/velocity/c/0/0/0/0/0", "0/velocity/c/0/0/0/-1", "0/nothing/c/0"),
+    *("0/velocity/c/0/0/../0", "0/velocity/c/0/0/0/٣", "0/velocity/c/0/99/0/0"),
+    *("0/flow/c/0/99/0/0", "0/flow/c/5/0/0/0", "9/zarr.json", "building.json"),
+    f"0/velocity/c/0/0/0/{'1' * 5000}",
+]
 
-    visit(store, "word", ask)
+
+def test_no_name_leads_elsewhere(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    served = ServedStore(store)
+    for path in store.rglob("*"):
+        # Those of ranges are for who builds.
+        if path.is_file() and "samples" not in path.parts:
+            name = path.relative_to(store).as_posix()
+            assert asyncio.run(served.get(name)) == path.read_bytes()
+    monkeypatch.setattr(served, "_reads", None)  # nothing is looked for
+    for name in NO_NAMES:
+        with pytest.raises(LookupError):
+            asyncio.run(served.get(name))
+
+
+def test_links_out_of_a_store_are_not_followed(store: Path, tmp_path: Path) -> None:
+    place, secret = tmp_path / "a.zarr", tmp_path / "secret"
+    shutil.copytree(store, place)
+    secret.write_bytes(b"secret")
+    served = ServedStore(place)
+    (place / TILE).unlink()
+    (place / TILE).symlink_to(secret)
+    with pytest.raises(LookupError):
+        asyncio.run(served.get(TILE))
+    with pytest.raises(FieldError, match=r"0 is a link to .*secret, outside of the store; put a c"):
+        ServedStore(place)
+    (place / TILE).unlink()
+    (place / TILE).symlink_to(store / TILE)
+    secret.unlink()
+    secret.symlink_to(store)
+    assert asyncio.run(ServedStore(secret).get(TILE)) == (store / TILE).read_bytes()
 
 
 def test_nothing_else_is_found(store: Path) -> None:
