@@ -16,11 +16,10 @@ import pytest
 from flows import ring
 from store_contents import contents
 
-import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import Built, PyramidError, build, is_store, open_store, tasks
+from flowtex.pyramid import Built, PyramidError, build, is_store, open_store
 from flowtex.pyramid.layout import about_source, empty_field, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import FieldSource
@@ -267,43 +266,6 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert None in tiles
 
 
-def test_a_build_that_ends_early_goes_on(
-    tmp_path: Path, stores: Stores, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    store, count = tmp_path / "a.zarr", iter(range(100))
-    with monkeypatch.context() as patch:
-        write = tasks.write_tile
-
-        def broken(*given: Any) -> None:
-            if next(count) > 2:
-                msg = "no room"
-                raise OSError(msg)
-            write(*given)
-
-        patch.setattr(tasks, "write_tile", broken)
-        with pytest.raises(PyramidError, match=r"shards could not be built .* OSError: no room"):
-            made(store, steady())
-    assert made(store, steady()).kept > 3
-    assert contents(store) == contents(stores.get("steady"))
-
-
-@pytest.mark.parametrize("fault", ["flipped", "cut", "gone"])
-def test_a_broken_tile_is_told(tmp_path: Path, stores: Stores, fault: str) -> None:
-    store = stores.copy(tmp_path / "a.zarr", "steady")
-    (file, *_) = (path for path in (store / "0/velocity/c").rglob("*") if path.is_file())
-    data = bytearray(file.read_bytes())
-    if fault == "flipped":
-        data[len(data) // 9] ^= 1
-        file.write_bytes(data)
-    elif fault == "cut":
-        file.write_bytes(data[: len(data) // 2])
-    else:
-        file.unlink()
-    with pytest.raises(PyramidError, match=r"0/velocity of .*(cannot be read|missing)"):
-        stored(store).tile(TileKey(0, 0, 0), [0])
-    assert stored(store).tile(TileKey(1, 0, 0), [0]) is not None
-
-
 def test_a_small_field_is_all_root(tmp_path: Path) -> None:
     field = steady(6, 9)
     assert made(tmp_path / "a.zarr", field).depth == 0
@@ -332,11 +294,3 @@ def test_places_that_hold_something_else(tmp_path: Path, stores: Stores) -> None
     with pytest.raises(PyramidError, match="flowtex-pyramid-9"):
         open_store(tmp_path / "a.zarr")
     shutil.rmtree(tmp_path / "a.zarr")
-
-
-def test_fields_that_have_no_such_pyramid(tmp_path: Path) -> None:
-    field = FlowField.from_triangles(
-        [[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], [[1, 0], [1, 0], [1, 0]]
-    )
-    with pytest.raises(flowtex.field.FieldError, match="on triangles"):
-        made(tmp_path / "a.zarr", field)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterator
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from threading import Thread
-from threading import enumerate as threads
 from typing import Any
 
 import numpy as np
@@ -17,10 +15,8 @@ import pytest
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
-from flowtex.pyramid.build import MOST_FAILURES
+from flowtex.pyramid import PyramidError, build, open_store, verify
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.tasks import MOST_TRIALS, Threads
 from flowtex.textures.tiles.pyramid import TileKey
 
 zarr = pytest.importorskip("zarr")
@@ -143,51 +139,6 @@ def test_long_and_narrow_roots_are_read_as_they_were_built(tmp_path: Path) -> No
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([1 + y, x], axis=-1))
     build(field, tmp_path / "a.zarr", progress=False)
     Levels(tmp_path / "a.zarr").check_tile(TileKey(0, 0, 0), 0)
-
-
-def test_tasks_that_fail_keep_no_memory() -> None:
-    def failing(number: int) -> None:
-        data = np.full(1_000_000, number)
-        msg = f"no room for {data.nbytes}"
-        raise OSError(msg)
-
-    errors = list(Threads().run(failing, [(n,) for n in range(8)], 1))
-    gc.collect()
-    frames = [error.__traceback__ for error in errors if error is not None]
-    assert len(frames) == 8
-    for last in frames:
-        while last is not None:
-            assert "data" not in last.tb_frame.f_locals
-            last = last.tb_next
-
-
-def test_a_build_of_which_all_fails_ends_soon(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 250)
-    tried = []
-
-    def full(*given: Any) -> Any:
-        tried.append(given)
-        msg = "no space left"
-        raise OSError(msg)
-
-    monkeypatch.setattr(tasks, "write_part", full)
-    many = FlowField.from_arrays(
-        (np.arange(20), np.arange(15)), np.ones((300, 15, 20, 2)), times=np.arange(300), periodic=""
-    )
-    with pytest.raises(PyramidError, match=r"1 of 1 shards .* OSError: no space left"):
-        build(series(), tmp_path / "a.zarr", progress=False)
-    # The first step comes alone.
-    monkeypatch.setattr(tasks, "write_part", lambda *given: given[2].step and full(*given))
-    tried.clear()
-    failed = rf"{MOST_FAILURES} in a row shards .* no space left"
-    with pytest.raises(PyramidError, match=failed) as caught:
-        build(many, tmp_path / "b.zarr", progress=False)
-    # The workers have ended, though the error and its frames are still there.
-    assert caught.tb is not None
-    assert not [one for one in threads() if one.name.startswith("flowtex-pyramid")]
-    assert len(tried) <= MOST_TRIALS * (MOST_FAILURES + 4 * Threads().count(1))
 
 
 class Refusing(BaseHTTPRequestHandler):

@@ -6,15 +6,11 @@ import json
 import platform
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
-from flowtex import FlowField
-from flowtex.pyramid import PyramidError, build, places
+from flowtex.pyramid import PyramidError, places
 from flowtex.pyramid.places import BUILDING, building
 
 zarr = pytest.importorskip("zarr")
@@ -59,31 +55,3 @@ def test_unreadable_mark_is_removed(tmp_path: Path, text: str) -> None:
     with building(str(tmp_path)):
         pass
     assert not (tmp_path / BUILDING).exists()
-
-
-def field() -> FlowField:
-    y, x = np.mgrid[0:10, 0:12] / 10
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([1 + y, x], axis=-1))
-
-
-@pytest.fixture
-def builders(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """Have a second builder begin while the first is at its tiles; it gives what that one says."""
-    module, said = sys.modules["flowtex.pyramid.build"], list[str]()
-    make: Any = module.make_tile
-
-    def slow(place: str, *given: Any) -> None:
-        with pytest.raises(PyramidError) as caught:
-            build(field(), place, progress=False)
-        said.append(str(caught.value))
-        make(place, *given)
-
-    monkeypatch.setattr(module, "make_tile", slow)
-    yield said
-
-
-def test_one_of_two_builders_goes_on(tmp_path: Path, builders: list[str]) -> None:
-    build(field(), tmp_path / "a.zarr", progress=False)
-    assert len(builders) == 1 and "is being built by process" in builders[0]
-    assert build(field(), tmp_path / "a.zarr", progress=False).made == 0
-    assert not (tmp_path / "a.zarr" / BUILDING).exists()

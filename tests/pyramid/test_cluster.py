@@ -12,7 +12,7 @@ from cluster import Cluster, ObjectStorage, digests
 from small_tiles import shrink
 from waiting import PATIENCE_S
 
-from flowtex.pyramid import PyramidError, build, open_store, tasks
+from flowtex.pyramid import build, open_store, tasks
 from flowtex.pyramid.places import store_at
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
@@ -96,14 +96,6 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     np.testing.assert_array_equal(tiles[0], tiles[1])
 
 
-def test_what_holds_its_data_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tasks, "MOST_SENT", 10_000)
-    assert tasks._packed(np.zeros(9_000, np.uint8)) is not None
-    assert tasks._packed(np.zeros(11_000, np.uint8)) is None
-    with pytest.raises(PyramidError, match="cannot be sent to the workers"):
-        tasks._packed(n for n in range(3))
-
-
 def _name_of(client: Any, pid: int) -> str:
     (name,) = (name for name, its in client.run(_pid).items() if its == pid)
     return str(name)
@@ -124,8 +116,6 @@ def _small_roots() -> None:
 def _tell_tiles() -> None:
     """Tell, on a worker, that it makes tiles."""
     from distributed import get_worker
-
-    from flowtex.pyramid import tasks
 
     module: Any = tasks
     write = module.write_tile

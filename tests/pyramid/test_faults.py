@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given
 from range_server import RangeServer, range_server
 from strategies import property_test
-from waiting import PATIENCE_S, wait_until
+from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
@@ -24,7 +24,6 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store
 from flowtex.pyramid.layout import sealed
 from flowtex.pyramid.levels import Levels
-from flowtex.textures.tiles.loader import TileLoader
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
 
@@ -286,33 +285,8 @@ def test_a_server_that_is_silent_is_given_up(
     over.set()
 
 
-def test_an_address_of_nobody(server: RangeServer) -> None:
-    with pytest.raises(PyramidError, match="no server answers at this address"):
-        open_store("http://127.0.0.1:9/flow.zarr")
-
-
 def test_what_is_refused_is_missing_in_a_private_bucket(server: RangeServer, truth: Drawn) -> None:
     server.fault = lambda path: 403 if "/c/" in path and path.startswith("0/") else None
     with pytest.raises(PyramidError, match=r"is missing or access is denied \(403\)"):
         shared_pyramid(open_store(server.address), "arclength").tile(TileKey(0, 0, 0), [0])
     assert judge(server.address, truth)
-
-
-def test_neighbours_read_what_they_share_once(server: RangeServer) -> None:
-    pyramid = shared_pyramid(open_store(server.address), "arclength")
-    pyramid.tile(TileKey(0, 0, 0), [0])
-    server.asked.clear()
-    pyramid.tile(TileKey(0, 0, 0), [0])
-    assert not server.asked
-
-
-def test_what_nobody_wants_is_not_read_any_more(server: RangeServer) -> None:
-    loader = TileLoader(shared_pyramid(open_store(server.address), "arclength"))
-    over = threading.Event()
-    server.fault = lambda path: None if "/c/" not in path else over.wait(PATIENCE_S) and None
-    loader.request([TileKey(0, 0, 0)], [0])
-    wait_until(lambda: any("/c/" in path for path in server.paths))
-    loader.close()
-    wait_until(lambda: not loader._running)
-    assert not loader.errors and not over.is_set()
-    over.set()

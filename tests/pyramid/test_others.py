@@ -194,11 +194,3 @@ def test_what_is_no_velocity_is_told(tmp_path: Path) -> None:
     data.to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
     with pytest.raises(FieldError, match="no velocity; expected two variables such as u and v"):
         open_store(tmp_path / "a.zarr")
-
-
-def test_a_coarser_level_on_other_lines_is_told(
-    stores: dict[str, Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.pyramid.stored.read_datasets", lambda *_, **__: object())
-    with pytest.raises(FieldError, match="a coarser level is not on rows and columns"):
-        open_store(stores["convention"])

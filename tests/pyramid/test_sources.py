@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
-import weakref
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +12,14 @@ import pyvista as pv
 from store_contents import contents
 
 from flowtex import FlowField
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
-from flowtex.field.steps import Nodes
-from flowtex.pyramid import build, layout, open_store, verify
+from flowtex.pyramid import build, open_store, verify
 from flowtex.pyramid.layout import FILE_CHUNK, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
-from flowtex.pyramid.tasks import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.scene.fields import read_field
 from flowtex.scene.scene import Scene
@@ -76,14 +72,12 @@ def around(steps: int = 1) -> Any:
 
 CASES: dict[str, tuple[Any, dict[str, Any]]] = {
     "globe": (around, {"globe": True}),
-    "region": (lambda: dataset(np.linspace(150, 230, 75), np.linspace(-40, 10, 48)), {}),
     "mercator": (
         lambda: dataset(np.linspace(50, 20, 75), np.linspace(-40, 10, 48)),
         {"projection": "mercator", "u": "u", "v": "v"},
     ),
     "plane": (lambda: dataset(np.linspace(0, 9, 75), np.linspace(0, 5, 48), plane=True), {}),
     "uncertain": (around, {"uncertainty": "error"}),
-    "series": (lambda: around(4), {"isel": {"time": 3}}),
 }
 
 
@@ -146,14 +140,14 @@ def test_a_store_of_an_ensemble_has_its_mean_and_spread(tmp_path: Path) -> None:
 
 
 def test_a_series_of_a_file_is_that_of_the_field(tmp_path: Path) -> None:
-    around(4).isel(lon=slice(0, 50)).to_netcdf(tmp_path / "flow.nc")
+    around(2).isel(lon=slice(0, 40)).to_netcdf(tmp_path / "flow.nc")
     assert isinstance(source_of(tmp_path / "flow.nc"), RegionSource)
     build(tmp_path / "flow.nc", tmp_path / "a.zarr", progress=False)
     field = FlowField.from_file(tmp_path / "flow.nc")
     build(field, tmp_path / "b.zarr", progress=False)
     assert_same(tmp_path / "a.zarr", tmp_path / "b.zarr")
     root = open_store(tmp_path / "a.zarr")
-    assert (root.name, root.start, len(root.times)) == ("flow", field.start, 4)
+    assert (root.name, root.start, len(root.times)) == ("flow", field.start, 2)
 
 
 def test_several_files_of_a_series_are_read_by_regions(tmp_path: Path) -> None:
@@ -234,24 +228,6 @@ def test_a_file_is_known_by_path_size_and_time_of_change(tmp_path: Path, reads: 
     assert build(file, store, **more).made == 0
 
 
-def test_each_of_path_size_and_time_of_change_tells(tmp_path: Path) -> None:
-    file, other = tmp_path / "flow.nc", tmp_path / "other.nc"
-    small().to_netcdf(file)
-    source = source_of(file)
-    assert isinstance(source, RegionSource)
-    known = [source.identity()]
-    shutil.copy2(file, other)
-    source.files = [other]
-    known.append(source.identity())
-    time = other.stat().st_mtime_ns
-    other.write_bytes(file.read_bytes() + b"0")
-    os.utime(other, ns=(time, time))
-    known.append(source.identity())
-    os.utime(other, ns=(time, time + 1))
-    known.append(source.identity())
-    assert len(set(known)) == 4
-
-
 def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path) -> None:
     store, data = tmp_path / "a.zarr", small(2)
     build(data, store, progress=False)
@@ -327,36 +303,3 @@ def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:
     build(data, tmp_path / "c.zarr", progress=False)
     with pytest.raises(FieldError, match="is already a pyramid"):
         build(tmp_path / "c.zarr", tmp_path / "d.zarr", progress=False)
-
-
-def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.cpu_count", lambda: 8)
-    assert Threads().count(TILE_BYTES) == 8
-    assert Threads("5GB").count(TILE_BYTES) == 3
-    assert Threads(5_000_000_000).count(PART_BYTES) == 8
-    with pytest.raises(FieldError, match="memory is 'lots'; expected a number of bytes"):
-        Threads("lots")
-    assert Threads("1GB").count(TILE_BYTES) == 1
-
-
-def test_a_build_holds_as_many_parts_as_its_memory_allows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("os.cpu_count", lambda: 8)
-    monkeypatch.setattr(layout, "SHARD_CHUNKS", (1, 1))
-    data = dataset(np.linspace(150, 230, 175), np.linspace(-40, 10, 75))
-    alive: list[weakref.ref[AnyArray]] = []
-    held: list[int] = []
-    read = Regions.nodes
-
-    def noted(self: Regions, *given: Any) -> Nodes:
-        nodes = read(self, *given)
-        alive.append(weakref.ref(nodes.velocity))
-        held.append(sum(some.nbytes for ref in alive if (some := ref()) is not None))
-        return nodes
-
-    monkeypatch.setattr(Regions, "nodes", noted)
-    memory = OWN_BYTES + TILE_BYTES
-    build(data, tmp_path / "a.zarr", memory=memory, progress=False)
-    part = layout.TILE_CELLS**2 * 3 * np.float64().nbytes
-    assert len(held) == 6 and max(held) <= Threads(memory).count(PART_BYTES) * part

@@ -121,16 +121,13 @@ MAP = matplotlib.colors.ListedColormap(np.random.default_rng(0).random((23, 3)))
 CASES = {
     "grid": Case(sheared),
     "grid in perspective": Case(lambda: sheared(height=0.4), camera=ASIDE),
-    "image": Case(lambda: with_cells(pv.ImageData(dimensions=(11, 8, 1)))),
     "missing cells": Case(lambda: with_missing(sheared())),
     "triangles": Case(random_triangles),
-    "missing triangles": Case(lambda: with_missing(random_triangles())),
     "polygons": Case(polygons),
     "sphere": Case(lambda: with_cells(pv.Icosphere(nsub=1)), camera=ASIDE),
     "plane of nodes": Case(
         volume, {"plane": "k=2"}, lambda m: m.extract_subset((0, 7, 0, 6, 2, 2))
     ),
-    "slice of an image": Case(volume, SLICE, section),
     "slice of hexahedra": Case(lambda: volume().cast_to_unstructured_grid(), SLICE, section),
     "slice of tetrahedra": Case(lambda: with_cells(volume().to_tetrahedra()), SLICE, section),
     "contour": Case(

@@ -7,16 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 from small_tiles import TILE_CELLS
-from triangle_meshes import sphere, surface_of
+from triangle_meshes import sphere
 
 import flowtex
 from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
 from flowtex.host.view import TileSource, WebView, even_steps, web_views
 from flowtex.rendering.webgl.client_data import ClientData
-from flowtex.rendering.webgl.protocol import part_info
 from flowtex.scene.options import Options
-from flowtex.settings import TABLE, Settings
+from flowtex.settings import Settings
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import coarsened_field
 
@@ -87,59 +86,6 @@ def test_arrays_are_those_of_the_texture_set(make: Any, image: Any) -> None:
         np.testing.assert_allclose(surface["step"], textures.image.step, rtol=1e-3)
         nodes = np.stack(np.meshgrid(header["image"]["alongI"], header["image"]["alongJ"]), axis=-1)
         np.testing.assert_allclose(nodes, textures.image.coordinate, atol=1e-6)
-
-
-def test_triangles_are_handed_over() -> None:
-    points, triangles = sphere(2)
-    velocity = np.cross([0, 0, 1], points)
-    velocity[3] = np.nan
-    field = flowtex.FlowField.from_triangles(points, triangles, velocity)
-    view, scene = staged(field)
-    geometry = scene.header(view.scene.settings)["geometry"]
-    assert geometry["triangles"] and not staged(plane())[1].constants()["geometry"]["triangles"]
-    assert "FLOWTEX_TRIANGLES" in scene.constants()["variant"]
-    height, width = view.scene.textures.geometry.size
-    assert geometry["shape"] == [1, len(points)] and geometry["levels"] == 0
-    assert geometry["rows"] == {"before": 0, "size": height}
-    assert geometry["columns"] == {"before": 0, "size": width}
-    surface, step = scene.surface(), scene.step(0)
-    assert surface["triangles"].dtype == np.uint32 and surface["blocks"].dtype == np.uint16
-    drawn = triangles[surface_of(field).cells]
-    assert 5 <= len(triangles) - len(drawn) <= 6
-    np.testing.assert_array_equal(surface["triangles"], drawn)
-    np.testing.assert_array_equal(surface["blocks"], 1)
-    assert surface["mesh"].shape == (1, 1, 5)
-    assert "cells" not in surface
-    for name in ("position", "normal"):
-        assert surface[name].shape == (1, len(points), 3)
-    np.testing.assert_allclose(surface["normal"] / 32767, points[None], atol=0.02)
-    assert step["slices/0"].shape[1:3] == (height, width)
-    assert step["scalars/0"].shape == (1, len(points))
-    assert (
-        sum(part.nbytes for part in step.values()) == scene.nbytes_of_step + scene.nbytes_of_values
-    )
-    text = json.dumps([part_info(name, part) for name, part in surface.items()])
-    assert '"uint32"' in text
-
-
-def test_the_header_says_what_the_client_needs() -> None:
-    view, scene = staged(plane(3), scalars="speed", samples=7, background="black")
-    header = scene.header(view.scene.settings, time=1.25)
-    assert header["name"] == "plane"
-    assert header["geometry"]["shape"] == [9, 12]
-    assert header["slices"]["times"] == [0.0, 1.0, 2.0]
-    assert header["slices"]["lags"] == [float(np.float32(lag)) for lag in view.scene.store.lags]
-    assert header["variant"] == ["FLOWTEX_PLANAR", "FLOWTEX_UNSTEADY"]
-    assert header["settings"] == {**dict(Settings()), "samples": 7}
-    assert [row["name"] for row in header["table"]] == list(TABLE)
-    assert header["scalars"]["steps"] == 3
-    assert (header["scalars"]["low"], header["scalars"]["high"]) == view.scene.scalar_range("speed")
-    assert header["background"] == [0, 0, 0]
-    assert not header["lighting"]
-    assert header["time"] == 1.25
-    for text in header["shaders"].values():
-        assert "//#include" not in text
-        assert "#define FLOWTEX_PLANAR" in text
 
 
 @pytest.mark.usefixtures("small_tiles")
@@ -238,19 +184,3 @@ def test_a_coarse_surface_of_triangles_has_means(monkeypatch: pytest.MonkeyPatch
     assert coarsened_field(fine, 10**6) is fine
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 1000)
     assert coarsened_field(fine, 500) is fine  # its levels come one after the other anyway
-
-
-@pytest.mark.parametrize(("normal", "label"), [(0.0, "speed"), (1.0, "speed in the surface")])
-def test_the_header_has_the_words_of_the_legend(normal: float, label: str) -> None:
-    flow = plane()
-    velocity = flow.velocity[0] + np.array([0.0, 0.0, normal])
-    words = {"length_unit": "m", "time_unit": "s"}
-    field = flowtex.FlowField.from_arrays(flow.points, velocity, **words)  # type: ignore[arg-type]
-    view, data = staged(field)
-    header = data.header(view.scene.settings)
-    assert header["scalars"]["name"] == header["scalars"]["choices"][0]["name"] == "speed"
-    assert header["scalars"]["label"] == header["scalars"]["choices"][0]["label"] == label
-    typical = data.textures.typical_speed
-    assert header["speed"] == {"label": label, "unit": "m/s", "typical": typical}
-    assert header["lengthUnit"] == "m"
-    assert view.scene.title_of("speed") == f"{label} (m/s)"

@@ -17,9 +17,6 @@ import flowtex
 from flowtex import FlowField
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.mesh_levels import TriangleBlocks
-from flowtex.scene.scene import Scene
-from flowtex.settings import SettingsError
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 
@@ -104,19 +101,6 @@ def test_streaks_beside_a_sharp_edge_lie_in_the_surface(up: float, zoom: float) 
     assert found["coherence"] > 0.9
 
 
-def test_an_image_along_rows_and_columns_is_refused() -> None:
-    told = "noise is 'image'.*triangles; expected noise='procedural'"
-    with pytest.raises(SettingsError, match=told):
-        Scene.of(field(60), image=np.ones((4, 4, 3)))
-    scene = Scene(field(60))
-    with pytest.raises(SettingsError, match=told):
-        scene.settings.noise = "image"
-    assert scene.settings.noise == "procedural"
-    with pytest.raises(SettingsError, match="noise is 'image'"):
-        scene.set_image(np.ones((4, 4, 3)))
-    assert scene.image is None
-
-
 def test_a_tile_has_the_values_of_its_nodes() -> None:
     whole = rippled()
     surface = surface_of(whole)
@@ -144,26 +128,3 @@ def test_a_tile_has_the_values_of_its_nodes() -> None:
     np.testing.assert_array_equal(drawn, members[None, None])
     image = tile.as_image(tile.at_vertices(drawn[0], on_cells=True), on_cells=True)
     np.testing.assert_array_equal(image.ravel()[: len(members)], members)
-
-
-def test_triangles_are_drawn_where_one_of_their_blocks_is() -> None:
-    whole = rippled()
-    surface = surface_of(whole)
-    one = TriangleGeometry.of(whole)
-    assert TriangleBlocks(one).triangles(np.array([[0]])).shape == (len(one.triangles), 3)
-    assert not len(TriangleBlocks(one).triangles(np.array([[-1]])))
-    center, radius = one.block_places[0, 0, :3], one.block_places[0, 0, 3]
-    assert (np.linalg.norm(whole.points[0] - center, axis=1) <= radius * (1 + 1e-12)).all()
-    masks = np.array([1, 2, 3, 8], np.uint16)
-    geometry = TriangleGeometry.of_tile(
-        whole,
-        np.arange(whole.shape[1]),
-        surface.triangles[:4],
-        np.arange(4),
-        surface,
-        (masks, np.zeros((2, 2, 5))),
-    )
-    blocks = TriangleBlocks(geometry)
-    drawn = blocks.triangles(np.array([[0, -1], [-1, -1]]))
-    np.testing.assert_array_equal(drawn, [[0, 1, 2], [6, 7, 8]])
-    assert len(blocks.triangles(blocks.levels(None, 1.0, 100))) == 4

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import zlib
-from itertools import product
 
 import numpy as np
 import pytest
 from packed import unpacked
 
 from flowtex._util.array_types import AnyArray
-from flowtex.rendering.webgl.protocol import part_buffer, part_info, part_text, parts_file
+from flowtex.rendering.webgl.protocol import part_info, part_text, parts_file
 
 ARRAYS: dict[str, AnyArray] = {
     "slices/0": np.arange(24, dtype="<f2").reshape(2, 3, 4),
@@ -51,41 +49,3 @@ def test_multiples_of_a_power_of_two_are_whole_numbers() -> None:
     assert part_text(ARRAYS["rough"])[0]["scale"] is None
     for odd in ([1.0, 1e-9], [np.nan, 1.0], [-0.0, 1.0], [1e-40, 0.0]):
         assert part_text(np.array(odd, "<f4"))[0]["scale"] is None
-
-
-def test_what_changes_evenly_is_packed_as_differences() -> None:
-    even = np.arange(30_000, dtype="<u4").reshape(100, 100, 3)
-    packing, text = part_text(even)
-    assert packing["differences"][0] and len(text) < 1000
-
-
-@pytest.mark.parametrize("unit", [2.0**-12, 2.0**-20])
-def test_differences_are_those_with_the_fewest_bytes(unit: float) -> None:
-    a, b = np.meshgrid(np.linspace(0, 3, 300), np.linspace(0, 1, 200))
-    smooth = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
-    multiples = (np.rint(smooth / unit) * unit).astype("<f4")
-    numbers = np.moveaxis(np.rint(smooth / unit).astype("<i4"), -1, 0)
-    sizes = {}
-    for orders in product(range(3), repeat=2):
-        wholes = numbers
-        for axis, order in enumerate(orders, start=1):
-            wholes = np.diff(wholes, n=order, axis=axis)
-        signed_last = ((wholes << 1) ^ (wholes >> 31)).reshape(-1, 1)
-        sizes[orders] = len(zlib.compress(signed_last.view(np.uint8).T.tobytes()))
-    packing, text = part_text(multiples)
-    assert sizes[*packing["differences"]] < 1.03 * min(sizes.values())
-    assert len(text) < 1.2 * 4 / 3 * min(sizes.values())
-
-
-def test_a_part_that_lies_in_order_is_not_copied() -> None:
-    array = ARRAYS["position"]
-    assert np.shares_memory(np.frombuffer(part_buffer(array), np.uint8), array)
-    across = np.frombuffer(part_buffer(array.T), "<f4")
-    np.testing.assert_array_equal(across.reshape(3, 4), array.T)
-
-
-def test_equal_arrays_have_one_digest() -> None:
-    array = ARRAYS["position"]
-    assert part_info("a", array)["digest"] == part_info("b", array.copy())["digest"]
-    assert part_info("a", array)["digest"] != part_info("a", array[::-1])["digest"]
-    assert part_info("a", array)["digest"] != part_info("a", array.view(np.int32))["digest"]

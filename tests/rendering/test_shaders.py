@@ -17,14 +17,6 @@ def test_an_include_is_put_in_once() -> None:
     assert "//#include" not in text
 
 
-def test_variants_are_defined_first_and_in_order() -> None:
-    text = shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PLANAR", "FLOWTEX_IMAGE"])
-    assert text == shaders.shader_text("vtk/vertex_dec.glsl", {"FLOWTEX_IMAGE", "FLOWTEX_PLANAR"})
-    assert re.match(
-        r"#ifndef FLOWTEX_IMAGE\n#define FLOWTEX_IMAGE\n#endif\n#ifndef FLOWTEX_PLANAR\n", text
-    )
-
-
 def test_files_ask_for_every_variant() -> None:
     folders = (Path(flowtex.__file__).parent / name for name in ("rendering", "plotting"))
     texts = [path.read_text() for folder in folders for path in folder.rglob("*.py")]

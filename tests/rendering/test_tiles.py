@@ -13,7 +13,7 @@ from waiting import PATIENCE_S
 import flowtex
 from flowtex.field import FlowField
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
-from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid
 from flowtex.textures.tiles.shared import _pyramids
 
 SIZE = (320, 240)
@@ -203,12 +203,3 @@ def check_cover(pyramid: Pyramid, seen: TileView, rng: np.random.Generator) -> N
     assert (counts <= 1).all()
     center = pyramid.places(0)[..., :3] @ seen.planes[:, :3].T + seen.planes[:, 3]
     assert (counts[(center > 0).all(axis=-1)] == 1).all()
-
-
-def test_nothing_is_asked_for_where_the_root_does(_tiled: None) -> None:
-    pyramid = Pyramid(flat())
-    far = TileView(None, 0.6, 20, np.zeros((0, 4)))
-    assert wanted_tiles(choose_tiles(pyramid, far)) == []
-    assert cover(choose_tiles(pyramid, far), lambda key: True) == {None: []}
-    assert BLOCK_CELLS * TILE_BLOCKS == 256
-    assert TileKey(0, 3, 5).parent == (1, 1, 2)

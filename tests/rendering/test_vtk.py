@@ -47,18 +47,6 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
     assert np.abs(pictures[0] - pictures[2]).mean() > 10
 
 
-def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
-    field = gyre_field()
-    options: dict[str, Any] = {"scalars": False, "zoom": 8, "focus": (0.63, 0.37)}
-    both = flowtex.render(field, size=(600, 300), beside={"seed": 4}, **options)
-    one = flowtex.render(field, size=(300, 300), **options)
-    other = flowtex.render(field, size=(300, 300), seed=4, **options)
-    below = slice(40, None)  # the label lies above
-    assert np.abs(both[below, :300].astype(float) - one[below]).mean() < 1
-    assert np.abs(both[below, 300:].astype(float) - other[below]).mean() < 1
-    assert np.abs(one[below].astype(float) - other[below]).mean() > 10
-
-
 def test_far_from_the_origin_the_picture_is_as_sharp(opengl: Any) -> None:
     y, x = np.mgrid[0:0.5:51j, 0:1:101j]
     velocity = np.stack(gyre(2 * x, 2 * y), axis=-1)
@@ -86,47 +74,6 @@ def test_a_seam_is_not_seen(opengl: Any, zoom: float) -> None:
     assert np.abs(here - there).mean() < 6.0
 
 
-def test_a_field_at_rest_is_plain_with_a_notice(opengl: Any) -> None:
-    y, x = np.mgrid[0:1:20j, 0:1:20j]
-    with pytest.warns(UserWarning, match=r"^The velocity is zero at every node"):
-        field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.zeros((20, 20, 2)))
-    picture = flowtex.render(field, size=(200, 200), scalars=False)
-    assert np.ptp(picture[40:160, 40:160], axis=(0, 1)).max() == 0
-
-
-def test_blanked_cells_are_not_drawn(opengl: Any) -> None:
-    y, x = np.mgrid[0:1:21j, 0:1:21j]
-    valid = np.hypot(x - 0.5, y - 0.5) > 0.2
-    velocity = np.where(valid[..., None], [1.0, 0.0], np.nan)
-    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), velocity)
-    picture = flowtex.render(field, size=(200, 200), background="red", scalars=False)
-    assert (picture[95:105, 95:105] == [255, 0, 0]).all()
-    assert not (picture[30:60, 60:140] == [255, 0, 0]).all(axis=-1).any()
-    # White stays white without strength.
-    options: dict[str, Any] = {"color": "white", "background": "black", "strength": 0.0}
-    picture = flowtex.render(field, size=(200, 200), scalars=False, **options)
-    assert picture[45, 100].tolist() == [255, 255, 255]
-
-
-@pytest.mark.parametrize("kernel", ["hann", "box", "ramp"])
-def test_all_variants_together_compile_and_streak(opengl: Any, kernel: str) -> None:
-    y, x = np.mgrid[0:1:21j, 0:1:31j]
-    tangent = np.stack([np.ones_like(x), 0 * x, 0.6 * np.cos(3 * x)], -1)
-    points = np.stack([x, y, 0.2 * np.sin(3 * x)], -1)
-    field = flowtex.FlowField.from_arrays(points, np.stack([tangent] * 3), times=np.arange(3))
-    picture = flowtex.render(
-        field,
-        size=(200, 200),
-        scalars=False,
-        kernel=kernel,
-        camera=[(0.5, 0.5, 3), (0.5, 0.5, 0), (0, 1, 0)],
-    )
-    ones = np.ones((40, 40))
-    found = streaks(picture[80:120, 80:120], ones, 0 * ones, ones.astype(bool))
-    assert found["angle"] < 12
-    assert found["coherence"] > 0.6
-
-
 def test_what_changes_the_shader_or_a_value_comes_back(plotter: Any) -> None:
     handle = plotter.flowtex.add(gyre_field(), scalars=False)
     first = plotter.screenshot(return_img=True)
@@ -142,29 +89,6 @@ def test_what_changes_the_shader_or_a_value_comes_back(plotter: Any) -> None:
         for before, after in pairwise(pictures):
             assert np.abs(before.astype(float) - after).mean() > 5
         np.testing.assert_array_equal(first, plotter.screenshot(return_img=True))
-
-
-def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
-    y, x = np.mgrid[0:2:129j, 0:4:257j]
-    points, velocity = np.stack([x, y], axis=-1), np.stack([1 + 0 * x, 0.2 * np.sin(y)], axis=-1)
-    field = flowtex.FlowField.from_arrays(points, velocity)
-    handle = plotter.flowtex.add(field, scalars=False)
-
-    def cells() -> int:
-        plotter.render()
-        plotter.screenshot(return_img=True)
-        return int(handle.actor.mapper.dataset.n_cells)
-
-    assert cells() == 2 * 2 * 4
-    plain = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-    handle.actor.prop.style = "Wireframe"
-    assert cells() == 2 * 128 * 256  # who looks at the mesh sees all of it
-    handle.actor.prop.style = "Surface"
-    assert cells() == 2 * 2 * 4
-    handle._surface._base.mesh_levels.error[1:] = np.inf
-    assert cells() == 2 * 128 * 256
-    every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-    assert np.abs(every - plain).max() <= 2
 
 
 def crooked_grid() -> flowtex.FlowField:
@@ -224,17 +148,6 @@ def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:
     assert off_colours(plain, mesh, field, scalars="speed", cmap="plasma", clim=(0, 0.3)) < 2
 
 
-def test_colours_need_no_triangles_of_their_own(plotter: Any) -> None:
-    handle = plotter.flowtex.add(gyre_field(), scalars="speed", strength=0.0, lighting=False)
-    coarse = plotter.screenshot(return_img=True).astype(float)
-    few = handle.actor.mapper.dataset.n_cells
-    handle.actor.prop.show_edges, handle.actor.prop.edge_opacity = True, 0.0  # every triangle
-    plotter.render()
-    fine = plotter.screenshot(return_img=True).astype(float)
-    assert few < 100 < 1000 < handle.actor.mapper.dataset.n_cells
-    assert np.abs(coarse - fine).mean() < 0.1
-
-
 def test_colours_outside_of_the_range_and_of_no_value(plotter: Any) -> None:
     handle = plotter.flowtex.add(
         gyre_field(), scalars="speed", clim=(0.1, 0.2), strength=0.0, lighting=False
@@ -266,20 +179,6 @@ def test_edges_do_not_take_the_texture_away(plotter: Any) -> None:
     assert 0.005 < red.mean() < 0.3
     same = (np.abs(edged - plain).max(axis=-1) < 2)[~red]
     assert same.mean() > 0.85
-
-
-def test_each_subplot_shows_its_whole_surface(opengl: Any) -> None:
-    plotter: Any = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[600, 200], border=False)
-    for column in range(3):
-        plotter.subplot(0, column)
-        plotter.flowtex.add(gyre_field(), scalars=False)
-    picture = plotter.screenshot(return_img=True)
-    plotter.close()
-    for column in range(3):
-        part = picture[:, 200 * column : 200 * (column + 1)]
-        assert (part[:, :4] == 255).all()
-        assert (part[:, -4:] == 255).all()
-        assert part[90:110, 20:180].std() > 20
 
 
 def test_several_on_one_plotter_and_removal_leaves_nothing(plotter: Any) -> None:

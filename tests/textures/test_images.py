@@ -17,7 +17,7 @@ from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
 from flowtex.cli import main
 from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
-from flowtex.settings import Settings, SettingsError
+from flowtex.settings import Settings
 from flowtex.textures.images import LARGEST, ImageError, as_picture, load_image
 
 SIZE = (240, 140)
@@ -39,14 +39,6 @@ def gyre() -> FlowField:
     u = -np.sin(np.pi * x) * np.cos(np.pi * y)
     v = np.cos(np.pi * x) * np.sin(np.pi * y)
     return FlowField.from_arrays(np.stack([x, y], -1), np.stack([u, v], -1), periodic="")
-
-
-@cache
-def stretched(power: float = 3.0) -> FlowField:
-    """Cells that are twenty times as long on the right as on the left."""
-    x = np.sinh(np.linspace(0, power, 61))
-    points = np.stack(np.meshgrid(2 * x / x[-1], np.linspace(0, 1, 31)), axis=-1)
-    return FlowField.from_arrays(points, np.broadcast_to([1.0, 0.0], points.shape), periodic="")
 
 
 @cache
@@ -327,24 +319,6 @@ def test_a_change_of_tiles_makes_no_textures() -> None:
     view.observe(heard.append)
     view.settings.tiles = 32
     assert heard == ["uniform"] and view.textures is before
-
-
-def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) -> None:
-    told = r"^noise is 'image', but no image is given; pass image="
-    with pytest.raises(SettingsError, match=told):
-        plotter.flowtex.add(uniform(), noise="image")
-    with pytest.raises(SettingsError, match=r"^noise is 'procedural', but an image is given"):
-        plotter.flowtex.add(uniform(), noise="procedural", image=np.ones((2, 2)))
-    assert len(plotter.flowtex) == 0
-    handle = plotter.flowtex.add(uniform())
-    first = plotter.screenshot(return_img=True)
-    with pytest.raises(SettingsError, match=told):
-        handle.settings.noise = "image"
-    assert handle.settings.noise == "procedural"
-    with pytest.raises(ImageError, match="expected"):
-        handle.set_image(np.zeros((2, 2, 7)))
-    assert handle.settings.noise == "procedural" and handle.scene.image is None
-    np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
 
 
 def test_an_image_is_a_flag_of_the_command_line(

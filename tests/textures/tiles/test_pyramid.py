@@ -12,7 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey, _ring, block_places, is_cut
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey, block_places, is_cut
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
 
@@ -151,14 +151,6 @@ def test_tiles_traced_together_equal_tiles_traced_alone(*, closed: bool) -> None
         assert np.abs(nodal(one) - nodal(other))[: alike + 1, ..., :3].max() < 2e-3
 
 
-def test_tiles_with_overlapping_halos_are_grouped() -> None:
-    pyramid, far = Pyramid(waves(800, 800)), TileKey(0, 20, 20)
-    near = [TileKey(0, j, i) for j in range(2) for i in range(2)]
-    above = pyramid.children(None)[0]
-    groups = pyramid.groups([near[0], far, *near[1:], above])
-    assert sorted(map(sorted, groups)) == sorted([near, [far], [above]])
-
-
 def test_a_field_that_varies_is_followed_in_time() -> None:
     x, y = grid(74, 84)
     steps = [
@@ -180,12 +172,6 @@ def test_a_tile_of_land_is_none() -> None:
     pyramid = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
     assert pyramid.textures(TileKey(0, 0, 0)) is None
     assert pyramid.textures(TileKey(0, 0, 1)) is not None
-
-
-@pytest.mark.parametrize("key", [(9, 0, 0), (0, 5, 0), (0, 0, -1), (-1, 0, 0)])
-def test_a_tile_that_does_not_exist_is_refused(key: tuple[int, int, int]) -> None:
-    with pytest.raises(KeyError, match="does not exist"):
-        Pyramid(waves()).textures(TileKey(*key))
 
 
 @pytest.mark.parametrize("level", [0, 1, 2])
@@ -224,19 +210,6 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
     np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)
 
 
-@pytest.mark.parametrize("count", [385, 386, 400, 900, 1537, 5_000, 100_000])
-def test_a_ring_around_a_pole_is_complete_where_it_is_near(count: int) -> None:
-    lines = _ring(384, count)
-    apart = np.diff(lines)
-    assert lines[0] == 0 and lines[-1] == count - 1 and len(lines) < 1100
-    np.testing.assert_array_equal(lines[:385], np.arange(385))
-    assert apart.min() == 1 and np.maximum(apart[1:] / apart[:-1], 0.5).max() <= 2
-    # A path turns through an angle of its length by the radius, where a cell is as wide as that
-    # angle by the cells of its length.
-    away = np.minimum(lines - 384, count - 1 - lines)[385:] + 64
-    assert (apart[384:] <= np.maximum(1.5 * away / PATH_CELLS, 1)).all()
-
-
 def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
     lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 501), np.linspace(-0.5, 0.5, 130) * np.pi)
@@ -252,14 +225,3 @@ def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.Monke
     away = np.abs(nodal(some)[1:count, ..., :3] - nodal(whole)[1:count, ..., :3])
     assert np.percentile(away, 99) < 0.02
     assert np.abs(nodal(whole)[1:count, ..., :3]).mean() > 0.3
-
-
-def test_windows_have_no_more_nodes_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
-    pyramid = Pyramid(waves())
-    wide = pyramid.textures(TileKey(0, 0, 0), widening=4)
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.MOST_WINDOW", 5_000)
-    narrow = pyramid.textures(TileKey(0, 0, 0), widening=4)
-    assert wide is not None and narrow is not None
-    fields = narrow.geometry.field, wide.geometry.field
-    assert fields[0].valid.size < 5_000 < fields[1].valid.size
-    assert narrow.geometry.shape == wide.geometry.shape

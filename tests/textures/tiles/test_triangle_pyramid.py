@@ -132,32 +132,11 @@ def test_every_point_is_covered_by_the_tiles_of_a_level(
         keys = [child for key in keys for child in pyramid.children(key)]
 
 
-def test_places_hold_the_triangles_of_their_blocks(rng: np.random.Generator) -> None:
-    pyramid = TrianglePyramid(graded(rng))
-    for level in range(pyramid.depth + 1):
-        places = pyramid.places(level)
-        assert places.shape == (2 ** (pyramid.depth + 1 - level),) * 2 + (5,)
-        away = pyramid.field.points[0][:, None] - places[..., :3].reshape(-1, 3)
-        inside = np.linalg.norm(away, axis=-1) <= places[..., 3].ravel() + 1e-12
-        assert inside.any(axis=1).all()
-        if level:
-            halves = pyramid.places(level - 1)[..., 4].reshape(*places.shape[:2][:1], 2, -1, 2)
-            np.testing.assert_allclose(places[..., 4], 2 * halves.max(axis=(1, 3)))
-
-
 def test_a_small_field_is_its_root(rng: np.random.Generator) -> None:
     pyramid = TrianglePyramid(plane(rng, 200))
     assert pyramid.depth == 0
     assert pyramid.root is pyramid.field
     assert pyramid.children(None) == []
-
-
-@pytest.mark.parametrize("key", [(9, 0, 0), (0, 99, 0), (0, 0, -1), (-1, 0, 0)])
-def test_a_tile_that_does_not_exist_is_refused(
-    key: tuple[int, int, int], rng: np.random.Generator
-) -> None:
-    with pytest.raises(KeyError, match="does not exist"):
-        TrianglePyramid(plane(rng)).textures(TileKey(*key))
 
 
 @pytest.mark.parametrize("make", [plane, lambda rng: ball()])
