@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from waiting import PATIENCE_S
 
@@ -62,21 +61,6 @@ def test_notebooks_are_stored_without_output() -> None:
         assert "".join(first["source"]).startswith("# ")
 
 
-def test_the_dye_can_be_seen(opengl: Any) -> None:
-    cells = [cell.source for cell in read(FOLDER / "your_data.ipynb").cells]
-    arrays, dye = (next(c for c in cells if text in c) for text in ("from_arrays", "image=dye"))
-    drawing = dye.replace("flowtex.FlowWidget(", "pixels = flowtex.render(")
-    drawing = drawing.replace("size=(0, 320)", "size=(400, 160)")
-    found: dict[str, Any] = {}
-    exec(arrays, found)
-    pictures = []
-    for image in ("dye", "0 * dye"):
-        exec(drawing.replace("image=dye", f"image={image}"), found)
-        pictures.append(found["pixels"].astype(int))
-    off = np.abs(pictures[0] - pictures[1]).max(axis=-1)
-    assert (off > 60).mean() > 0.08
-
-
 @pytest.fixture(scope="module")
 def kernel(opengl: Any) -> Iterator[Any]:
     """One kernel for all notebooks, in their folder; each of them begins without names."""
@@ -97,10 +81,10 @@ def kernel(opengl: Any) -> Iterator[Any]:
 def smaller(code: str) -> str:
     """Return code whose pictures, not arrays, have a quarter of the width and of the height.
 
-    Movies have eight tenths of a second.
+    Movies have three tenths of a second.
     """
     code = re.sub(r"dpi=\d+", "dpi=40", code).replace("resolution=4096", "resolution=512")
-    code = re.sub(r"\bseconds=\d+(?![.\d])", "seconds=0.8", code)
+    code = re.sub(r"\bseconds=\d+(?![.\d])", "seconds=0.3", code)
     return re.sub(
         r"""((?<= )size=|"size": )([(\[])(\d{3,}), (\d{3,})""",
         lambda m: f"{m[1]}{m[2]}{int(m[3]) // 4}, {int(m[4]) // 4}",
@@ -108,8 +92,12 @@ def smaller(code: str) -> str:
     )
 
 
+#: The site runs the lessons, where a warning is an error as well.
+OTHERS = [path for path in NOTEBOOKS if not path.stem.startswith("lesson")]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", OTHERS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path: Path, kernel: Any) -> None:
     """From top to bottom; it shows a widget, and no warning."""
     import nbclient
