@@ -22,7 +22,7 @@ from flowtex._util.terminal import plain_text
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.quantities import PointValues
-from flowtex.sources.datasets.read import recognised
+from flowtex.sources.datasets.read_datasets import recognised
 
 try:
     import xarray as xr

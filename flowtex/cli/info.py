@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from flowtex.field import FlowField
-    from flowtex.sources.files import FileSummary
+    from flowtex.sources.read_files import FileSummary
 
 #: Times and blocks that are listed one by one at most.
 MOST_TIMES, MOST_BLOCKS = 8, 40
@@ -28,8 +28,8 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.pyramid import is_store
     from flowtex.pyramid.places import is_remote, place_text
     from flowtex.pyramid.source import has_parts
-    from flowtex.sources.files import describe, one_path
     from flowtex.sources.opening.dataset_files import dataset_paths
+    from flowtex.sources.read_files import describe, one_path
 
     console, options = terminal(), arguments(flow)
     if len(files) == 1 and has_parts(files[0]):
@@ -93,7 +93,7 @@ def _store_table(place: Path) -> Table:
 
 
 def _recognised_table(paths: list[Path]) -> Table:
-    from flowtex.sources.datasets.read import recognised
+    from flowtex.sources.datasets.read_datasets import recognised
     from flowtex.sources.opening.dataset_files import open_datasets
     from flowtex.sources.reader_errors import errors_of_file
 

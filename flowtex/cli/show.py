@@ -30,7 +30,7 @@ from flowtex.field.formula import KNOWN
 if TYPE_CHECKING:
     from flowtex.app import Library
     from flowtex.field import FlowField
-    from flowtex.sources.open_source import FlowSource
+    from flowtex.sources.open_source import MeshSource
 
 #: Initial zoom and focus of examples.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
@@ -85,10 +85,10 @@ def demo(
     return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
 
 
-def _source(make: Callable[[], FlowField]) -> FlowSource:
-    from flowtex.sources.open_source import FlowSource
+def _source(make: Callable[[], FlowField]) -> MeshSource:
+    from flowtex.sources.open_source import MeshSource
 
-    return FlowSource(make())
+    return MeshSource(make())
 
 
 def show(

@@ -119,7 +119,7 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
         (10, 12)
         """
-        from flowtex.sources.meshes.read import read_meshes
+        from flowtex.sources.meshes.read_meshes import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         return cls.of(read_meshes(mesh, FieldOptions(**options), name=name))
@@ -179,7 +179,7 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_file("airfoil.vts").shape
         (65, 193)
         """
-        from flowtex.sources.files import errors_of, read_files
+        from flowtex.sources.read_files import errors_of, read_files
 
         chosen = FieldOptions(**options)
         with errors_of(path):
@@ -279,7 +279,7 @@ class FieldConstructors:
         coordinates: longitude and latitude
         components: eastward and northward (by the names of the variables)
         """
-        from flowtex.sources.datasets.read import read_datasets
+        from flowtex.sources.datasets.read_datasets import read_datasets
 
         options = FieldOptions.of_dataset({"u": u, "v": v, **selection})
         field = cls.of(cast("FieldArrays", read_datasets(data, options, name=name)))

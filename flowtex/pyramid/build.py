@@ -44,7 +44,7 @@ from flowtex.pyramid.places import (
     store_at,
     sync,
 )
-from flowtex.pyramid.source import Source, source_of
+from flowtex.pyramid.source import NodeSource, source_of
 from flowtex.pyramid.tasks import (
     PART_BYTES,
     TILE_BYTES,
@@ -267,7 +267,7 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
 
 
 def _prepared(
-    place: str, about: dict[str, Any], source: Source, *, fresh: bool
+    place: str, about: dict[str, Any], source: NodeSource, *, fresh: bool
 ) -> tuple[Group, dict[str, Sequence[str]], dict[str, Any], bool]:
     """Return the group of a store, its arrays, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
@@ -397,7 +397,7 @@ def _existing_units(run: _Run, name: str) -> Iterator[Part | TileTask]:
             yield Part(int(top), step, row, column)
 
 
-def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
+def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
     """Write level 0; the first step comes first, as it determines the valid nodes."""
     existing, parts = _existing_parts(run, 0), _missing_parts(run, 0, source.shape)
     if parts and run.about.get("levels_done"):

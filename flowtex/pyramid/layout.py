@@ -48,7 +48,7 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
-from flowtex.pyramid.source import Source
+from flowtex.pyramid.source import NodeSource
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, level_shape, root_level
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def value_names(about: About) -> tuple[str, ...]:
     return tuple(dict.fromkeys(("speed", *about["scalars"])))
 
 
-def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
+def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, Any]:
     """Return the description of a field and its pyramid, as the store keeps it."""
     field = source.field
     depth = root_level(source.shape)

@@ -31,13 +31,13 @@ from flowtex.pyramid.places import (
     store_at,
 )
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.select import find_pairs, two_names
 from flowtex.sources.datasets.values import Regions
-from flowtex.sources.files import errors_of, read_files
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group, is_dataset_file
+from flowtex.sources.read_files import errors_of, read_files
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
@@ -46,7 +46,7 @@ from flowtex.trace.store import chosen_lines, judged_lines
 WHOLE_NODES = 2_000_000
 
 
-class Source:
+class NodeSource:
     """Nodes (J, I) of a ``shape`` that a pyramid is built from, and the time steps of ``scalars``.
 
     ``field`` has the names, the times and the map; only some sources have its nodes there.
@@ -77,7 +77,7 @@ class Source:
         """Return the kind of lines to draw, as :func:`flowtex.trace.chosen_lines` does."""
         return chosen_lines(self.field, lines)
 
-    def with_uncertainty(self, value: Any) -> Source:
+    def with_uncertainty(self, value: Any) -> NodeSource:
         """Return the source with an uncertainty of its direction, see :func:`with_uncertainty`."""
         raise NotImplementedError
 
@@ -97,7 +97,7 @@ class Source:
         return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
 
 
-class FieldSource(Source):
+class FieldSource(NodeSource):
     """A field in the memory of the process that builds."""
 
     travels = False
@@ -133,7 +133,7 @@ class FieldSource(Source):
         has_position = None if self.has_position is None else self.has_position[at]
         return Nodes(field.points[at], field.valid[at], velocity, scalars, has_position)
 
-    def with_uncertainty(self, value: Any) -> Source:
+    def with_uncertainty(self, value: Any) -> NodeSource:
         """Return the source of the field with this uncertainty."""
         return FieldSource(with_uncertainty(self.field, value))
 
@@ -148,7 +148,7 @@ class FieldSource(Source):
         return {name: ends for name, ends in both.items() if None not in ends}
 
 
-class RegionSource(Source):
+class RegionSource(NodeSource):
     """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened."""
 
     travels = True
@@ -197,7 +197,7 @@ class RegionSource(Source):
         )
         return chosen_lines(sample, lines)
 
-    def with_uncertainty(self, value: Any) -> Source:
+    def with_uncertainty(self, value: Any) -> NodeSource:
         """Set the uncertainty: the name of a scalar, which is read by region."""
         unread = dict.fromkeys(self.scalars, np.zeros((1, 1, 1)))
         field = with_uncertainty(replace(self.field, scalars=unread), value)
@@ -217,17 +217,17 @@ class RegionSource(Source):
                 yield file.resolve(), file.stat()
 
 
-def source_of(data: Any, **options: Any) -> Source:
+def source_of(data: Any, **options: Any) -> NodeSource:
     """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
     source, uncertainty = _source_of(data, **options), options.get("uncertainty")
     return source if uncertainty is None else source.with_uncertainty(uncertainty)
 
 
-def _source_of(data: Any, *, name: str = "", **given: Any) -> Source:
-    if isinstance(data, (FlowField, Source)):
+def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
+    if isinstance(data, (FlowField, NodeSource)):
         if names := [key for key, value in given.items() if key != "uncertainty" and value]:
             raise FieldError(f"{', '.join(names)} applies to the data of a field; omit it")
-        return data if isinstance(data, Source) else FieldSource(data)
+        return data if isinstance(data, NodeSource) else FieldSource(data)
     if is_store(data):
         raise FieldError(f"{data} is already a pyramid; give the data from which one is built")
     options = FieldOptions.of_dataset(given)
@@ -259,7 +259,7 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> Source:
     return source
 
 
-def _source_from(arrays: FieldArrays | Regions) -> Source:
+def _source_from(arrays: FieldArrays | Regions) -> NodeSource:
     if isinstance(arrays, Regions):
         return RegionSource(arrays)
     return FieldSource(FlowField.of(arrays))

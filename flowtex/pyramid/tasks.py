@@ -51,7 +51,7 @@ from flowtex.pyramid.places import (
     store_at,
     sync,
 )
-from flowtex.pyramid.source import Source
+from flowtex.pyramid.source import NodeSource
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.rendering.webgl.client_data import ClientData, Colours, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
@@ -85,7 +85,7 @@ class TileTask(NamedTuple):
     steps: tuple[int, ...]
 
 
-def make_finest(source: Source, place: str, run: str, part: Part) -> None:
+def make_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
     """Make a part of level 0 from the source; the first step determines the valid nodes."""
     levels, array = _levels(place, run), _writable(place, run)
     nodes = _source_nodes(levels, source, part)
@@ -94,7 +94,7 @@ def make_finest(source: Source, place: str, run: str, part: Part) -> None:
     write_part(array, levels.about, part, part.lines(source.shape), _as_written(nodes))
 
 
-def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
+def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
     """Raise a ChangedError where the source has other values than a part was made of."""
     levels = _levels(place, run)
     nodes = _as_written(_source_nodes(levels, source, part))
@@ -151,7 +151,7 @@ def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
         yield f"{level}/{SURFACE}/c/{row}/{column}/0"
 
 
-def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
+def _source_nodes(levels: Levels, source: NodeSource, part: Part) -> Nodes:
     lines = part.lines(source.shape)
     valid = None
     if part.step and source.travels:  # others have it in memory

@@ -13,7 +13,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.earth import GLOBE, NAMES, Projection, between, tears
 from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.models.mesh import Mesh
+from flowtex.sources.models.model_mesh import Mesh
 
 #: Rows or columns, by numbers or as a slice.
 Lines: TypeAlias = Indices | slice

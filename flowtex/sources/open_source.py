@@ -23,7 +23,6 @@ from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
-from flowtex.sources.files import Identity, one_path, open_file
 from flowtex.sources.maps import projection_of
 from flowtex.sources.meshes.parts import (
     Parts,
@@ -43,6 +42,7 @@ from flowtex.sources.opening.dataset_files import (
     dataset_paths,
     open_datasets,
 )
+from flowtex.sources.read_files import Identity, one_path, open_file
 from flowtex.sources.reader_errors import errors_of_file
 
 #: Size of a series that is held in memory; a larger one is read again for each field.
@@ -53,7 +53,7 @@ CUTS = 101
 OUTER = "outer"
 
 
-class Source:
+class FlowSource:
     """The choices of a file, a mesh or a field, from which one field after another is made.
 
     ``identity`` is the state of its files when they were opened.
@@ -150,12 +150,12 @@ class Source:
     ) -> FlowField:
         raise NotImplementedError
 
-    def part(self, block: str | None = None) -> Source:
+    def part(self, block: str | None = None) -> FlowSource:
         """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself."""
         raise NotImplementedError
 
 
-class FlowSource(Source):
+class MeshSource(FlowSource):
     """A mesh, a series or a field, from which one field after another is made.
 
     The ``mesh`` is as for :meth:`FlowField.from_pyvista`, or a field. ``velocity`` is the name of
@@ -173,7 +173,7 @@ class FlowSource(Source):
         block: str | None = None,
     ) -> None:
         super().__init__(name)
-        self._parts: dict[str, FlowSource] = {}
+        self._parts: dict[str, MeshSource] = {}
         self._lock = threading.Lock()
         self._mesh = mesh
         self._velocity, self._path, self._block = velocity, path, block
@@ -184,7 +184,7 @@ class FlowSource(Source):
             self.reads_late = is_reader(self._mesh)
 
     @classmethod
-    def from_file(cls, path: str | Path) -> FlowSource:
+    def from_file(cls, path: str | Path) -> MeshSource:
         """Open a file, as for :meth:`FlowField.from_file`; errors start with the path."""
         with errors_of_file(path):
             file = open_file(path)
@@ -212,8 +212,8 @@ class FlowSource(Source):
             warnings.simplefilter("ignore", Notice)
             return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
 
-    def part(self, block: str | None = None) -> FlowSource:
-        """Return the source of one of the blocks, as :meth:`Source.part` does."""
+    def part(self, block: str | None = None) -> MeshSource:
+        """Return the source of one of the blocks, as :meth:`FlowSource.part` does."""
         if not self.blocks:
             return self
         if block is not None and block.isdecimal() and int(block) < len(self.blocks):
@@ -225,7 +225,7 @@ class FlowSource(Source):
         with self._lock, self._errors():
             if block not in self._parts:
                 options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
-                part = FlowSource(self._mesh, **options, path=self._path, block=block)
+                part = MeshSource(self._mesh, **options, path=self._path, block=block)
                 self.nbytes += part.nbytes if is_reader(self._mesh) else 0
                 self._parts[block] = part
         return self._parts[block]
@@ -297,7 +297,7 @@ def _bytes(grid: Any) -> int:
     return int(grid.actual_memory_size) * 1024
 
 
-class DatasetSource(Source):
+class DatasetSource(FlowSource):
     """Datasets of xarray's that belong together; blocks are the maps they can be drawn on."""
 
     def __init__(self, datasets: Any, *, name: str = "") -> None:
@@ -322,13 +322,13 @@ class DatasetSource(Source):
         self._datasets.close()
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :meth:`Source.plane_of` does."""
+        """Return the plane of a level, as :meth:`FlowSource.plane_of` does."""
         array = variable(self._datasets, str(two_names(self.vectors[0])[0]))
         drawn = choose(array, Choice({LEVEL: level}), Record())
         self._datasets.close()
         return f"{LEVEL}={drawn.numbers.get(LEVEL, 0)}"
 
-    def part(self, block: str | None = None) -> Source:
+    def part(self, block: str | None = None) -> FlowSource:
         """Return this source, which draws on any of the maps."""
         if block is not None and block not in self.blocks:
             raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
@@ -355,10 +355,10 @@ class DatasetSource(Source):
             )
 
 
-def open_source(path: str | Path | Sequence[str | Path]) -> Source:
+def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
     """Open a file, or several of data of the Earth; errors start with the path."""
     paths = dataset_paths(path)
     if not paths:
-        return FlowSource.from_file(one_path(path))
+        return MeshSource.from_file(one_path(path))
     with errors_of_file(paths[0]):
         return DatasetSource(open_datasets(paths), name=common_name(paths))

@@ -18,9 +18,9 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.sources.files import file_identity
 from flowtex.sources.notices import DatasetNotice
-from flowtex.sources.open_source import Source, open_source
+from flowtex.sources.open_source import FlowSource, open_source
+from flowtex.sources.read_files import file_identity
 
 _log = logging.getLogger(__name__)
 
@@ -65,7 +65,7 @@ class Reader:
     """Handler of the requests of a :class:`~flowtex.sources.remote.RemoteSource`."""
 
     def __init__(self) -> None:
-        self._source: Source | None = None
+        self._source: FlowSource | None = None
         #: Steps that are read later, by their numbers in requests.
         self._steps: dict[int, LazySteps] = {}
         self._count = 0
@@ -111,7 +111,7 @@ class Reader:
         return None, [self._steps[steps].step(number)]
 
     @property
-    def _opened(self) -> Source:
+    def _opened(self) -> FlowSource:
         if self._source is None:
             raise RuntimeError("no file is open")
         return self._source
@@ -122,12 +122,12 @@ class Reader:
         return self._count
 
 
-def describe_source(source: Source) -> dict[str, Any]:
+def describe_source(source: FlowSource) -> dict[str, Any]:
     """Return the choices of a source."""
     return {name: getattr(source, name) for name in CHOICES}
 
 
-def take_description(source: Source, description: Mapping[str, Any]) -> None:
+def take_description(source: FlowSource, description: Mapping[str, Any]) -> None:
     """Set the choices of a source, from :func:`describe_source`."""
     for name in CHOICES:
         value = description[name]
@@ -207,7 +207,7 @@ def _check(field: FlowField) -> None:
             raise ValueError(f"{name} is {array.dtype} of shape {array.shape}; expected {shape}")
 
 
-class RemoteSource(Source):
+class RemoteSource(FlowSource):
     """A file, or several, that another process reads and keeps open, and may crash without harm.
 
     That process ends with the source, and with all fields of it whose time steps are read late.
@@ -223,7 +223,7 @@ class RemoteSource(Source):
             raise FieldError(file.malformed(error)) from error
         self.identity = file.identity
         self._file, self._block = file, block
-        self._parts: dict[str | None, Source] = {}
+        self._parts: dict[str | None, FlowSource] = {}
 
     @property
     def alive(self) -> bool:
@@ -234,8 +234,8 @@ class RemoteSource(Source):
         """End the process of the file."""
         self._file.child.close()
 
-    def part(self, block: str | None = None) -> Source:
-        """Return the source of one of the blocks, as :meth:`Source.part` does."""
+    def part(self, block: str | None = None) -> FlowSource:
+        """Return the source of one of the blocks, as :meth:`FlowSource.part` does."""
         if not self.blocks:
             return self
         if block not in self._parts:
@@ -245,7 +245,7 @@ class RemoteSource(Source):
         return self._parts[block]
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :meth:`Source.plane_of` does."""
+        """Return the plane of a level, as :meth:`FlowSource.plane_of` does."""
         return str(self._file.ask("plane_of", level=level)[0])
 
     def _field(

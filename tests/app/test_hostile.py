@@ -27,7 +27,7 @@ from flowtex.app.streaming.stream import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.scene.fields import TracedFlow
-from flowtex.sources.open_source import Source
+from flowtex.sources.open_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -324,7 +324,7 @@ def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.M
     held, opening = threading.Event(), threading.Event()
     entry = library._openers["slow"]
 
-    def waiting() -> Source:
+    def waiting() -> FlowSource:
         opening.set()
         assert held.wait(10)
         return entry()

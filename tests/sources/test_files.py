@@ -16,8 +16,8 @@ from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.files import describe
 from flowtex.sources.meshes.plot3d import find_grid, find_layout, find_solution
+from flowtex.sources.read_files import describe
 from flowtex.sources.reader_errors import errors_of_file
 
 pv = pytest.importorskip("pyvista")

@@ -8,7 +8,7 @@ import pyvista as pv
 
 from flowtex import examples
 from flowtex.errors import FieldError
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
 
 
 def block(steps: int = 1) -> pv.StructuredGrid:
@@ -22,7 +22,7 @@ def block(steps: int = 1) -> pv.StructuredGrid:
 
 
 def test_a_block_offers_its_planes_and_vectors() -> None:
-    source = FlowSource(block(), name="block")
+    source = MeshSource(block(), name="block")
     assert source.dimensions == (7, 6, 5)
     assert source.planes == {"i": 7, "j": 6, "k": 5, "x": 101, "y": 101, "z": 101}
     assert source.vectors == ("wind", "water") and not source.blocks
@@ -33,12 +33,12 @@ def test_a_block_offers_its_planes_and_vectors() -> None:
 
 def test_a_field_is_given_as_it_is() -> None:
     field = examples.airfoil_field()
-    source = FlowSource(field)
+    source = MeshSource(field)
     assert source.field() is field and source.vectors == () and source.name == field.name
 
 
 def test_grids_that_differ_are_blocks_to_choose_from() -> None:
-    source = FlowSource(pv.MultiBlock({"near": block(), "far": examples.double_gyre()}))
+    source = MeshSource(pv.MultiBlock({"near": block(), "far": examples.double_gyre()}))
     assert source.blocks == ("near", "far")
     assert source.field(block="far").shape == examples.double_gyre_field().shape
     with pytest.raises(FieldError, match="block is 'nowhere'; expected one of near, far"):
@@ -52,7 +52,7 @@ def test_a_series_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     text = '<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>'
     path = tmp_path / "series.pvd"
     path.write_text(text + "".join(lines) + "</Collection></VTKFile>")
-    source = FlowSource.from_file(path)
+    source = MeshSource.from_file(path)
     for file in tmp_path.glob("*.vts"):
         file.unlink()
     field = source.field(plane="k=1")

@@ -30,7 +30,7 @@ from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
 from flowtex.scene.fields import TracedFlow
-from flowtex.sources.open_source import Source
+from flowtex.sources.open_source import FlowSource
 from flowtex.textures.tiles.shared import coarsened_field
 
 #: Nodes of another file above which it is first shown coarser, and how many it then has.
@@ -45,7 +45,7 @@ class LoadedFlow:
 
     name: str
     choice: Choice
-    source: Source
+    source: FlowSource
     field: FlowField
     shown: FlowField
     traced: TracedFlow | None = None
@@ -235,7 +235,7 @@ class Data(FlowOpener):
         return Choice(vectors, plane, block)
 
     @property
-    def _part(self) -> Source:
+    def _part(self) -> FlowSource:
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:

@@ -29,11 +29,11 @@ from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.fields import read_field
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.files import Identity, file_identity, members_of
 from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
-from flowtex.sources.open_source import DatasetSource, FlowSource, Source
+from flowtex.sources.open_source import DatasetSource, FlowSource, MeshSource
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
+from flowtex.sources.read_files import Identity, file_identity, members_of
 from flowtex.sources.remote import open_remote, prepare_readers
 
 #: Endings of files that a folder is searched for.
@@ -54,7 +54,7 @@ MOST_SOURCES = 4
 #: Most bytes of the files that stay open.
 SOURCE_BYTES = 2_000_000_000
 
-Opener = Callable[[], Source]
+Opener = Callable[[], FlowSource]
 #: Zoom, and the point of the mesh to look at.
 Look = tuple[float, tuple[float, ...] | None]
 
@@ -126,7 +126,9 @@ class Library:
         #: Files of the folder that cannot be shown, with the reasons.
         self.unshown: dict[str, str] = {}
         # Branches have these in common.
-        self._sources: ByteCache[Opener, Source] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
+        self._sources: ByteCache[Opener, FlowSource] = ByteCache(
+            SOURCE_BYTES, max_count=MOST_SOURCES
+        )
         self._fields = WeakValueDictionary[tuple[Opener, Choice], FlowField]()
         #: The state of the files from which each field was made.
         self._identities = WeakKeyDictionary[FlowField, Identity]()
@@ -178,7 +180,7 @@ class Library:
                 name = paths[0].name if len(paths) == 1 else common_name(paths)
                 openers[_free(name, openers)] = _Files(paths)
                 continue
-            source = flow if isinstance(flow, Source) else _source_of(flow, options)
+            source = flow if isinstance(flow, FlowSource) else _source_of(flow, options)
             openers[_free(source.name or "flow", openers)] = _constant(source)
         return cls(openers, None if folder is None else Path(folder))
 
@@ -191,7 +193,7 @@ class Library:
         self._openers = {**self._named, **found, **self._own}
         return tuple(self._openers)
 
-    def source(self, name: str) -> Source:
+    def source(self, name: str) -> FlowSource:
         """Return a source, and open it if it is not open or its file has changed.
 
         Raises
@@ -274,17 +276,17 @@ class Library:
         return field
 
 
-def _source_of(flow: Any, options: dict[str, Any]) -> Source:
+def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Return a source of a flow, or of the field that options select from a mesh."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:
         return DatasetSource(flow)
     if isinstance(flow, FlowField) or not options:
-        return FlowSource(flow)
-    return FlowSource(read_field(flow, FieldOptions(**options)))
+        return MeshSource(flow)
+    return MeshSource(read_field(flow, FieldOptions(**options)))
 
 
-def _constant(source: Source) -> Opener:
+def _constant(source: FlowSource) -> Opener:
     return lambda: source
 
 
@@ -294,12 +296,12 @@ class _Files:
 
     paths: tuple[Path, ...]
 
-    def __call__(self) -> Source:
+    def __call__(self) -> FlowSource:
         if not self._is_store:
             return open_remote(self.paths)
         # Only the parts of a pyramid that are drawn are read, with checks.
         identity = self.identity
-        source = FlowSource(open_store(self.paths[0]), name=self.paths[0].stem)
+        source = MeshSource(open_store(self.paths[0]), name=self.paths[0].stem)
         source.identity = identity
         return source
 
@@ -318,8 +320,8 @@ class _Line:
 
     text: str
 
-    def __call__(self) -> Source:
-        return FlowSource(line_field(self.text))
+    def __call__(self) -> FlowSource:
+        return MeshSource(line_field(self.text))
 
 
 def _identity(opener: Opener) -> Identity:

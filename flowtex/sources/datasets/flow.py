@@ -68,7 +68,7 @@ from flowtex.sources.datasets.values import (
     read_step,
 )
 from flowtex.sources.models.conventions import find_mesh, join_faces
-from flowtex.sources.models.mesh import POINTS, Mesh
+from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 

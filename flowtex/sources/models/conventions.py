@@ -19,7 +19,7 @@ from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axi
 from flowtex.sources.datasets.coordinates import ACROSS, LATITUDE, LONGITUDE, UPWARD
 from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
-from flowtex.sources.models.mesh import POINTS, Mesh
+from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from flowtex import FlowField
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.serialization import from_link, to_link
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -38,7 +38,7 @@ def other(*, steps: int = 1, **options: Any) -> FlowField:
 
 
 def page(*flows: Any, **named: Any) -> FlowApp:
-    openers = {name: (lambda flow=flow: FlowSource(flow)) for name, flow in named.items()}
+    openers = {name: (lambda flow=flow: MeshSource(flow)) for name, flow in named.items()}
     app = FlowApp(Library(openers) if openers else Library.of(*flows), samples=5)
     app.stream.update_size("test", {"w": 240, "h": 80, "p": 1})
     return app
@@ -251,7 +251,7 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
 
 def test_a_choice_is_taken_as_far_as_a_file_has_it() -> None:
     parts = pv.MultiBlock({"large": block(1.0, 6), "small": block(1.0, 3)})
-    library = Library({"blocks": lambda: FlowSource(parts), "one": lambda: FlowSource(small())})
+    library = Library({"blocks": lambda: MeshSource(parts), "one": lambda: MeshSource(small())})
     wanted = Choice("wind", "k=2", "small")
     assert library.nearest("blocks", wanted) == wanted
     assert library.nearest("blocks", Choice("wind", "k=5", "small")) == Choice(

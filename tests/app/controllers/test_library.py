@@ -16,8 +16,8 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import build
 from flowtex.scene.fields import TracedFlow
 from flowtex.settings import Settings
-from flowtex.sources.files import file_identity
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
+from flowtex.sources.read_files import file_identity
 from flowtex.textures.tiles.shared import has_pyramid
 
 
@@ -57,7 +57,7 @@ def test_pyramids_in_a_folder_are_offered(folder: Path) -> None:
 
 
 def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
-    source = FlowSource(small())
+    source = MeshSource(small())
     shared = Library({"flow.vts": lambda: source})
     one, other = shared.branch(), shared.branch()
     examples.double_gyre(1.0).save(tmp_path / "flow.vts")
@@ -194,7 +194,7 @@ def test_a_source_whose_process_has_died_is_opened_anew(
 
 def test_a_formula_that_is_typed_is_a_flow_where_that_is_allowed() -> None:
     line = "y; -sin(x) - b*y; x=-7,7; b=0.2"
-    flows = {"gyre": lambda: FlowSource(small())}
+    flows = {"gyre": lambda: MeshSource(small())}
     library = Library(flows, typed=True).branch()
     field = library.field(line, library.complete(line, Choice()))
     assert field.formula is not None and field.formula.texts == ("y", "-sin(x) - b*y")

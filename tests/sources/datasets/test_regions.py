@@ -13,7 +13,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field.field_arrays import GridArrays
 from flowtex.field.options import FieldOptions
 from flowtex.field.validation import NO_DATA
-from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 
 xr = pytest.importorskip("xarray")

@@ -12,9 +12,9 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.files import describe
 from flowtex.sources.meshes.vectors import find_vectors
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
+from flowtex.sources.read_files import describe
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -172,7 +172,7 @@ def test_components_that_make_no_vector(vectors: str, fault: str) -> None:
 
 def test_components_of_a_file(tmp_path: Path) -> None:
     mesh(k=3).save(tmp_path / "flow.vts")
-    source = FlowSource.from_file(tmp_path / "flow.vts")
+    source = MeshSource.from_file(tmp_path / "flow.vts")
     assert source.vectors == ("Velocity",)
     assert np.all(source.field(plane="k=1").velocity == (1, 2, 3))
     summary = describe(tmp_path / "flow.vts")

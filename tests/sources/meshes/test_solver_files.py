@@ -13,8 +13,8 @@ from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, wr
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
-from flowtex.sources.files import BlockSummary, describe
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
+from flowtex.sources.read_files import BlockSummary, describe
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -93,7 +93,7 @@ def test_blocks_with_times_are_read_when_they_are_asked_for(
     tmp_path: Path, write: Callable[[Path], Path]
 ) -> None:
     path = write(tmp_path / ("flow.cgns" if write is cgns else "flow.case"))
-    source = FlowSource.from_file(path)
+    source = MeshSource.from_file(path)
     assert source.nbytes == 0
     last = source.blocks[1]
     assert source.block_vectors[last][0].lower() == "velocity"
@@ -146,7 +146,7 @@ def test_openfoam_tells_its_patches_and_times(tmp_path: Path) -> None:
     cut = FlowField.from_file(path, slice="z", time=TIMES[0])
     assert cut.steady and np.ptp(cut.points[..., 2]) < 1e-6
     assert FlowField.from_file(path, block="boundary/walls").triangles is not None
-    source = FlowSource.from_file(path)
+    source = MeshSource.from_file(path)
     assert source.blocks[0] == "internalMesh" and "boundary/walls" in source.blocks
 
 

@@ -16,7 +16,7 @@ from strategies import property_test
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
 from flowtex.field.triangles.triangle_surface import TriangleSurface
-from flowtex.sources.open_source import FlowSource
+from flowtex.sources.open_source import MeshSource
 
 pv = pytest.importorskip("pyvista")
 
@@ -381,7 +381,7 @@ def test_vectors_beside_a_file(tmp_path: Path, suffix: str) -> None:
     np.testing.assert_allclose(
         field.velocity[0, 0], np.cross([0, 0, 1.0], field.points[0]), atol=1e-6
     )
-    assert field.name == "ball" and FlowSource.from_file(path).field().shape == field.shape
+    assert field.name == "ball" and MeshSource.from_file(path).field().shape == field.shape
     np.save(tmp_path / "ball.npy", [flow, 2 * flow])
     assert FlowField.from_file(path).times.tolist() == [0, 1]
     assert FlowField.from_file(path, time=1).steady
@@ -417,7 +417,7 @@ def test_vectors_that_do_not_fit(tmp_path: Path, vectors: Any, text: str) -> Non
 
 
 def test_a_volume_offers_its_cuts() -> None:
-    source = FlowSource(uniform(box().to_tetrahedra(pass_data=False)))
+    source = MeshSource(uniform(box().to_tetrahedra(pass_data=False)))
     assert source.dimensions is None
     assert source.planes == {"outer": 1, "x": 101, "y": 101, "z": 101}
     assert source.default_plane == "x=0.5" and source.plane_number("x=0.5") == 50
@@ -431,7 +431,7 @@ def test_a_volume_offers_its_cuts() -> None:
             assert source.field(plane=plane).triangles is not None
     assert source.plane_number("k=1") is None and source.plane_number("x=nan") is None
     assert source.plane_number("outer=1e999") is None
-    surface = FlowSource(turning(pv.Sphere()))
+    surface = MeshSource(turning(pv.Sphere()))
     assert surface.planes == {} and surface.default_plane == ""
 
 

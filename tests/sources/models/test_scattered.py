@@ -15,7 +15,7 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.units import factor
 from flowtex.sources.models.conventions import healpix_centres
-from flowtex.sources.models.mesh import join_points
+from flowtex.sources.models.model_mesh import join_points
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 

@@ -20,7 +20,7 @@ import numpy as np
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import OF_EARTH, FieldOptions
-from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.meshes import plot3d
@@ -35,7 +35,7 @@ from flowtex.sources.meshes.parts import (
     time_steps,
     times_of,
 )
-from flowtex.sources.meshes.read import choose, read_meshes
+from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
