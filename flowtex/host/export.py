@@ -45,14 +45,10 @@ from flowtex.host.view import (
 )
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
-from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
+from flowtex.rendering.webgl.protocol import Header, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
 
-#: Size of slices after packing, over that before, base64 included.
-PACKED_SHARE = 0.45
-#: The same of values.
-VALUES_SHARE = 0.75
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
@@ -223,23 +219,14 @@ def _with_tiles(scene: ClientData) -> ClientData:
     if pyramid is None:
         return scene
     finest, room = pyramid.depth, float(TILE_BYTES)
-    root = _arrays_bytes(scene) / math.prod(pyramid.shape(pyramid.depth))
+    surface, step = (
+        sum(len(part_text(part)[1]) for part in parts.values())
+        for parts in (scene.surface(), scene.step(0))
+    )
+    root = (surface + scene.steps * step) / math.prod(pyramid.shape(pyramid.depth))
     while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
         finest -= 1
     return replace(scene, pyramid=pyramid if finest < pyramid.depth else None, finest=finest)
-
-
-def _arrays_bytes(scene: ClientData) -> float:
-    """Estimate the packed bytes of the arrays of a scene without tiles; no slices are made."""
-    surface = _packed_bytes(scene.surface())
-    if scene.traced:
-        return surface + scene.steps * _packed_bytes(scene.step(0))
-    values = VALUES_SHARE * scene.nbytes_of_values
-    return surface + scene.steps * (PACKED_SHARE * scene.nbytes_of_step + values)
-
-
-def _packed_bytes(parts: Parts) -> int:
-    return sum(len(part_text(part)[1]) for part in parts.values())
 
 
 @dataclass(frozen=True)

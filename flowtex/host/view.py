@@ -227,13 +227,11 @@ def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
     """Return evenly spaced time steps, ``steps`` out of ``count``; empty for all of them."""
     if steps is None:
         return ()
-    expected = f"1 to {count}, the time steps of the field"
-    steps = checked_count("steps", steps, expected=expected)
+    steps = checked_count("steps", steps, expected=f"1 to {count}, the time steps of the field")
     if steps >= count:
         return ()
-    if steps == 1:
-        return (count - 1,)
-    return tuple(round(n * (count - 1) / (steps - 1)) for n in range(steps))
+    first = 0 if steps > 1 else count - 1
+    return tuple(np.rint(np.linspace(first, count - 1, steps)).astype(int).tolist())
 
 
 @dataclass(frozen=True, eq=False)

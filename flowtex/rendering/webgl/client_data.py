@@ -9,7 +9,6 @@ Positions and scalars keep single precision.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -345,21 +344,6 @@ class ClientData:
             return shown
         around = (velocity.steps_around(self.textures, step) for step in shown)
         return tuple(sorted(set().union(*around)))
-
-    @property
-    def nbytes_of_step(self) -> int:
-        """Bytes of the flow of one destination time, known before anything is traced."""
-        geometry = self.textures.geometry
-        texels = math.prod(geometry.size)
-        if self.traced:
-            return velocity.NODE_BYTES * geometry.field.valid.size
-        numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
-        return 2 * texels * numbers
-
-    @property
-    def nbytes_of_values(self) -> int:
-        """Bytes of the values of one time that colours may have."""
-        return 4 * math.prod(self.textures.geometry.shape) * len(self._values)
 
     @property
     def _values(self) -> dict[int, Floats]:
