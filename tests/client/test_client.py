@@ -167,44 +167,6 @@ def test_a_drag_carries_the_picture_along(client: ClientPage) -> None:
     assert number(client, "events.filter(([name]) => name === 'onCamera').length") >= 2
 
 
-def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientPage) -> None:
-    squares = scene(gyre, straight(3, (0.8, 0.5)))
-    client.mount(squares, SIZE, **PLAIN)
-    before = client.picture()
-    view = "viewers[0]"
-    slow = f"{view}.graphics.programs.entries.forEach((p) => {{ p.price = 1 }})"
-    ahead = f"{view}.camera.pan(-60 / 180, 20 / 120); {view}.reportCamera(); {view}.draw()"
-    number(client, f"{{ {slow}; {ahead}; }}")
-    moved = client.pixels()
-    assert not number(client, "viewers[0].sharp")
-    np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
-    number(client, f"{{ {slow}; {view}.camera.zoomBy(1.5, 0.2, 0.1); {view}.reportCamera() }}")
-    number(client, "viewers[0].draw()")
-    near = client.pixels().astype(float)
-    number(client, "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1e-5 })")
-    sharp = client.picture().astype(float)
-    inner = (slice(40, 100), slice(60, 160))
-    shown, expected = near[inner].ravel(), sharp[inner].ravel()
-    assert np.std(expected) > 20
-    assert np.corrcoef(shown, expected)[0, 1] > 0.95
-    beside = np.corrcoef(near[inner].ravel(), np.roll(sharp, 3, axis=1)[inner].ravel())[0, 1]
-    assert beside < 0.9
-
-
-def test_a_coarse_picture_has_no_line_along_its_edges(client: ClientPage) -> None:
-    client.mount(scene(gyre, straight(8)), SIZE, **PLAIN)
-    client.sharp()
-    slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
-    busy = "viewers[0].busyUntil = Infinity; viewers[0].setSettings({ contrast: 1.5 })"
-    number(client, f"{{ {slow}; {busy}; viewers[0].draw() }}")
-    assert not number(client, "viewers[0].sharp")
-    coarse = client.pixels().astype(float)
-    # Five pixels by one that was drawn: beyond the middle of the outermost there is nothing else.
-    for outer, inner in ((0, 1), (-1, -2)):
-        np.testing.assert_allclose(coarse[outer], coarse[inner], atol=3)
-        np.testing.assert_allclose(coarse[:, outer], coarse[:, inner], atol=3)
-
-
 def test_the_wheel_zooms_to_the_pointer(client: ClientPage) -> None:
     client.mount(scene(torus, ASIDE), SIZE, **PLAIN)
     client.sharp()
@@ -402,33 +364,6 @@ def test_a_lost_context_comes_back_with_the_same_picture(client: ClientPage) -> 
     np.testing.assert_array_equal(client.picture(), before)
 
 
-def test_a_context_that_is_lost_while_paths_are_traced(client: ClientPage) -> None:
-    settings = Settings(samples=5)
-    data = ClientData(TextureSet.build(SliceStore(gyre())), traces=True)
-    assert data.traced
-    given = packed(data, data.header(settings))
-    client.mount(given, SIZE, **PLAIN)
-    before = client.picture()
-    lose = """() => {
-      const { gl } = viewers[0].graphics;
-      const draw = gl.drawArrays;
-      let passes = 0;
-      window.ext = gl.getExtension("WEBGL_lose_context");
-      gl.drawArrays = (...given) => {
-        draw.apply(gl, given);
-        if (viewers[0].graphics.tracings.size && ++passes === 3) ext.loseContext();
-      };
-    }"""
-    client.page.evaluate(lose)
-    second = client.mount(given, SIZE, **PLAIN)
-    client.page.wait_for_function("() => viewers[0].graphics.isLost")
-    assert not number(client, f"viewers[{second}].sharp")
-    number(client, "ext.restoreContext()")
-    client.page.wait_for_function("() => !viewers[0].graphics.isLost")
-    np.testing.assert_array_equal(client.picture(second), before)
-    number(client, "delete viewers[0].graphics.gl.drawArrays")
-
-
 def test_many_viewers_draw_and_leave_nothing(client: ClientPage) -> None:
     given = scene(samples=5)
     before = number(client, "document.querySelectorAll('*').length")
@@ -484,39 +419,6 @@ def test_what_cannot_be_drawn_is_told(client: ClientPage, fault: str) -> None:
 
 TAKE = """(given) => { viewers[0].setHeader(given.header);
   for (const part of unpack(given.parts)) viewers[0].setPart(part); }"""
-
-
-def test_a_view_without_a_scene_takes_all_without_an_error(client: ClientPage) -> None:
-    """And has it where it tells when the scene comes."""
-    given = scene()
-    early = """(given) => {
-      const element = document.createElement("div");
-      element.className = "view";
-      document.body.append(element);
-      const viewer = new client.Viewer(element, { controls: false, smooth: false });
-      viewers.push(viewer);
-      const { position, focal_point, ...rest } = given.header.camera;
-      const camera = { position: [9, 9, 9], focal_point, ...rest };
-      viewer.setCamera(camera);
-      camera.position[0] = 5; // a copy was taken
-      viewer.recolour({});
-      viewer.chooseColours({ cmap: "magma" });
-      viewer.followSetting("grain", 3);
-      viewer.choose("contrast", 2);
-      const commands = ["reset", "reportCamera", "play", "pause", "togglePlaying", "draw", "lost"];
-      for (const name of commands) viewer[name]();
-      viewer.lack("a reason", "0/0/0");
-      viewer.setPart({ name: "tile/0/0/0/position", digest: "", data: new Float32Array(3) });
-      return [viewer.cameraState.position, viewer.playing, viewer.canPick, viewer.painter.smooth,
-        viewer.lacking, viewer.point(0, 0), viewer.ground(0, 0)];
-    }"""
-    told = client.page.evaluate(early, given)
-    assert told == [[9, 9, 9], False, False, False, [], None, None]
-    client.page.evaluate(TAKE, given)
-    assert client.picture().std() > 10
-    assert (
-        number(client, "viewers[0].cameraState.position") == given["header"]["camera"]["position"]
-    )
 
 
 def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> None:
@@ -610,41 +512,3 @@ def test_a_widget_shows_its_model_and_tells_it_what_a_person_does(client: Client
     number(client, "left()")
     assert number(client, "[...model.handlers.values()].flat().length") == 0
     assert not number(client, "host.isConnected")
-
-
-def test_a_widget_takes_traits_and_messages_as_they_come(client: ClientPage) -> None:
-    page = client.page
-    given = scene(gyre, straight(2))
-    page.evaluate(MODEL, [given, [200, 140]])
-    page.wait_for_function("() => host.dataset.sharp === 'true'")
-    for size, expected in (([120, 0], ["120px", "480px"]), (None, ["100%", "480px"])):
-        page.evaluate("(size) => model.set('size', size)", size)
-        style = "(({ width, height }) => [width, height])(host.parentElement.style)"
-        assert number(client, style) == expected
-    number(client, "(model.set('bar', false), null)")
-    assert page.locator(".flowtex .bar").is_hidden()
-    for playing in (True, False):
-        page.evaluate("(playing) => model.set('playing', playing)", playing)
-        button = page.locator(".flowtex [data-name=play]")
-        label = button.get_attribute("aria-label") or ""
-        assert label.startswith("Pause" if playing else "Play")
-    for name, value in (("camera", None), ("time", 0.5), ("clock", 1.5)):
-        page.evaluate("(given) => model.set(...given)", [name, value])
-    number(client, "(model.fire('msg:custom', null, []), null)")
-    number(client, "(model.fire('msg:custom', { kind: 'loaded', request: 'x' }, []), null)")
-    assert number(client, "host.dataset.failed") is None
-    # Parts of a scene that is still to come wait for its header.
-    page.wait_for_function("() => host.dataset.sharp === 'true'")
-    page.evaluate(
-        """(parts) => model.fire("msg:custom", { kind: "parts", generation: 1, parts },
-          parts.map((part) => new DataView(bytes(part).buffer)))""",
-        list(given["parts"].values()),
-    )
-    assert number(client, "host.dataset.sharp") == "true"
-    frames = number(client, "Number(host.dataset.frames)")
-    number(client, "(model.set('_header', { ...model.get('_header'), generation: 1 }), null)")
-    drawn = "(n) => Number(host.dataset.frames) !== n && host.dataset.sharp === 'true'"
-    page.wait_for_function(drawn, arg=frames)
-    number(client, "(model.fire('msg:custom', { kind: 'error', text: 'no disk' }, []), null)")
-    assert "no disk" in page.locator(".flowtex .note").inner_text()
-    number(client, "left()")

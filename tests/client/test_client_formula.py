@@ -208,7 +208,7 @@ COVERING = """() => {
 }"""
 
 
-@pytest.mark.parametrize("size", [(120, 90), (200, 260), (320, 240), (400, 270)])
+@pytest.mark.parametrize("size", [(120, 90), (200, 260), (400, 270)])
 @pytest.mark.parametrize("name", ["series", "formula"])
 def test_nothing_covers_the_flow_of_a_small_page(
     browser: Browser, tmp_path: Path, size: tuple[int, int], name: str

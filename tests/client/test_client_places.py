@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flows import torus
-from matrix import ASIDE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
@@ -59,18 +57,6 @@ CRACKS = """(size) => {
   }
   return found;
 }"""
-#: Counts the passes over triangles and over pixels.
-COUNT = """() => {
-  const { places } = viewers[0].painter;
-  window.passes = { triangles: 0, sum: 0 };
-  for (const name of ["triangles", "sum"]) {
-    const real = places[name].bind(places);
-    places[name] = (...given) => {
-      passes[name] += 1;
-      return real(...given);
-    };
-  }
-}"""
 
 
 def fine_torus() -> FlowField:
@@ -108,19 +94,3 @@ def test_no_crack_opens_where_nodes_are_left_out(client: ClientPage, make: Any) 
     found = client.page.evaluate(CRACKS, [80, 60])
     assert found["mixed"] > 20 and found["inside"] > 2_000
     assert found["cracks"] == 0
-
-
-def test_triangles_are_drawn_once_for_a_view(client: ClientPage) -> None:
-    mounted(client, torus(), ASIDE, (420, 300))
-    client.page.evaluate(COUNT)
-    client.page.evaluate("""() => {
-      const { cameraState: { position: [x, y, z], ...others } } = viewers[0];
-      viewers[0].setCamera({ ...others, position: [x + 0.1, y, z] });
-    }""")
-    client.sharp()
-    passes = client.page.evaluate("passes")
-    assert passes["triangles"] == 2  # of the draft, and of the full picture
-    assert passes["sum"] > 2  # in strips
-    points = "[-0.5, -0.4, -0.3, 0.4, 0.5].map((x) => viewers[0].point(x, -0.1))"
-    assert all(client.page.evaluate(points))
-    assert client.page.evaluate("passes") == passes

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,6 @@ from numpy.typing import NDArray
 from pages import COMPLETE, acted, opened_page
 from PIL import Image
 from range_server import Answer, RangeServer, range_server
-from waiting import PATIENCE_S, wait_until
 
 from flowtex import FlowField
 from flowtex.host.export import export
@@ -306,16 +304,6 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
     assert tiles_of(server)
 
 
-def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
-    shown: Shown, server: RangeServer
-) -> None:
-    server.fault = lambda path: 404 if path.startswith("flat.zarr/0/flow/c/0/0/1/") else None
-    shown.open(linked(server, "flat", **{**NEAR, "zoom": 16, "focus": (3.8, 1.0)}).as_uri())
-    shown.told()
-    shown.wait()
-    assert set(tiles_of(server)) == {"0/0/1", "1/0/0"}
-
-
 @pytest.mark.parametrize("lacking", ["flow/c/0/", "values/c/0/0/0/1/"])
 def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
     shown: Shown, server: RangeServer, lacking: str
@@ -334,68 +322,6 @@ def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
     else:
         shown.choose("Colour by", "depth")
     assert [path for path in server.paths if path.startswith(others)]
-
-
-def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
-    shown: Shown, server: RangeServer
-) -> None:
-    """Though another one came after it was requested."""
-    page = linked(server, "flat", **NEAR)
-    tried: list[str] = []
-    is_told = threading.Event()
-
-    def answer(path: str) -> Answer:
-        if not path.startswith("flat.zarr/0/flow/c/"):
-            return None
-        tried.append(path)
-        if path == tried[0]:
-            return 503 if tried.count(path) <= 4 else None
-        assert is_told.wait(PATIENCE_S)
-        return None
-
-    server.fault = answer
-    shown.page.clock.install()
-    shown.open(page.as_uri())
-    told = shown.page.locator(".flowtex .told")
-
-    def later(holds: Callable[[], object]) -> None:
-        """Let seconds of the page's clock go by until something holds."""
-
-        def is_late() -> object:
-            shown.page.clock.fast_forward(1000)
-            return holds()
-
-        wait_until(is_late)
-
-    later(told.is_visible)
-    assert "the store does not answer" in told.inner_text()
-    is_told.set()
-    later(shown.page.locator(COMPLETE).is_visible)
-    assert tried.count(tried[0]) == 5 and len(set(tried)) > 1
-
-
-def test_what_is_not_looked_at_any_more_is_given_up(shown: Shown, server: RangeServer) -> None:
-    page = linked(server, "flat", **NEAR)
-    is_over = threading.Event()
-    tried: list[str] = []
-
-    def answer(path: str) -> Answer:
-        if path.startswith("flat.zarr/0/flow/c/"):
-            tried.append(path)
-            assert path != tried[0] or is_over.wait(PATIENCE_S)
-        return None
-
-    server.fault = answer
-    gone: list[str] = []
-    shown.page.on("requestfailed", lambda request: gone.append(request.url))
-    with shown.page.expect_request("**/0/flow/c/**"):
-        shown.open(page.as_uri())
-    for _ in range(6):
-        shown.drag()
-    shown.wait()
-    is_over.set()
-    assert [url for url in gone if "/flow/c/" in url]
-    assert shown.page.locator(".flowtex .told").is_hidden()
 
 
 def test_a_page_of_two_views_beside_its_store(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -255,60 +254,6 @@ def test_tiles_of_the_times_around_that_of_the_view(client: ClientPage, plotter:
     client.complete(viewer)
     asked = [address for address in client.asked if "tiles.test" in address]
     assert asked[-1].endswith(",[0]]")
-
-
-def deep() -> flowtex.FlowField:
-    """The two vortices with another scalar."""
-    return replace(field(), scalars={"depth": field().points[None, ..., 0] ** 2})
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("host", [False, True], ids=["page", "host"])
-def test_other_colours_of_tiles_are_those_of_new_ones(client: ClientPage, host: bool) -> None:
-    """A page has all values and changes colours by itself; a host is requested others."""
-    camera = CAMERAS["near"]
-    first = {"scalars": "speed", "cmap": "viridis"}
-    then = {"scalars": "depth", "cmap": "magma", "clim": (0.1, 0.6)}
-    views = [
-        web_views(deep(), Options.split(background=GROUND, **{**LOOK, **colours}))[0]
-        for colours in (first, then)
-    ]
-    data = [view.data() if host else view.page_data() for view in views]
-    shown = [0]
-
-    def tile(key: Any, steps: Any) -> Any:
-        return tile_maker(data[shown[0]])(key, steps)
-
-    client.tile = tile
-    headers = [
-        d.header(v.scene.settings, camera=state(camera)) for d, v in zip(data, views, strict=True)
-    ]
-    size: Any = {"size": SIZE, "controls": False, "smooth": False}
-    scenes = [packed(d, {**h, "generation": 1}) for d, h in zip(data, headers, strict=True)]
-    viewer = client.mount(scenes[0], **size)
-    client.complete(viewer)
-    before, asked = client.pixels(viewer), len(client.tiles)
-    shown[0] = 1
-    if host:
-        take = """([n, { header, parts }]) => {
-          viewers[n].setHeader(header);
-          for (const part of unpack(parts)) viewers[n].setPart(part);
-        }"""
-        client.page.evaluate(take, [viewer, scenes[1]])
-        client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
-    else:
-        client.page.evaluate("([n, c]) => viewers[n].chooseColours(c)", [viewer, then])
-    client.complete(viewer)
-    changed, layers_then = client.pixels(viewer).astype(int), layers(client, viewer)
-    assert len(layers_then) > 1
-    assert np.abs(changed - before).mean() > 10
-    assert (len(client.tiles) > asked) == host
-    client.clear()
-    viewer = client.mount(scenes[1], **size)
-    client.complete(viewer)
-    assert layers(client, viewer) == layers_then
-    off = np.abs(changed - client.pixels(viewer)).max(axis=-1)
-    assert (off > 3).mean() < 0.001
 
 
 @cache

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from flows import gyre, holed, lines, swinging, torus, uncertain
+from flows import gyre, lines, swinging, torus, uncertain
 from matrix import ROOT, SHARE, SIZE, difference, straight
 from pages import COMPLETE, opened_page
 from webgl_page import ClientPage, packed, state
@@ -24,7 +24,6 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl.client_data import ClientData, Colours
-from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.scene.options import Options
 from flowtex.settings import Settings
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
@@ -92,14 +91,12 @@ def waves() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y, z], -1), np.stack([u, v, slope], -1))
 
 
-def globe(*axis: float, uneven: float = 0.0, turned: bool = False, columns: int = 61) -> FlowField:
-    """A globe that turns around an axis, by parallels or, ``turned``, by meridians."""
+def globe(*axis: float, uneven: float = 0.0, columns: int = 61) -> FlowField:
+    """A globe that turns around an axis."""
     rows = columns // 2 + 1
     angle, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, columns), np.linspace(90, -90, rows))
     a, b = angle + uneven * np.sin(angle), np.radians(latitude)
     points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
-    if turned:
-        points = points.transpose(1, 0, 2)
     return FlowField.from_arrays(points, np.cross(axis, points))
 
 
@@ -122,13 +119,10 @@ def bowl() -> FlowField:
 FIELDS: dict[str, tuple[Callable[[], FlowField], str]] = {
     "across": (lambda: globe(1, 0, 0), "arclength"),
     "uneven": (lambda: globe(1, 0.5, 0, uneven=0.3), "time"),
-    "turned": (lambda: globe(0.3, 0, 1, turned=True), "arclength"),
     "winds": (winds, "arclength"),
     "bowl": (bowl, "time"),
-    "plane": (gyre, "arclength"),
     "bent": (waves, "time"),
     "torus": (torus, "time"),
-    "hole": (holed, "arclength"),
     "ring": (examples.airfoil_field, "arclength"),
     "uncertain": (lambda: uncertain(waves()), "arclength"),
 }
@@ -313,23 +307,18 @@ def test_without_targets_of_floats_slices_are_the_same(browser: Browser, tmp_pat
 
 
 def test_what_a_client_cannot_trace_comes_as_slices() -> None:
-    view = web_views(lines(), Options.split())[0]
-    data = replace(view.page_data(), traces=True)
-    assert not data.traced and "slices/0" in data.step(0) and "position" in data.surface()
-
-
-def test_pathlines_through_steps_that_are_left_out_come_as_slices() -> None:
-    chosen = web_views(swinging(), Options.split(lines="pathlines"), steps=2)[0].page_data()
-    whole = web_views(swinging(), Options.split(lines="pathlines"))[0].page_data()
-    assert (chosen.traced, whole.traced) == (False, True)
-    assert whole.moment(0.0) == (0, 1, 2)  # the steps that paths lead through
-
-
-def test_cells_of_very_different_sizes_come_as_slices() -> None:
     x = np.concatenate([np.linspace(0, 1e-6, 30), [1.0, 2.0]])
     points = np.stack(np.meshgrid(x, x), axis=-1)
-    field = FlowField.from_arrays(points, np.ones_like(points))
-    assert not can_trace(web_views(field, Options.split())[0].scene.textures)
+    uneven_cells = FlowField.from_arrays(points, np.ones_like(points))
+    paths = Options.split(lines="pathlines")
+    for view in (
+        *(web_views(field, Options.split())[0] for field in (lines(), uneven_cells)),
+        web_views(swinging(), paths, steps=2)[0],  # paths lead through steps that are left out
+    ):
+        data = replace(view.page_data(), traces=True)
+        assert not data.traced and "slices/0" in data.step(0) and "position" in data.surface()
+    whole = web_views(swinging(), paths)[0].page_data()
+    assert whole.traced and whole.moment(0.0) == (0, 1, 2)
 
 
 @pytest.mark.filterwarnings("ignore:The velocity is zero")

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
-from matrix import ASIDE, COLOUR, GROUND, ROOT, SIZE, straight
-from pages import opened_page
-from PIL import Image
+from matrix import ASIDE, COLOUR, GROUND, SIZE, straight
 from triangle_meshes import random_plane, sphere, surface_of
 from webgl_page import ClientPage, packed, state, tile_maker
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
 from flowtex.field.locate import locate
-from flowtex.host.export import export
 from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
@@ -30,10 +24,6 @@ from flowtex.scene.options import Options
 from flowtex.scene.probe import probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
-
 
 pytestmark = pytest.mark.browser
 
@@ -73,57 +63,6 @@ def judged(scene: Scene, camera: Camera, size: tuple[int, int] = SIZE) -> Bytes:
     view = ViewState(between=between)
     drawn = render(scene.textures, scene.settings, camera, size, view=view, steps=(before, after))
     return drawn.rgb(COLOUR, background=GROUND)
-
-
-def canvas(page: Page) -> Bytes:
-    """What a page shows of its flow, (H, W, 3)."""
-    find = "document.querySelector('.flowtex').shadowRoot.querySelector('canvas')"
-    data = page.evaluate(f"{find}.toDataURL('image/png').split(',')[1]")
-    with Image.open(io.BytesIO(base64.b64decode(data))) as image:
-        return np.asarray(image.convert("RGB"))
-
-
-def test_a_page_is_drawn_and_tells_points(browser: Browser, tmp_path: Path) -> None:
-    look: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
-    made = export(ball(), tmp_path / "page.html", background=GROUND, samples=11, **look)
-    with opened_page(browser) as page:
-        tells_points(page, made.path)
-
-
-def tells_points(page: Page, path: Path) -> None:
-    said: list[str] = []
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto(path.as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
-    page.wait_for_function("() => !document.getElementById('preview')")
-    scene = Scene(ball(), Settings(samples=11))
-    shown = canvas(page).astype(float)  # the flow stands between title and controls
-    height, width = shown.shape[:2]
-    aspect = width / height
-    camera = Camera.fit(ball().surface, aspect)
-    ours = judged(scene, camera, (width, height))
-    inside = (ours != np.rint(255 * np.array(GROUND))).any(axis=-1)
-    y, x = np.mgrid[:height, :width]
-    inside &= np.hypot(x - width / 2, y - height / 2) < 0.4 * height  # outlines are smooth
-    off = (shown - ours)[inside]
-    assert inside.mean() > 0.1
-    assert np.sqrt(np.mean(off**2)) < 1.5 * ROOT
-    box = page.locator(".flowtex canvas").bounding_box()
-    assert box is not None
-    at = np.array([width / 2 + 10, height / 2 - 10])
-    page.mouse.click(box["x"] + at[0], box["y"] + at[1])
-    page.locator(".flowtex .card").wait_for()
-    words, numbers = (page.locator(f".card {kind}").all_inner_texts() for kind in ("dt", "dd"))
-    told = dict(zip(words, numbers, strict=True))
-    position = np.array([float(x) for x in told["position"].strip("()").split(",")])
-    assert np.linalg.norm(position) == pytest.approx(1, abs=0.01)
-    assert float(told["height"]) == pytest.approx(position[2], abs=1e-3)
-    place = camera.project(position, aspect)
-    click = [2 * (at[0] + 0.5) / width - 1, 1 - 2 * (at[1] + 0.5) / height]
-    np.testing.assert_allclose(place, click, atol=0.02)
-    speed = np.hypot(*position[:2]) * (1 - 0.4 * position[2])
-    assert float(told["speed"]) == pytest.approx(speed, abs=0.01)
-    assert said == []
 
 
 PATHS: dict[str, tuple[Any, Camera]] = {

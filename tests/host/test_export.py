@@ -6,7 +6,6 @@ import io
 import json
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,14 +67,6 @@ def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None
         assert parts[name].dtype == array.dtype
         np.testing.assert_array_equal(parts[name], array)
     assert made.nbytes == made.path.stat().st_size and made.steps == 4
-
-
-def test_a_page_of_the_post_is_small(
-    data_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.undo()  # with the preview that others get
-    field = flowtex.FlowField.from_file(data_dir / "postxyz.bin", plane="k=20")
-    assert export(field, tmp_path / "post.html").nbytes < 1_000_000
 
 
 def test_fewer_steps_make_a_smaller_page(tmp_path: Path) -> None:
@@ -214,42 +205,6 @@ def test_a_module_shows_its_flow_in_any_page(page: Page, tmp_path: Path) -> None
 
 
 @pytest.mark.browser
-def test_colours_are_chosen_on_a_page(
-    offline: tuple[Page, list[str], list[str]], tmp_path: Path
-) -> None:
-    page, _, said = offline
-    export(gyre(), tmp_path / "page.html", samples=5, strength=0.0)
-    page.set_viewport_size({"width": 640, "height": 420})
-    page.goto((tmp_path / "page.html").as_uri())
-    page.locator(COMPLETE).wait_for()
-    ramp = "() => document.querySelector('.flowtex').shadowRoot.querySelector('.ramp').style"
-    drawn, colours = [pixels(page)], [page.evaluate(f"{ramp}.background")]
-
-    @contextmanager
-    def shown() -> Iterator[None]:
-        with acted(page):
-            yield
-        drawn.append(pixels(page))
-        colours.append(page.evaluate(f"{ramp}.background"))
-
-    page.locator("[data-name=settings]").click()
-    with shown():
-        page.locator("[data-cmap=magma]").click()
-    with shown():
-        page.get_by_label("Highest value").fill("0.1")
-        page.keyboard.press("Tab")
-    with shown():
-        page.get_by_text("auto", exact=True).click()
-        page.locator("[data-cmap=viridis]").click()
-    inside = (slice(150, 270), slice(140, 290))
-    assert np.abs(drawn[1] - drawn[0])[inside].mean() > 20
-    assert np.abs(drawn[2] - drawn[1])[inside].mean() > 20
-    assert np.abs(drawn[3] - drawn[0])[inside].mean() < 1
-    assert colours[0] == colours[3] != colours[1] == colours[2]
-    assert said == []
-
-
-@pytest.mark.browser
 def test_a_page_has_its_own_ground_in_light_and_dark(page: Page, tmp_path: Path) -> None:
     export(gyre(), tmp_path / "page.html", samples=5, axes="scale")
     page.goto((tmp_path / "page.html").as_uri())
@@ -267,37 +222,6 @@ def test_a_page_has_its_own_ground_in_light_and_dark(page: Page, tmp_path: Path)
     page.goto((tmp_path / "page.html").as_uri())
     root.wait_for()
     assert pixels(page)[0, 0].tolist() == [0, 0, 128]
-
-
-@pytest.mark.browser
-def test_nothing_leaves_a_small_page(
-    offline: tuple[Page, list[str], list[str]], tmp_path: Path
-) -> None:
-    page, _, _ = offline
-    width = 300
-    flow, name = gyre(3), "a scalar of a very long name"
-    scalars = {name: -1e-7 * flow.points[..., 0]}
-    flow = flowtex.FlowField.from_arrays(flow.points, flow.velocity, scalars=scalars)
-    export(flow, tmp_path / "page.html", samples=5, scalars=name)
-    page.set_viewport_size({"width": width, "height": 240})
-    page.goto((tmp_path / "page.html").as_uri())
-    page.locator(COMPLETE).wait_for()
-    page.mouse.move(140, 120)
-    page.mouse.move(150, 120)
-    page.locator(".flowtex .readout b").wait_for()
-    places = [page.locator(f".flowtex {name}").bounding_box() for name in (".head", ".legend")]
-    page.locator("[data-name=settings]").click()
-    for name in (".bar", ".settings", ".bar button:last-child", ".time"):
-        places.append(page.locator(f".flowtex {name}").bounding_box())
-    for place in places:
-        assert place is not None
-        assert place["x"] >= 5
-        assert place["x"] + place["width"] <= width - 5
-    head, legend = places[:2]
-    assert head is not None and legend is not None
-    assert head["x"] + head["width"] <= legend["x"]
-    ends = "element => [element.scrollWidth, element.clientWidth]"
-    assert len(set(page.locator(".flowtex .ticks").evaluate(ends))) == 1
 
 
 @pytest.mark.browser

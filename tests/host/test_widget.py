@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import threading
-import types
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
 from typing import Any
@@ -217,21 +216,6 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
     assert widget.point == told
 
 
-@pytest.mark.threads
-def test_large_field_is_shown_coarse_first(
-    make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
-) -> None:
-    for name, nodes in (("LARGE_NODES", 2000), ("VERY_LARGE_NODES", 3000)):
-        monkeypatch.setattr(feed, name, nodes)
-    monkeypatch.setattr(feed, "COARSE_VARYING", 100)
-    widget = make(gyre(2, nodes=60))
-    shapes = [widget._header["geometry"]["shape"]]
-    widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
-    refine.set()
-    assert widget._feeds[0].settled.wait(PATIENCE_S)
-    assert shapes == [[10, 10], [60, 60]]
-
-
 def test_a_setting_sends_what_it_changes_and_no_more(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -370,18 +354,6 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     assert len(shown) == count
 
 
-def test_show_displays_a_widget_in_marimo(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    shown: list[Any] = []
-    marimo = types.SimpleNamespace(
-        running_in_notebook=lambda: True, output=types.SimpleNamespace(append=shown.append)
-    )
-    monkeypatch.setitem(sys.modules, "marimo", marimo)
-    widget = flowtex.show(gyre(), samples=9)
-    assert shown == [widget]
-    assert isinstance(widget, FlowWidget)
-    widget.close()
-
-
 def test_boxes_have_the_pictures_of_what_is_in_them(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -455,20 +427,6 @@ def test_many_views_of_one_mesh_share_what_is_made_of_it(make: Make) -> None:
     different = make(gyre(nodes=101))
     assert different.field is not first.field
     assert make(gyre(nodes=100), image=SQUARES).scene.store is first.scene.store
-
-
-def test_what_is_shown_is_sent_before_anybody_asks(
-    make: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    came = threading.Event()
-
-    def send(self: FlowWidget, content: dict[str, Any], buffers: Any = None) -> None:
-        if any(name == "flow/0" for name in names_of(content)):
-            came.set()
-
-    monkeypatch.setattr(FlowWidget, "send", send)
-    make(gyre(nodes=17))
-    assert came.wait(PATIENCE_S)
 
 
 def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -578,14 +536,6 @@ def test_axes_are_named_or_refused(make: Make) -> None:
     assert widget.axes == "scale"
     assert Reader(str(widget.to_html())).header()["axes"] == "scale"
     assert widget._header["background"] is None
-
-
-def test_opacity_and_legend(make: Make) -> None:
-    widget = make(opacity=0.5, show_scalar_bar=False)
-    assert widget._header["opacity"] == 0.5
-    assert widget._header["scalars"]["bar"] is False
-    with pytest.raises(ValueError, match=r"^opacity is 2; expected a number from 0 to 1"):
-        make(opacity=2)
 
 
 def coloured(times: int = 1) -> flowtex.FlowField:
