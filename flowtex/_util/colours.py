@@ -92,9 +92,8 @@ def is_light(colour: Sequence[float]) -> bool:
 def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Bytes:
     """Return a colour map as (N, 4) with a number of colours, 256 by default, or in reverse.
 
-    It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
-    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError, which suggests similar
-    names.
+    It may be a name, a map of matplotlib's or PyVista's, or an array (N, 3 or 4), uint8 or from 0
+    to 1. Anything else raises a FieldError, which suggests similar names.
     """
     values = cmap if isinstance(cmap, np.ndarray) else getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # also that of a LookupTable of PyVista's

@@ -1,13 +1,9 @@
 """Files for a user, replaced once the new one is complete, else left as they were; and folders.
 
-Everything in the package that writes a file for a user writes it here. The new file lies beside the
-old one until it is complete and on the disk. After an error it is removed; after a process that was
-killed, the next one that writes the same file removes it. Temporary folders that a killed process
-leaves are removed by the next one that needs such a folder.
-
-A file or folder in use is locked by its process, and the system unlocks it when the process ends,
-however it ends: what is not locked is stale. Windows has no such locks; there only a process that
-ends by itself removes its temporary folders.
+Everything that writes a file for a user writes it here, beside the old one until it is complete and
+on the disk. A file or temporary folder in use is locked by its process, and the system unlocks it
+however that ends: what is not locked is stale, and removed by the next process that writes the same
+file or needs a folder. Windows has no such locks.
 """
 
 from __future__ import annotations
@@ -133,11 +129,9 @@ def _remove_folder(path: Path, descriptor: int, owner: int) -> None:
 class WholeFile:
     """A new file that replaces ``path`` once it is complete.
 
-    A symbolic link is followed. A file that is replaced keeps its mode, and its owner where that is
-    allowed. ``part`` is the path of the new file, with the suffix of ``path``, for libraries that
-    open files by name; ``file`` is that file, empty and open for reading and writing. Raises an
-    OSError when the folder does not exist, writing is not permitted, or ``path`` is not a regular
-    file.
+    A symbolic link is followed, and mode and owner are kept. ``part`` is the path of the new file,
+    for libraries that open files by name; ``file`` is that file, empty and open for reading and
+    writing. Raises an OSError when ``path`` is not a regular file or cannot be written.
     """
 
     def __init__(self, path: str | Path) -> None:

@@ -22,14 +22,8 @@ and Marsden, Physica D 212 (2005) 271-304, example 1: the streamfunction is
 ``a = epsilon sin(omega t)``.
 
 The circle of radius R around ``CENTER`` passes through 1, and ``z = s + 1 / s`` maps it to an
-airfoil with a cusped trailing edge. The flow around the circle has the one circulation that
-makes the flow leave that edge smoothly (the Kutta condition).
-
-    circle's plane                      airfoil's plane, chord 1
-    s = CENTER + R exp(eta + i phi)     eta constant: rings, phi constant: lines outwards
-
-Rings crowd at the wall, and the map itself crowds the nodes at the trailing edge, where the first
-and last column meet: the flow crosses this seam below the edge and follows it behind.
+airfoil with a cusped trailing edge, which the flow leaves smoothly (the Kutta condition). In the
+circle's plane, s = CENTER + R exp(eta + i phi), rings have constant eta.
 """
 
 from __future__ import annotations

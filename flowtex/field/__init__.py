@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.field.surface import Surface
+from flowtex.field.triangles.triangle_surface import Surface
 
 __all__ = ["FieldError", "FlowField", "Surface"]

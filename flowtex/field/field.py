@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_count, is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, notify
 from flowtex.field.constructors import FieldConstructors
@@ -24,19 +24,18 @@ from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Read
 from flowtex.field.formula import Formula
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
-from flowtex.field.interpolation import every_line
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.steps import (
     LazySteps,
     Steps,
     map_steps,
-    moves_later,
+    moves,
     scaled_steps,
     typical_steps,
 )
-from flowtex.field.surface import IndexVelocity, Surface
+from flowtex.field.surface import IndexVelocity
 from flowtex.field.triangles.triangle_nodes import triangle_nodes
-from flowtex.field.triangles.triangle_surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.units import factor, speed_unit
 from flowtex.field.validation import ALL_AT_REST, prepared
 
@@ -276,26 +275,14 @@ class FlowField(FieldConstructors, FieldQuantities):
         (31, 41)
         """
         texts = length_unit, time_unit, velocity_unit
-        t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=2)
+        t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=2)
         words |= {"name": name, "vectors": vectors, "projection": projection}
         words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
         on_globe = projection is not None and projection.is_globe
-        parts = points, filled.velocity, t, valid, periodic, filled.scalars, cell_scalars or {}
-        nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
-        flow = cls(
-            points=nodes.surface.points,
-            velocity=scaled_steps(nodes.velocity, scale),
-            times=np.arange(len(nodes.velocity), dtype=float) if t is None else t.copy(),
-            valid=nodes.valid,
-            periodic=nodes.periodic,
-            scalars=nodes.scalars,
-            has_position=nodes.surface.has_position,
-            sign_free=sign_free,
-            **words,
-        )
-        flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
-        if not nodes.moves and not moves_later(nodes.velocity):
-            notify(ALL_AT_REST, UserWarning)
+        parts = points, v, t, valid, periodic, data, cell_scalars or {}
+        surface, nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
+        flow = cls._moving(t, scale, sign_free=sign_free, **words, **nodes)
+        flow.__dict__["surface"] = surface  # equal to what the property would make
         return flow
 
     @classmethod
@@ -367,24 +354,20 @@ class FlowField(FieldConstructors, FieldQuantities):
         '4 nodes, 2 triangles'
         """
         texts = length_unit, time_unit, velocity_unit
-        t, scale, filled, words = prepared(times, texts, velocity, scalars, units, axes=1)
+        t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=1)
         words |= {"name": name, "vectors": vectors, "projection": projection}
         words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
-        parts = points, triangles, filled.velocity, t, valid, filled.scalars, cell_scalars or {}
-        arrays = triangle_nodes(*parts)
-        flow = cls(
-            points=arrays.points,
-            velocity=scaled_steps(arrays.velocity, scale),
-            times=np.arange(len(arrays.velocity), dtype=float) if t is None else t.copy(),
-            valid=arrays.valid,
-            periodic=(False, False),
-            scalars=arrays.scalars,
-            triangles=arrays.triangles,
-            **words,
-        )
-        if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
+        parts = points, triangles, v, t, valid, data, cell_scalars or {}
+        return cls._moving(t, scale, periodic=(False, False), **words, **triangle_nodes(*parts))
+
+    @classmethod
+    def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:
+        """Make a field, whose velocity is scaled; warn if it is at rest."""
+        velocity = scaled_steps(arrays.pop("velocity"), scale)
+        times = np.arange(len(velocity), dtype=float) if times is None else times.copy()
+        if not moves(velocity):
             notify(ALL_AT_REST, UserWarning)
-        return flow
+        return cls(velocity=velocity, times=times, **arrays)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -569,8 +552,19 @@ class FlowField(FieldConstructors, FieldQuantities):
             raise FieldError(
                 f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
             )
-        axes = zip(self.shape, self.periodic, strict=True)
-        return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
+        factor, picks = checked_count("factor", factor, expected="1 or more"), []
+        for count, closed in zip(self.shape, self.periodic, strict=True):
+            lines = np.arange(0, count, factor)
+            if closed and lines[-1] != count - 1:
+                lines = np.append(lines, count - 1)
+            fewest = 4 if closed else 2
+            if len(lines) < fewest:
+                raise FieldError(
+                    f"factor is {factor}, which keeps {len(lines)} of {count} lines; expected a "
+                    f"smaller factor that keeps at least {fewest}"
+                )
+            picks.append(lines)
+        return self.at_lines(*picks)
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
         """Return the field on some of its lines of nodes, by increasing indices along j and i.

@@ -7,9 +7,7 @@ from typing import Any, Literal, TypeVar, cast
 import numpy as np
 import scipy
 
-from flowtex._util.arguments import checked_count
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex.errors import FieldError
 
 A = TypeVar("A", bound=AnyArray)
 
@@ -36,8 +34,8 @@ def bracket(
     """Find the interval of an increasing line (N,) in which values of any shape lie.
 
     Returns its number, 0 to N - 2, and the distance from its start in lengths of the interval.
-    Values beyond an end belong to the first or the last interval. A value equal to a number of the
-    line has the interval that begins there, with ``side="left"`` the one that ends there.
+    Values beyond an end belong to the first or the last one, a value equal to a number of the line
+    to the interval that begins there, with ``side="left"`` to that before it.
     """
     interval = np.clip(np.searchsorted(line, values, side=side) - 1, 0, len(line) - 2)
     return interval, (values - line[interval]) / (line[interval + 1] - line[interval])
@@ -107,18 +105,3 @@ def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Float
     turns = np.floor(values / line[-1]) if periodic else 0.0
     inside = scipy.interpolate.make_interp_spline(line, np.arange(last + 1.0), k=1)
     return np.asarray(inside(values - turns * line[-1]) + turns * last)
-
-
-def every_line(count: int, factor: int, *, closed: bool) -> Indices:
-    """Return every ``factor``-th line, and the last one where the axis is closed."""
-    factor = checked_count("factor", factor, expected="1 or more")
-    picks = list(range(0, count, factor))
-    if closed and picks[-1] != count - 1:
-        picks.append(count - 1)
-    fewest = 4 if closed else 2
-    if len(picks) < fewest:
-        raise FieldError(
-            f"factor is {factor}, which keeps {len(picks)} of {count} lines; expected a smaller "
-            f"factor that keeps at least {fewest}"
-        )
-    return np.array(picks)

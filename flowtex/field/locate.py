@@ -25,7 +25,7 @@ from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
-from flowtex.field.surface import Surface
+from flowtex.field.triangles.triangle_surface import Surface
 
 START_NODES = 4  #: Nodes around a point from which walks begin.
 WALK_STEPS = 96  #: Most triangles of a walk.

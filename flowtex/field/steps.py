@@ -123,10 +123,11 @@ def typical_steps(count: int) -> list[int]:
     return sorted({0, (count - 1) // 2, count - 1})
 
 
-def moves_later(steps: Steps) -> bool:
-    """Return whether a late series moves at another typical step than the first one."""
-    late = isinstance(steps, LazySteps)
-    return late and any(np.nan_to_num(steps[n]).any() for n in typical_steps(len(steps))[1:])
+def moves(steps: Steps) -> bool:
+    """Return whether a velocity moves at any step, or at a typical one of a late series."""
+    count = len(steps)
+    numbers = typical_steps(count) if isinstance(steps, LazySteps) else range(count)
+    return any(np.nan_to_num(steps[n]).any() for n in numbers)
 
 
 def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:

@@ -1,13 +1,10 @@
-"""The common interface of surfaces: positions of nodes and cells, and vectors in index space.
+"""What surfaces of both kinds have in common: nodes, cells, and vectors in index space.
 
 A position on a surface is two numbers, (i, j) in index space; what they mean is up to the surface.
-The kinds are :class:`~flowtex.field.grids.grid_surface.GridSurface` and
-:class:`~flowtex.field.triangles.triangle_surface.TriangleSurface`.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import bounds, dot, norm, row_blocks
 from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.steps import Steps
@@ -24,8 +21,8 @@ from flowtex.field.steps import Steps
 COLLAPSED_AREA = 1e-10
 
 
-class Surface(ABC):
-    """A surface in space with data at its nodes, in the mesh's own units."""
+class NodeSurface:
+    """What surfaces of both kinds are: nodes in space with data, in the mesh's own units."""
 
     points: Floats  #: Positions of the nodes, (J, I, 3); a surface of triangles has one row.
     valid: Bools  #: Nodes that carry data, (J, I).
@@ -33,6 +30,7 @@ class Surface(ABC):
     periodic: tuple[bool, bool]  #: Whether the (j, i) axis closes on itself.
     offset: Floats  #: Displacement by one period of index j, or i, (2, 3).
     on_globe: bool  #: Whether it lies on a globe around the origin, with north at +z.
+    cell_corners: Sequence[Any]  #: Index of each corner of the cells in arrays over the nodes.
 
     @property
     def poles(self) -> Poles | None:
@@ -43,11 +41,6 @@ class Surface(ABC):
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
         return self.valid.shape[0], self.valid.shape[1]
-
-    @property
-    @abstractmethod
-    def last_index(self) -> tuple[float, float]:
-        """Greatest position (j, i)."""
 
     @cached_property
     def cells(self) -> Bools:
@@ -60,89 +53,10 @@ class Surface(ABC):
         placed = [self.has_position[at] for at in self.cell_corners]
         return np.asarray(np.logical_and.reduce(placed))
 
-    @abstractmethod
-    def nodes_of(self, cells: Bools) -> Indices:
-        """Return the nodes around some cells, (M, 4) or (M, 3), counted row by row."""
-
-    @cached_property
-    @abstractmethod
-    def cell_corners(self) -> list[Any]:
-        """Index of each corner of the cells in arrays over the nodes."""
-
-    @cached_property
-    @abstractmethod
-    def cell_lengths(self) -> Floats:
-        """Length of each cell, in the shape of :attr:`cells`: no path through it is longer."""
-
-    @abstractmethod
-    def in_cells(self, vectors: Floats) -> Floats:
-        """Return the parts of vectors (..., 3), one for each cell, that lie in the cells."""
-
     @cached_property
     def sharp(self) -> Bools:
         """Nodes of sharp edges, (J, I), whose velocity has another direction in each face."""
         return np.zeros(self.valid.shape, dtype=bool)
-
-    @property
-    @abstractmethod
-    def is_closed(self) -> bool:
-        """Whether it has no border at all."""
-
-    @cached_property
-    @abstractmethod
-    def drawn(self) -> Indices:
-        """Numbers of the triangles that are drawn."""
-
-    @abstractmethod
-    def is_drawn(self, number: Indices) -> Bools:
-        """Return whether triangles (N,) are drawn."""
-
-    @abstractmethod
-    def corners_of(self, number: Indices) -> Indices:
-        """Return nodes (N, 3) at the corners of triangles (N,), counted row by row."""
-
-    @abstractmethod
-    def cells_of(self, number: Indices) -> Indices:
-        """Return the places of triangles (N,) in scalars of cells: first nodes, or triangles."""
-
-    @abstractmethod
-    def beside(self, number: Indices, corner: int) -> Indices:
-        """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
-
-    @abstractmethod
-    def index_of(self, number: Indices, weights: Floats) -> Floats:
-        """Return positions (N, 2) as (i, j) of shares (N, 3) of corners of triangles (N,)."""
-
-    @abstractmethod
-    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
-        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
-
-    @abstractmethod
-    def node_near(self, index: Sequence[float]) -> tuple[int, int]:
-        """Return a node (j, i) of the cell at a position (j, i)."""
-
-    @abstractmethod
-    def wrap(self, index: Floats) -> Floats:
-        """Fold positions in index space back into one period, (..., 2) as (i, j)."""
-
-    @abstractmethod
-    def at(self, index: Floats) -> Floats:
-        """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space."""
-
-    @cached_property
-    @abstractmethod
-    def apart(self) -> Bools:
-        """Drawn nodes at distinct places, (J, I); all drawn nodes where none is."""
-
-    @cached_property
-    @abstractmethod
-    def tangents(self) -> Floats:
-        """Derivatives of position by i and by j at the nodes, (2, J, I, 3)."""
-
-    @cached_property
-    @abstractmethod
-    def cell_size(self) -> Floats:
-        """Smooth measure of the size of the cells around each node, (J, I)."""
 
     @cached_property
     def closes(self) -> tuple[bool, bool]:
@@ -189,10 +103,6 @@ class Surface(ABC):
         nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
         # Column by column, which needs no memory for the differences to the middle.
         return np.array([np.ptp(nodes @ axis) for axis in self.frame])
-
-    def express(self, velocity: Floats) -> IndexVelocity:
-        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
-        return to_index_space(self.tangents, self.valid, self.poles, velocity)
 
 
 @dataclass(frozen=True)

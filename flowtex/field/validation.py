@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -254,15 +254,6 @@ def scalar_steps(values: Floats, grid: tuple[int, ...]) -> Floats:
     return result
 
 
-class Filled(NamedTuple):
-    """Arguments of a field; ``uncertainty`` is empty without gaps in time."""
-
-    velocity: Any
-    scalars: Mapping[str, Any]
-    units: Mapping[str, str]
-    uncertainty: str
-
-
 def filled_gaps(
     velocity: Any,
     scalars: Mapping[str, Any] | None,
@@ -270,16 +261,14 @@ def filled_gaps(
     *,
     axes: int,
     unit: str,
-) -> Filled:
+) -> tuple[Any, Mapping[str, Any], Mapping[str, str], str]:
     """Return a velocity (T, ..., 2 or 3) that is zero where only some times have no data.
 
-    A field has one mask for all times. Such nodes, as of a radar, are drawn without streaks, as the
-    uncertainty of their direction is 1, and in the colour of NaN.
-
-    ``axes`` is the number of axes of the nodes, ``unit`` the unit of the speed. Of lazy steps the
-    first, the middle and the last one are compared if the first one has missing data.
+    Such nodes are drawn without streaks, and in the colour of NaN: the uncertainty of their
+    direction is 1. Its name, empty without gaps, follows the scalars and their units. ``axes`` is
+    the number of axes of the nodes. Of lazy steps with missing data three are compared.
     """
-    unchanged = Filled(velocity, {} if scalars is None else scalars, units or {}, "")
+    unchanged = velocity, {} if scalars is None else scalars, units or {}, ""
     if isinstance(velocity, LazySteps):
         numbers = typical_steps(len(velocity)) if not _known(velocity[0]).all() else []
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
@@ -289,18 +278,15 @@ def filled_gaps(
         except FieldError:  # the field lists all faults later
             return unchanged
         masks = _known(velocity) if velocity.ndim == axes + 2 else []
-    if len(masks) < 2 or not isinstance(unchanged.scalars, Mapping):
+    if len(masks) < 2 or not isinstance(unchanged[1], Mapping):
         return unchanged
     sometimes: Bools = np.any(masks, axis=0)
     if np.array_equal(sometimes, np.all(masks, axis=0)):
         return unchanged
     additions = {NO_DATA: map_steps(velocity, _lacking), "speed": map_steps(velocity, _speed)}
-    return Filled(
-        map_steps(velocity, partial(_filled, sometimes)),
-        {**unchanged.scalars, **{k: v for k, v in additions.items() if k not in unchanged.scalars}},
-        {"speed": unit, **(units or {})},
-        NO_DATA,
-    )
+    whole = map_steps(velocity, partial(_filled, sometimes))
+    data = {**unchanged[1], **{k: v for k, v in additions.items() if k not in unchanged[1]}}
+    return whole, data, {"speed": unit, **(units or {})}, NO_DATA
 
 
 def _filled(sometimes: Bools, step: Floats) -> Floats:
@@ -332,8 +318,8 @@ def _known(step: Floats) -> Bools:
 
 def prepared(
     times: Any, texts: tuple[str, str, str], velocity: Any, scalars: Any, units: Any, *, axes: int
-) -> tuple[Floats | None, float, Filled, dict[str, Any]]:
-    """Return times, a factor of the velocity, data without gaps in time, and units of a field.
+) -> tuple[Floats | None, float, Any, Mapping[str, Any], dict[str, Any]]:
+    """Return times, a factor of the velocity, velocity and scalars without gaps, and texts.
 
     The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
     """
@@ -342,10 +328,8 @@ def prepared(
     scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
     unit = velocity_unit or speed_unit(texts[0], time_unit)
     filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
-    words: dict[str, Any] = {
-        "length_unit": texts[0],
-        "time_unit": time_unit,
-        "velocity_unit": velocity_unit,
-    }
-    words |= {"start": start, "units": dict(filled.units), "uncertainty": filled.uncertainty}
-    return t, scale, filled, words
+    velocity, scalars, units, uncertainty = filled
+    words: dict[str, Any] = {"length_unit": texts[0], "time_unit": time_unit}
+    words |= {"velocity_unit": velocity_unit, "start": start, "units": dict(units)}
+    words["uncertainty"] = uncertainty
+    return t, scale, velocity, scalars, words

@@ -23,7 +23,7 @@ from flowtex._util.arrays import norm
 from flowtex.field import FlowField
 from flowtex.field.grids.grid_surface import CubicMap, GridSurface, faces_of
 from flowtex.field.interpolation import nearest_known
-from flowtex.field.surface import Surface
+from flowtex.field.triangles.triangle_surface import Surface
 
 #: Nodes looked up together, so few that they stay in a processor's cache.
 BLOCK = 16384

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import bounds
 from flowtex.field import FlowField
-from flowtex.field.surface import Surface
 from flowtex.field.triangles.triangle_nodes import normals_at_corners
-from flowtex.field.triangles.triangle_surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.textures.geometry import DrawnSurface
 
 

@@ -72,9 +72,7 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     """Return the time steps that each lag of a time-varying field spans, 0 for a part of one, (M,).
 
     ``None`` when paths cannot be composed: the steps are not equal, or the lags are not multiples
-    of the first one that is a whole number of them; or the field is sign-free, so that slices of
-    nodes that point either way cannot be interpolated; or it is on triangles, where displacements
-    between nodes do not lie on the surface.
+    of the first one that is a whole number of them; or the field is sign-free, or on triangles.
     """
     if field.sign_free or field.triangles is not None:
         return None

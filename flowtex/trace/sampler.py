@@ -128,8 +128,12 @@ class Sampler:
         return np.where(along < 0, -1.0, 1.0)
 
     def room(self, position: Floats) -> AnyArray | int:
-        """Return the cells that particles may move at once, for all or (N,)."""
-        return self.grid.room_at(position) if self.charts is None else LEAST_ROOM_CELLS
+        """Return the cells that particles at positions (2, N) may move at once, for all or (N,)."""
+        if self.charts is not None:
+            return LEAST_ROOM_CELLS
+        if self.grid.open is None:
+            return MOST_ROOM_CELLS
+        return np.maximum(self.grid.room[self.grid.corners(position).at], LEAST_ROOM_CELLS)
 
     def span(self, direction: float) -> float:
         """Return the lag to the first or last time step, beyond which the flow is constant."""
@@ -347,7 +351,7 @@ class NodeGrid:
         self.periodic = periodic
         self.poles = poles
         # One entry for each lower corner, so that Corners.at finds it.
-        self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
+        self.open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
 
     @classmethod
     def of(cls, field: FlowField) -> NodeGrid:
@@ -366,7 +370,7 @@ class NodeGrid:
         borders = {axis for axis, closed in enumerate(self.periodic) if not closed}
         if self.poles is not None and self.poles.both:
             borders -= {1 - self.poles.component}
-        return self._open is None and not borders
+        return self.open is None and not borders
 
     def corners(self, position: AnyArray) -> Corners:
         """Return the cells of positions (2, N); those beyond a border are moved onto it."""
@@ -384,11 +388,9 @@ class NodeGrid:
 
         In longer steps it might pass a blanked cell unnoticed.
         """
-        shape = (self.rows, self.columns)
-        if self._open is None:
-            return np.full(self.size, MOST_ROOM_CELLS, np.uint8)
+        assert self.open is not None
         around = MOST_ROOM_CELLS
-        cells = self._open.reshape(shape)[:-1, :-1]
+        cells = self.open.reshape(self.rows, self.columns)[:-1, :-1]
         for axis, closed in enumerate(self.periodic):
             width = [(around * (a == axis),) * 2 for a in range(2)]
             cells = np.pad(cells, width, mode="wrap" if closed else "edge")
@@ -397,12 +399,6 @@ class NodeGrid:
         ]
         room = np.minimum(far, MOST_ROOM_CELLS)
         return np.pad(room, ((0, 1), (0, 1))).astype(np.uint8).ravel()
-
-    def room_at(self, position: AnyArray) -> AnyArray | int:
-        """Return the cells that particles at positions (2, N) may move at once, for all or (N,)."""
-        if self._open is None:
-            return MOST_ROOM_CELLS
-        return np.maximum(self.room[self.corners(position).at], LEAST_ROOM_CELLS)
 
     def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
         """Interpolate nodal data of consecutive sets, (sets * J * I,).
@@ -429,8 +425,8 @@ class NodeGrid:
         ):
             if not closed:
                 result &= (x >= -edge) & (x <= cells + edge)
-        if self._open is not None:
-            result &= self._open[self.corners(position).at]
+        if self.open is not None:
+            result &= self.open[self.corners(position).at]
         return result
 
 

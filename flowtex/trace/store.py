@@ -1,8 +1,7 @@
 """Trace slices by destination time, traced when they are first requested.
 
-A field of many time steps is drawn at one time, so only the steps around that time are traced,
-and those used last are cached; unless all of them fit in memory and can be composed, which is
-quicker.
+Only the steps around the time that is drawn are traced, and those used last are cached; unless all
+of them fit in memory and can be composed, which is quicker.
 """
 
 from __future__ import annotations
@@ -39,13 +38,11 @@ class SliceStore:
     """Slices of one field, one destination time at a time.
 
     With ``lines="streamlines"`` each destination time of a field that varies is traced as a steady
-    field; the parameter, that of :func:`flowtex.trace`, counts then. With slices of all steps that
-    were traced already nothing is traced; in a sign-free field they lead to both sides. ``compose``
-    allows composing all steps together, which is quicker than step by step, but slower for one or
-    two of them. ``longest`` is the greatest length that is traced, in the mesh's units, a quarter
-    of the surface by default, ``first_cells`` the first lag in cells, ``cell`` the size of small
-    cells of the surface that the field is a part of, and ``nodes`` (J, I) are those that
-    :func:`flowtex.trace` is to follow.
+    field; only then the parameter, that of :func:`flowtex.trace`, counts. With ``slices`` of all
+    steps nothing is traced. ``compose`` allows composing all steps together, which is slower for
+    one or two of them. ``longest`` is the greatest length that is traced, in the mesh's units,
+    ``first_cells`` the first lag in cells, ``cell`` the size of small cells of the surface that the
+    field is a part of, and ``nodes`` (J, I) are those to follow.
     """
 
     def __init__(

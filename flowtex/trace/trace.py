@@ -139,7 +139,13 @@ def trace(
             "be composed between nodes of opposite sign"
         )
     lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
-    units = lag_unit(field, parameter) if unit is None else _checked_unit(field, unit)
+    units = lag_unit(field, parameter)
+    if unit is not None:
+        expected = f"a number, or one for each node, of shape {field.shape}"
+        units = checked_array("unit", unit, expected=expected)
+        if units.shape not in ((), field.shape):
+            raise FieldError(f"unit has shape {units.shape}; expected {expected}")
+        units = np.array(np.broadcast_to(units, field.shape))
     if not (np.isfinite(units).all() and (units > 0).all()):
         raise FieldError(
             f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
@@ -280,11 +286,6 @@ def _parameter(field: FlowField, parameter: str) -> str:
     return parameter if field.steady else "time"
 
 
-def _in_single(cells: Floats) -> Floats:
-    """Limit displacements: a path that has ended continues straight, however fast it was."""
-    return np.asarray(np.clip(cells, -MOST_CELLS, MOST_CELLS))
-
-
 def _checked_lags(lags: ArrayLike) -> Floats:
     expected = "positive numbers in increasing order"
     lag_values = np.atleast_1d(checked_array("lags", lags, expected=expected))
@@ -292,14 +293,6 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     if lag_values.ndim != 1 or not lag_values.size or not good.all():
         raise FieldError(f"lags is {brief(lags)}; expected {expected}")
     return lag_values
-
-
-def _checked_unit(field: FlowField, unit: ArrayLike) -> Floats:
-    expected = f"a number, or one for each node, of shape {field.shape}"
-    units = checked_array("unit", unit, expected=expected)
-    if units.shape not in ((), field.shape):
-        raise FieldError(f"unit has shape {units.shape}; expected {expected}")
-    return np.array(np.broadcast_to(units, field.shape))
 
 
 def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
@@ -402,7 +395,7 @@ class _Tracing:
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
             lags, units = self.lags[:direct], unit[block]
             result = integrate(self.samplers[step], start[block], lags, units, **options)
-            moved = _in_single(result.positions - start[block])
+            moved = np.clip(result.positions - start[block], -MOST_CELLS, MOST_CELLS)
             target: Indices | slice = nodes
             if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
@@ -451,7 +444,7 @@ class _Tracing:
         """Lay out by nodes, with the slope at lag zero; blank nodes move as the nearest one."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:2], *grid, 2)
-        slices[0] = direction * _in_single(self.rate)
+        slices[0] = direction * np.clip(self.rate, -MOST_CELLS, MOST_CELLS)
         blank = ~self.followed
         if blank.any() and self.followed.any():
             # In place: the slices are large, and few of them are blank.
@@ -463,13 +456,10 @@ class _Tracing:
 def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
     """Return the finite-time Lyapunov exponent at nodes and steps, (T, J, I), per unit of time.
 
-    The trace slices are the flow map (Shadden, Lekien and Marsden 2005, Definition and properties
-    of Lagrangian coherent structures from finite-time Lyapunov exponents in two-dimensional
-    aperiodic flows).
-    It is NaN where a particle leaves the domain within the horizon, where particles gather closer
-    than their paths are exact, and at steps from which the
-    horizon leaves the series: a notice states how long it may be. Steps of a field that varies are
-    computed when they are read.
+    The trace slices are the flow map (Shadden, Lekien and Marsden 2005). It is NaN where a particle
+    leaves the domain within the horizon, where particles gather closer than their paths are exact,
+    and at steps from which the horizon leaves the series: a notice states how long it may be. Steps
+    of a field that varies are computed when they are read.
     """
     room = np.full(1, np.inf)
     if not field.steady:

@@ -1,9 +1,8 @@
 """Scalars that are computed from the velocity at the nodes, and its gradient along a surface.
 
-Magnitudes and components of vectors are scalars too, ``U`` and ``U_x`` of the vectors ``U``.
-The magnitude of a velocity is labelled as the speed, that of others ``|B|``. The unit decides where
-it is known. Otherwise vectors are a velocity if a word of their name means one, such as ``U``,
-``wind`` or ``relative_velocity``, and no other word another quantity, such as ``wind_stress``.
+Magnitudes and components of vectors are scalars too, ``U`` and ``U_x`` of the vectors ``U``. The
+magnitude of a velocity, by its unit or else its name, is labelled as the speed, that of others
+``|B|``.
 """
 
 from __future__ import annotations

@@ -20,8 +20,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import norm
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.grids.poles import SAME_POINT_SHARE
-from flowtex.field.surface import Surface
-from flowtex.field.triangles.triangle_surface import TriangleSurface
+from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
@@ -68,11 +67,10 @@ def node_gradient(
 class NodeGradient:
     """Derivatives at nodes along two orthonormal directions of the tangent plane.
 
-    Arrays have their components first: those of vectors are (3, J, I). Turning from the first of
-    the ``directions``, (2, 3, J, I), to the second is positive: seen from the side of a flat
-    surface to which its largest normal component points, and from outside on any other.
-    ``derivative`` takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are
-    too few neighbours with data.
+    Turning from the first of the ``directions``, (2, 3, J, I), to the second is positive: seen from
+    the side of a flat surface to which its largest normal component points, and from outside on any
+    other. ``derivative`` takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there
+    are too few neighbours with data.
     """
 
     directions: Floats

@@ -1,9 +1,8 @@
 """Arguments of a field on a structured surface as its arrays, and signs of sign-free ones.
 
-No choice of signs of v and -v is continuous everywhere: around a half-integer singularity a vector
-returns reversed. Signs at nodes agree with their neighbours as far as possible, and disagree only
-along a cut; the corners of each cell are given equal signs (:func:`corner_signs`) before
-interpolation. Paths are traced to both sides, kernels are symmetric, and grains do not move.
+Around a half-integer singularity a vector without a sign returns reversed. So signs at nodes agree
+with their neighbours but along a cut, and the corners of each cell are given equal signs
+(:func:`corner_signs`) before interpolation.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.grids.grid_surface import GridSurface, known_positions
 from flowtex.field.grids.poles import Poles
-from flowtex.field.steps import LazySteps, Steps, first_step
+from flowtex.field.steps import LazySteps, first_step
 from flowtex.field.validation import (
     LENGTHS,
     as_numbers,
@@ -60,42 +59,31 @@ class Closure:
     line: Floats | None = None
 
 
-@dataclass(frozen=True)
-class NodalArrays:
-    """Nodal arrays as :meth:`FlowField.from_arrays` takes them, all dimensions present.
+def close_axes(
+    points: Floats, velocity: Floats, valid: Bools, scalars: dict[str, Floats], periodic: str | None
+) -> tuple[Floats, Floats, Bools, dict[str, Floats], tuple[bool, bool]]:
+    """Close the axes that ``periodic`` names, or those found: append a line, or join two.
 
-    Points are (J, I, 3), velocity (T, J, I, 3), valid (J, I), and scalars (T or 1, J, I) each.
+    Returns the arrays, (J, I, 3), (T, J, I, 3), (J, I), (T or 1, J, I), and which axes are closed.
     """
-
-    points: Floats
-    velocity: Floats
-    valid: Bools
-    scalars: Mapping[str, Floats]
-
-
-def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, tuple[bool, bool]]:
-    """Close the axes that ``periodic`` names, or those found: append a line, or join two."""
     closed = [False, False]
     for axis, letter in ((0, "j"), (1, "i")):
-        lines = np.swapaxes(nodal.points, 0, axis)
+        lines = np.swapaxes(points, 0, axis)
         if periodic is None:
-            valid = np.swapaxes(nodal.valid, 0, axis)[..., None]
-            closure = find_closure(lines if valid.all() else np.where(valid, lines, np.nan))
+            known = np.swapaxes(valid, 0, axis)[..., None]
+            closure = find_closure(lines if known.all() else np.where(known, lines, np.nan))
         elif letter in periodic:
-            closure = _requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
+            closure = _requested_closure(lines, np.swapaxes(velocity, 1, axis + 1))
         else:
             closure = Closure(periodic=False)
         closed[axis] = closure.periodic
         if closure.line is not None:
-            nodal = NodalArrays(
-                points=np.swapaxes(np.concatenate([lines, closure.line]), 0, axis),
-                velocity=_repeat_first(nodal.velocity, axis + 1),
-                valid=_repeat_first(nodal.valid, axis),
-                scalars={k: _repeat_first(s, axis + 1) for k, s in nodal.scalars.items()},
-            )
+            points = np.swapaxes(np.concatenate([lines, closure.line]), 0, axis)
+            velocity, valid = _repeat_first(velocity, axis + 1), _repeat_first(valid, axis)
+            scalars = {k: _repeat_first(s, axis + 1) for k, s in scalars.items()}
         elif closure.periodic:
-            _join_ends(nodal, axis)
-    return nodal, (closed[0], closed[1])
+            _join_ends(velocity, valid, axis)
+    return points, velocity, valid, scalars, (closed[0], closed[1])
 
 
 def find_closure(points: Floats) -> Closure:
@@ -103,8 +91,12 @@ def find_closure(points: Floats) -> Closure:
     # Values that cannot be lengths are missing data.
     if largest(points) > LENGTHS[1]:
         points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
-    extent = _extent(points)
-    if extent == 0.0 or len(points) < 3:
+    finite = finite_nodes(points)
+    if not finite.any() or len(points) < 3:
+        return Closure(periodic=False)
+    low, high = bounds(points if finite.all() else points[finite])
+    extent = float(np.linalg.norm(high - low))
+    if extent == 0.0:
         return Closure(periodic=False)
     if _coincide(points, extent):
         return Closure(periodic=True)
@@ -128,14 +120,6 @@ def _requested_closure(points: Floats, velocity: Floats) -> Closure:
     if repeats and fastest > 0:
         return Closure(periodic=True)
     return Closure(periodic=True, line=2 * points[-1:] - points[-2:-1])
-
-
-def _extent(points: Floats) -> float:
-    finite = finite_nodes(points)
-    if not finite.any():
-        return 0.0
-    low, high = bounds(points if finite.all() else points[finite])
-    return float(np.linalg.norm(high - low))
 
 
 def _coincide(points: Floats, extent: float) -> bool:
@@ -193,27 +177,14 @@ def _repeat_first(a: A, axis: int) -> A:
     return cast("A", np.concatenate([a, np.take(a, [0], axis=axis)], axis=axis))
 
 
-def _join_ends(nodal: NodalArrays, axis: int) -> None:
+def _join_ends(velocity: Floats, valid: Bools, axis: int) -> None:
     """Give two coinciding lines one velocity, in place; data may differ across the seam."""
-    velocity, valid = nodal.velocity, nodal.valid
     v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
     first, last = ok[0].copy(), ok[-1].copy()
     mean = (v[:, 0] + v[:, -1]) / 2
     only = np.where(first[:, None], v[:, 0], v[:, -1])
     v[:, 0] = v[:, -1] = np.where((first & last)[:, None], mean, only)
     ok[0] = ok[-1] = first | last
-
-
-@dataclass(frozen=True, eq=False)
-class GridNodes:
-    """Nodes that make a field, their geometry, and if any ``moves`` at a time in memory."""
-
-    surface: GridSurface
-    velocity: Steps
-    valid: Bools
-    periodic: tuple[bool, bool]
-    scalars: dict[str, Steps]
-    moves: bool
 
 
 def grid_nodes(
@@ -227,8 +198,8 @@ def grid_nodes(
     *,
     sign_free: bool,
     on_globe: bool,
-) -> GridNodes:
-    """Check arrays, and convert them for a field; of late steps the first is read."""
+) -> tuple[GridSurface, dict[str, Any]]:
+    """Check arrays; return the surface, and arguments of a field. Of late steps one is read."""
     if not isinstance(scalars, Mapping):
         raise FieldError(
             f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
@@ -243,7 +214,12 @@ def grid_nodes(
     faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
     cells = tuple(max(n - 1, 0) for n in p.shape[:2])
     faults = faults or cell_faults(cells, count, on_cells, scalars)
-    raise_faults(faults + (sign_free_faults(v) if sign_free else []))
+    if sign_free and v.ndim == 4 and len(v) > 1:
+        faults.append(
+            f"sign_free is True, but velocity has {len(v)} time steps; a sign-free field has no "
+            "paths in time: give one step, as in velocity[-1], or make one field for each"
+        )
+    raise_faults(faults)
     v = v[None] if v.ndim == 3 else v
     # Arguments are copied once, and not changed.
     p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
@@ -260,19 +236,21 @@ def grid_nodes(
     for key, values in on_cells.items():
         ends = ((0, 0), (0, 1), (0, 1))
         data[key] = np.pad(scalar_steps(values, cells), ends, constant_values=np.nan)
-    nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
-    v, ok = nodal.velocity, nodal.valid
-    surface = GridSurface(nodal.points, ok, closed, on_globe=on_globe)
+    shape = p.shape[:2]
+    p, v, ok, data, closed = close_axes(p, v, ok, data, periodic)
+    surface = GridSurface(p, ok, closed, on_globe=on_globe)
     if sign_free:
         v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
         v = with_equal_ends(v[None], closed, surface.poles)
     v[:, ~ok] = 0.0
-    closed_as_nodes = partial(_closed, [n > m for n, m in zip(ok.shape, p.shape, strict=False)])
+    closed_as_nodes = partial(_closed, [n > m for n, m in zip(ok.shape, shape, strict=True)])
     moving = partial(_moving, ok, closed_as_nodes)
     steps = velocity.map(moving) if isinstance(velocity, LazySteps) else v
     read = {name: scalar.map(closed_as_nodes) for name, scalar in late.items()}
-    ordered = {name: {**nodal.scalars, **read}[name] for name in (*scalars, *on_cells)}
-    return GridNodes(surface, steps, ok, closed, ordered, bool(v.any()))
+    ordered = {name: {**data, **read}[name] for name in (*scalars, *on_cells)}
+    nodes: dict[str, Any] = {"points": surface.points, "has_position": surface.has_position}
+    nodes |= {"velocity": steps, "valid": ok, "periodic": closed, "scalars": ordered}
+    return surface, nodes
 
 
 def _closed(appended: Sequence[bool], step: Floats) -> Floats:
@@ -289,21 +267,10 @@ def _moving(ok: Bools, closed: Callable[[Floats], Floats], step: Floats) -> Floa
     return np.where((ok & finite_nodes(step))[..., None], step, 0.0)
 
 
-def sign_free_faults(v: Floats) -> list[str]:
-    """Return faults in the velocity of a sign-free field."""
-    if v.ndim != 4 or len(v) == 1:
-        return []
-    return [
-        f"sign_free is True, but velocity has {len(v)} time steps; a sign-free field has no paths "
-        "in time: give one step, as in velocity[-1], or make one field for each"
-    ]
-
-
 def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Floats:
     """Turn vectors (J, I, 3) over so that neighbours agree.
 
-    Directions spread from the middle of the domain along the shortest ways, on which steps
-    between nodes that hardly agree are long.
+    Directions spread from the middle on the shortest ways; steps to nodes that disagree are long.
     """
     flat = velocity.reshape(-1, 3)
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
@@ -349,11 +316,10 @@ def with_equal_ends(
 
 
 def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
-    """Return signs that align the corners of each cell with the first one.
+    """Return signs that align the corners of each cell, of vectors (J, I, C), with the first one.
 
-    Vectors are orthonormal components at the nodes, (J, I, C). Signs are -1 or 1, (4, J, I) as far
-    as there is a cell, for the corners (j, i), (j, i + 1), (j + 1, i), (j + 1, i + 1); ``None``
-    where all are 1.
+    They are -1 or 1, (4, J, I), for the corners (j, i), (j, i + 1), (j + 1, i), (j + 1, i + 1), as
+    far as there is a cell; ``None`` where all are 1.
     """
     first, *others = (vectors[:-1, :-1], vectors[:-1, 1:], vectors[1:, :-1], vectors[1:, 1:])
     signs = np.ones((4, *vectors.shape[:2]), np.int8)

@@ -21,7 +21,7 @@ from flowtex._util.arrays import bounds, norm, row_blocks
 from flowtex.errors import FieldError
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
-from flowtex.field.surface import Surface
+from flowtex.field.surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.validation import finite_nodes
 
 #: Nodes closer than this share of the surface's extent lie at one point.
@@ -36,13 +36,15 @@ CELL_CORNERS = tuple(product((slice(None, -1), slice(1, None)), repeat=2))
 POLE_LINES = 8
 
 
-class GridSurface(Surface):
+class GridSurface(NodeSurface):
     """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
     ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
     line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` is
     whether it lies on a globe around the origin, with north at +z.
     """
+
+    cell_corners = CELL_CORNERS
 
     def __init__(
         self, points: Floats, valid: Bools, periodic: tuple[bool, bool], *, on_globe: bool = False
@@ -74,11 +76,6 @@ class GridSurface(Surface):
     def nodes_of(self, cells: Bools) -> Indices:
         """Return the nodes around some cells, (M, 4), counted row by row."""
         return faces_of(cells)
-
-    @property
-    def cell_corners(self) -> list[Any]:
-        """Index of each corner of the cells in arrays over the nodes."""
-        return list(CELL_CORNERS)
 
     @property
     def cell_lengths(self) -> Floats:
@@ -209,13 +206,15 @@ class GridSurface(Surface):
                 _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
         return fill_blanked(result, self.has_position, axis=1)
 
+    def express(self, velocity: Floats) -> IndexVelocity:
+        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
+        return to_index_space(self.tangents, self.valid, self.poles, velocity)
+
     @cached_property
     def cell_size(self) -> Floats:
         """Smooth measure of the size of the cells around each node, (J, I).
 
         The smaller extent dominates, but towards a pole, where cells have no width, their length.
-        Other collapsed nodes get a hundredth of the typical size, so that a length measured in
-        cells stays finite there.
         """
         inverse = np.zeros(self.shape)
         lengths = np.sqrt(np.einsum("djic,djic->dji", self.tangents, self.tangents))
@@ -262,10 +261,9 @@ class GridSurface(Surface):
 class CubicMap:
     """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
 
-    For millions of look-ups each coordinate is a separate array. Catmull-Rom's cubic between two
-    nodes is the line between them, and -s (1 - s) / 2 times the line between their second
-    differences; of both axes together, these four are bilinear between the nodes. A second
-    difference that is too small to matter is not looked up.
+    For millions of look-ups each coordinate is a separate array. Catmull-Rom's cubic is the line
+    between two nodes, and -s (1 - s) / 2 times that between their second differences, which are not
+    looked up where they are too small to matter.
     """
 
     def __init__(
@@ -391,9 +389,8 @@ def _over(ring: Floats, pole: Pole) -> Floats:
 def _beyond(p: Floats, good: Bools) -> Floats:
     """Return one line of nodes before the first, from the first lines.
 
-    The continuation is quadratic, which keeps the slope at the border of second order, but
-    bends the slope by half at most: with cells that grow threefold, as where nodes are spaced
-    by a cosine, a parabola through three of them turns back on itself.
+    The continuation is quadratic, but bends the slope by half at most: through cells that grow
+    threefold, a parabola turns back on itself.
     """
     step = p[1] - p[0]
     if len(p) < 3:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -36,17 +35,6 @@ NEEDLE_SHARE = 1e-4
 SHARP = 0.86
 
 
-@dataclass
-class TriangleNodes:
-    """Arrays of a field: nodes are a row, (1, N), see :mod:`flowtex.field.triangles`."""
-
-    points: Floats
-    triangles: Indices
-    velocity: Steps
-    valid: Bools
-    scalars: dict[str, Steps]
-
-
 def triangle_nodes(
     points: ArrayLike,
     triangles: ArrayLike,
@@ -55,8 +43,11 @@ def triangle_nodes(
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
     cell_scalars: Mapping[str, Any],
-) -> TriangleNodes:
-    """Check arrays, join nodes at one place, and leave out parts that cannot be drawn."""
+) -> dict[str, Any]:
+    """Return arguments of a field whose nodes are a row, (1, N); check the arrays.
+
+    Nodes at one place are joined, and parts that cannot be drawn are left out.
+    """
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     try:
@@ -119,7 +110,8 @@ def triangle_nodes(
             data[name] = late.map(partial(_as_row, at=drawn))
         else:
             data[name] = scalar_steps(s, (1, cells))[..., drawn]
-    return TriangleNodes(p[None].copy("C"), number[corners], steps, ok[None], data)
+    nodes = {"points": p[None].copy("C"), "triangles": number[corners], "valid": ok[None]}
+    return {**nodes, "velocity": steps, "scalars": data}
 
 
 def _as_row(step: Floats, at: Any = slice(None)) -> Floats:

@@ -1,11 +1,8 @@
 """A surface of triangles in space: its nodes, normals, sizes of cells, and points on it.
 
-Its tangents at the nodes are two orthonormal vectors of the tangent plane, so that components of a
-velocity "along i and j" are lengths there, and computations with tangents hold for both kinds of
-surfaces.
-
-A point of the surface is given by two numbers (i, j), as on a structured surface: j is the number
-of the triangle plus the share of its second corner, i the share of its third.
+Its tangents at the nodes are two orthonormal vectors of the tangent plane, so that computations
+with tangents hold for both kinds of surfaces. A point of the surface is (i, j), as on a structured
+one: j is the number of the triangle plus the share of its second corner, i that of its third.
 """
 
 from __future__ import annotations
@@ -13,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 import scipy
@@ -21,7 +18,8 @@ import scipy
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
-from flowtex.field.surface import IndexVelocity, Surface
+from flowtex.field.grids.grid_surface import GridSurface
+from flowtex.field.surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.triangles.triangle_nodes import SHARP, flipped, neighbours, triangle_normals
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
@@ -30,7 +28,7 @@ MOST_SHARE = 1 - 1e-7
 LEAST_BESIDE = 0.2
 
 
-class TriangleSurface(Surface):
+class TriangleSurface(NodeSurface):
     """Nodes of a surface of triangles, (1, N, 3), in the mesh's own units.
 
     ``triangles`` (M, 3) are numbers of nodes, and ``valid`` (1, N) marks nodes that carry data.
@@ -44,6 +42,7 @@ class TriangleSurface(Surface):
         self.periodic = (False, False)
         self.has_position = np.ones(valid.shape, dtype=bool)
         self.offset = np.zeros((2, 3))
+        self.cell_corners = [(0, nodes) for nodes in triangles.T]
 
     @property
     def last_index(self) -> tuple[float, float]:
@@ -53,11 +52,6 @@ class TriangleSurface(Surface):
     def nodes_of(self, cells: Bools) -> Indices:
         """Return the nodes at the corners of some triangles, (M, 3)."""
         return np.asarray(self.triangles[cells])
-
-    @property
-    def cell_corners(self) -> list[Any]:
-        """Index of each corner of the triangles in arrays over the nodes."""
-        return [(0, nodes) for nodes in self.triangles.T]
 
     @property
     def cell_lengths(self) -> Floats:
@@ -225,7 +219,7 @@ class TriangleSurface(Surface):
         At a node of a sharp edge that plane lies between the faces, and the part of a velocity in
         it is greater than in each face. The speed there is the mean of those in the faces.
         """
-        flow = super().express(velocity)
+        flow = to_index_space(self.tangents, self.valid, None, velocity)
         if not self.sharp.any():
             return flow
         triangle, corner = np.nonzero(self.sharp[0][self.triangles])
@@ -255,3 +249,7 @@ class TriangleSurface(Surface):
         alike = np.einsum("mc,mkc->mk", self.crosses, self.normals[0, self.triangles])
         sharp[self.triangles[alike < SHARP * length[:, None]]] = True
         return sharp[None]
+
+
+#: A surface of either kind.
+Surface: TypeAlias = GridSurface | TriangleSurface

@@ -30,11 +30,14 @@ def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
     d = v[:, 3] - v[:, 2] - b
     numbers, places = [], []
     # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
-    for s in _roots(_cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)):
+    square, linear, constant = _cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q = -0.5 * (linear + np.copysign(np.sqrt(linear * linear - 4 * square * constant), linear))
+        roots = q / square, constant / q
+    for s in roots:
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             first, slope = a + b * s[:, None], c + d * s[:, None]
-            square = np.einsum("nc,nc->n", slope, slope)
-            t = -np.einsum("nc,nc->n", first, slope) / square
+            t = -np.einsum("nc,nc->n", first, slope) / np.einsum("nc,nc->n", slope, slope)
         inside = _inside(s) & _inside(t)
         numbers.append(cells[inside])
         places.append(np.clip(np.stack([s[inside], t[inside]], axis=-1), 0.0, 1.0))
@@ -62,9 +65,8 @@ def triangle_indices(
     """Return the Poincare index of each triangle, (M,): 1, 0, or -1 for a saddle.
 
     Positions, unit normals and tangent velocities of nodes are (N, 3) each, triangles (M, 3), in
-    the sense of the normals. Angles are measured at each node against the edges in its tangent
-    plane, so two triangles agree about the edge they share, and on a closed surface the indices sum
-    to its Euler characteristic.
+    the sense of the normals. Angles are measured against the edges in each tangent plane, so two
+    triangles agree about their edge, and on a closed surface indices sum to Euler's characteristic.
     """
     turned = np.full(len(triangles), 2 * np.pi)
     for k in range(3):
@@ -91,13 +93,6 @@ def folded(angle: Floats) -> Floats:
     return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))
 
 
-def _roots(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
-    """Return the real roots of a x^2 + b x + c, NaN or infinite where there are fewer."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
-        return q / a, c / q
-
-
 def _inside(share: Floats) -> Bools:
     with np.errstate(invalid="ignore"):
         return np.asarray((share >= -ROUNDING_CELLS) & (share <= 1 + ROUNDING_CELLS))
@@ -117,15 +112,11 @@ def _inverse(matrix: Floats) -> Floats:
 def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Floats) -> Floats:
     """Return the strengths of critical points of a steady field as speeds, (K,).
 
-    The strength is the change of velocity that makes a point vanish. Two points of opposite index
-    vanish together once the velocity between them is changed by as much as the speed there (their
-    robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So it is the least speed below
-    which a region contains the point and a partner. Points of noise are pairs separated by a low
-    speed. A partner may lie beyond a border: without one, the least speed below which a region
-    contains the point and any other remaining one.
-
-    ``nodes`` are nodes beside the points, counted row by row, and ``signs`` their Poincare indices.
-    Where several have one partner, the steepest remain.
+    Two points of opposite index vanish together once the velocity between them is changed by as
+    much as the speed there (their robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So
+    it is the least speed below which a region contains the point and a partner; without one, which
+    may lie beyond a border, that for any other remaining point. ``nodes`` lie beside the points,
+    and ``signs`` are their Poincare indices. Where several have one partner, the steepest remain.
     """
     speed, valid = field.index_velocity.speed[0].ravel(), field.valid.ravel()
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))

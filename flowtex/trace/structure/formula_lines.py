@@ -354,9 +354,8 @@ def formula_orbit(
     """Return the closed orbit near a place (2,): points (N, 2), period, and whether it is stable.
 
     ``period`` is about the right one, and ``forward`` the direction in which lines come nearer. The
-    place moves along a section across the flow, by Newton's method with the factor by which
-    distances beside an orbit grow in a turn: the exponential of the divergence, integrated over its
-    time. Where that factor is 1, all lines close, and none is an orbit.
+    place moves along a section across the flow, by Newton's method with the growth of distances in
+    a turn: the divergence, integrated over its time. Where it is 0, all lines close.
     """
     diagonal, way = np.hypot(*np.ptp(rates.ends, axis=1)), 1.0 if forward else -1.0
     normal = rates.at(start[None])[0] * way

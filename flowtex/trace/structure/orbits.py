@@ -1,10 +1,9 @@
 """Closed orbits: lines that end where they began, and that other lines approach or leave.
 
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
-ray from there. Where the flow returns to a ray one turn later (its Poincare map) shows the side of
-an orbit: from both sides it comes nearer, or moves away. Around a centre it returns to where it
-was but for errors of interpolation, which :class:`Isolation` distinguishes from an orbit. Those of
-a formula in the plane are then integrated from the formula.
+ray from there. Where the flow returns to a ray one turn later shows the side of an orbit: from both
+sides it comes nearer, or moves away. :class:`Isolation` distinguishes an orbit from a centre. Those
+of a formula in the plane are then integrated from the formula.
 """
 
 from __future__ import annotations
@@ -124,10 +123,13 @@ def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> li
 def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]:
     """Find the closed orbits of a steady field whose critical points are known."""
     rates = plane_rates(field)
-    turning = [
-        p for p in points if p.poincare_index > 0 and (rates or _is_spiral(p.eigenvalues[0]))
-    ]
-    around = CriticalPoints(turning).strongest(MOST_RAYS)
+    around = CriticalPoints()
+    for point in points:
+        # On a grid, lines must approach the point or leave it by enough in a turn.
+        growth, rotation = abs(point.eigenvalues[0].real), abs(point.eigenvalues[0].imag)
+        if point.poincare_index > 0 and (rates or 2 * np.pi * growth > MOVED_SHARE * rotation):
+            around.append(point)
+    around = around.strongest(MOST_RAYS)
     if not around:
         return []
     rays = _Rays(field, points, around, rates)
@@ -140,11 +142,6 @@ def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]
             if not any(distance < 2 * rays.spacing for distance in near):
                 orbits.append(orbit)
     return orbits
-
-
-def _is_spiral(eigenvalue: complex) -> bool:
-    """Return whether lines around a point approach or leave it, by enough in a turn."""
-    return 2 * np.pi * abs(eigenvalue.real) > MOVED_SHARE * abs(eigenvalue.imag)
 
 
 class _Rays:
@@ -314,10 +311,9 @@ class _Rays:
 class Isolation:
     """Test of closed lines of a steady field: a limit cycle has no neighbours that close as well.
 
-    Over a turn, the distance of a line beside a closed one grows by a factor: the exponential of
-    the divergence of the velocity, integrated over the time of the turn. Lines approach or leave
-    where it is not 1. In a flow without divergence it is 1; there, lines nearly close by errors of
-    interpolation. So the integral must exceed its error by interpolation.
+    Over a turn, the distance of a line beside a closed one grows by the exponential of the
+    divergence of the velocity, integrated over the time. So the integral must exceed its error by
+    interpolation.
     """
 
     def __init__(self, field: FlowField) -> None:

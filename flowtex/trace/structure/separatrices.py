@@ -208,7 +208,8 @@ def _lines(
     starts = [(saddle, way) for saddle in saddles for way in saddle.ways(forward=forward)]
     if not starts:
         return []
-    cells = np.array([_cell(field, saddle) for saddle, _ in starts])
+    size, node_near = field.surface.cell_size, field.surface.node_near
+    cells = np.array([float(size[node_near(saddle.index)]) for saddle, _ in starts])
     offsets = BEGIN_CELLS * cells[:, None] * np.array([way for _, way in starts])
     begin, _ = locator(field).nearest(np.array([s.position for s, _ in starts]) + offsets)
     begin = np.array(begin[:, ::-1], dtype=float)
@@ -273,11 +274,6 @@ def _split(lonlat: Floats) -> dict[str, Any]:
     jumps = np.flatnonzero(np.abs(np.diff(lonlat[:, 0])) > 180) + 1
     parts = [part.tolist() for part in np.split(lonlat, jumps) if len(part) > 1]
     return {"type": "MultiLineString", "coordinates": parts}
-
-
-def _cell(field: FlowField, point: CriticalPoint) -> float:
-    j, i = field.surface.node_near(point.index)
-    return float(field.surface.cell_size[j, i])
 
 
 def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None:

@@ -90,9 +90,9 @@ def test_a_closed_surface_stays_closed() -> None:
     assert [level.field.shape[1] for level in levels][-1] < 230
     for level in levels[1:]:
         surface = level.field.surface
-        assert (surface.neighbours >= 0).mean() > 0.99  # type: ignore[attr-defined]
+        assert (surface.neighbours >= 0).mean() > 0.99  # type: ignore[union-attr]
         p = level.field.points[0]
-        outward = np.einsum("nc,nc->n", surface.normals[0], p)  # type: ignore[attr-defined]
+        outward = np.einsum("nc,nc->n", surface.normals[0], p)  # type: ignore[union-attr]
         assert outward.min() > 0 or outward.max() < 0
         assert np.ptp(np.linalg.norm(p, axis=1)) < (level.sides.max() / 2) ** 2
 
