@@ -82,7 +82,7 @@ export interface Geometry extends Surface {
   levels: number;
 }
 
-/** Numbers of the shading: those of flowtex/rendering/constants.py. */
+/** Numbers of the shading: those of flowtex/rendering/shaders.py. */
 export interface Shading {
   toCones: number[];
   toLab: number[];

@@ -14,7 +14,7 @@ from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
-from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
+from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import Ends
@@ -24,7 +24,7 @@ from flowtex.scene.scene import Change, Scene, share_field
 from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
-LIGHT = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
+LIGHT = {"ambient": const.AMBIENT_LIGHT, "diffuse": const.DIFFUSE_LIGHT}
 _count = itertools.count(1)
 #: Fields of the appearance that change colours alone.
 COLOURS = ("n_colors", "flip_scalars", "nan_color", "below_color", "above_color")

@@ -22,7 +22,6 @@ from flowtex._util.progress import pool
 from flowtex.field import FlowField
 from flowtex.field.earth import MapLines
 from flowtex.rendering.camera import read_camera
-from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
     SPACINGS,
@@ -33,6 +32,7 @@ from flowtex.rendering.map_overlay import (
     land_cells,
     map_lines,
 )
+from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.layer import insert_text, plain_actor, weak_callback
 from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
@@ -239,7 +239,7 @@ class MapOverlay(Overlay):
             actor = self._add(mesh, nearer)
             actor.prop.color, actor.prop.lighting = color, is_lit
             if is_lit:
-                actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
+                actor.prop.ambient, actor.prop.diffuse = const.AMBIENT_LIGHT, const.DIFFUSE_LIGHT
 
     def _before_frame(self) -> None:
         renderer, radius = self._renderer(), self._radius

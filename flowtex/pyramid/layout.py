@@ -58,16 +58,28 @@ if TYPE_CHECKING:
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
 SHARD_CHUNKS = (2, 4)
-#: Bytes that a file of parts may have, and those of a chunk of it.
-FILE_BYTES, FILE_CHUNK = 1 << 28, 1 << 20
+#: Most bytes of a file of parts.
+FILE_BYTES = 1 << 28
+#: Bytes of a chunk of such a file.
+FILE_CHUNK = 1 << 20
 #: Time steps of a series up to which a reader holds all of them.
 MOST_HELD = 8
-#: Levels of compression; higher ones take longer and gain little.
-GZIP_LEVEL, ZSTD_LEVEL = 4, 3
+#: Level of gzip; a higher one takes longer and gains little.
+GZIP_LEVEL = 4
+#: The same of Zstandard.
+ZSTD_LEVEL = 3
 #: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
 VELOCITY_BITS = 11
-FLOW, VALUES, SURFACE = "flow", "values", "surface"
-DIGESTS, DIGEST_BYTES = "digests", 16
+#: Array of the files with the flow of tiles.
+FLOW = "flow"
+#: Array of the files with the values that colour tiles.
+VALUES = "values"
+#: Array of the files with the surface of tiles.
+SURFACE = "surface"
+#: Array of the hashes of parts.
+DIGESTS = "digests"
+#: Bytes of a hash.
+DIGEST_BYTES = 16
 #: Texts of a field that a store keeps.
 TEXTS = ("name", "length_unit", "time_unit", "velocity_unit", "vectors", "uncertainty")
 CONVENTION = {
@@ -79,8 +91,16 @@ CONVENTION = {
     "name": "multiscales",
     "description": "Multiscale layout of zarr datasets",
 }
-#: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
-MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
+#: Most nodes along an axis.
+MOST_NODES = 10**7
+#: Most time steps.
+MOST_STEPS = 10**6
+#: Most levels.
+MOST_LEVELS = 40
+#: Most characters of a text.
+MOST_LETTERS = 10_000
+#: Most scalars.
+MOST_SCALARS = 1000
 #: Nodes of the coarsest level, which is read whole, at most.
 MOST_ROOT_NODES = 1_000_000
 

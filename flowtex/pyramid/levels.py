@@ -55,9 +55,12 @@ FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_
 LOOK_INTERVAL_S = 0.1
 #: Most characters of an error of another library that a message repeats.
 MOST_LETTERS = 300
-#: Bytes of a number at most, of a velocity, and of steps that are held; those of a longer series
-#: are read late.
-NUMBER_BYTES, NODE_BYTES, KEPT_BYTES = 8, 24, 64_000_000
+#: Most bytes of a number.
+NUMBER_BYTES = 8
+#: Bytes of a velocity.
+NODE_BYTES = 24
+#: Most bytes of steps that are held; those of a longer series are read late.
+KEPT_BYTES = 64_000_000
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.
 MOST_SAMPLES = 1 << 20

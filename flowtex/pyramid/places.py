@@ -36,11 +36,19 @@ DOCUMENT = "zarr.json"
 #: files are paths. One letter is a drive.
 _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
-_WEB, _AZURE = ("http", "https"), ("abfs", "abfss", "adl", "az", "azure")
+#: Schemes of web servers.
+_WEB = ("http", "https")
+#: Schemes of Azure's storage.
+_AZURE = ("abfs", "abfss", "adl", "az", "azure")
 _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
-#: Time-outs in seconds for a server's answer and for a connection;
-#: and how often it is asked again.
-SILENCE_S, CONNECT_S, MOST_REPEATS, FIRST_PAUSE_S = 10.0, 5.0, 2, 0.2
+#: Seconds to wait for a server's answer.
+SILENCE_S = 10.0
+#: Seconds to wait for a connection.
+CONNECT_S = 5.0
+#: Times that a failed request is repeated.
+MOST_REPEATS = 2
+#: Seconds before the first repetition.
+FIRST_PAUSE_S = 0.2
 #: Names of other data that a message lists.
 MOST_NAMES = 5
 #: Longest transfer of one object in seconds.

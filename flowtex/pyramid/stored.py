@@ -38,8 +38,10 @@ from flowtex.textures.tiles.shared import attach_pyramid
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5
-#: Bytes of a chunk, and nodes of the coarsest level, beyond which users have to wait.
-SLOW_BYTES, SLOW_NODES = 8_000_000, 16 * ROOT_NODES
+#: Bytes of a chunk beyond which users have to wait.
+SLOW_BYTES = 8_000_000
+#: Nodes of the coarsest level beyond which users have to wait.
+SLOW_NODES = 16 * ROOT_NODES
 #: Bytes of the steps of a tile that are kept.
 KEPT_BYTES = 64_000_000
 

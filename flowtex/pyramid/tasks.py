@@ -65,9 +65,12 @@ from flowtex.trace.store import SliceStore
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
 VALUE_SHARE = 2.0**-17
-#: Most memory of a task that makes a part of a level, and of one that traces a tile or the root, as
-#: ``benchmarks/pyramid.py`` measures; and that of a process, for its imports.
-PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
+#: Most memory of a task that makes a part of a level, as ``benchmarks/pyramid.py`` measures.
+PART_BYTES = 500_000_000
+#: Most memory of a task that traces a tile or the root.
+TILE_BYTES = 1_500_000_000
+#: Memory of a process for its imports.
+OWN_BYTES = 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3
 #: Parameter of glibc's ``mallopt`` for the free heap that it keeps, and its value in bytes.

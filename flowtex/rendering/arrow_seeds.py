@@ -23,21 +23,26 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import norm
-from flowtex.rendering.constants import HASH_FACTORS, HASH_SHIFT, OCTAVE_PRIME, SEED_PRIME
+from flowtex.rendering.shaders import const
 from flowtex.rendering.tile_choice import TileView
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.tiles.pyramid import TILE_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Distance of seeds in an octave over that in the one before, and most octaves.
-OCTAVE, MOST_OCTAVES = float(np.sqrt(0.5)), 80
+#: Distance of seeds in an octave over that in the one before.
+OCTAVE = float(np.sqrt(0.5))
+#: Most octaves.
+MOST_OCTAVES = 80
 #: Area that a candidate has to itself, over the square of that distance.
 CANDIDATE_AREA = 0.125
 #: Candidates in an octave of the whole surface, at most.
 MOST_CANDIDATES = 50_000
-#: Margin that is seeded beside a view, in heights of it and in distances of seeds; and how much
-#: closer seeds are than requested, so that slightly nearer views need no new ones.
-AROUND, AROUND_RADII, CLOSER = 0.5, 3.0, 0.75
+#: Margin that is seeded beside a view, in heights of it.
+AROUND = 0.5
+#: The same in distances of seeds.
+AROUND_RADII = 3.0
+#: How much closer seeds are than requested, so that nearer views need no new ones.
+CLOSER = 0.75
 
 Hashes = NDArray[np.uint32]
 
@@ -155,14 +160,14 @@ class ArrowSeeds:
     def _spread(self, octave: int, area: float) -> Seeds:
         """Return the candidates of an octave, evenly spread over the areas of all cells."""
         number = np.arange(int(self._sums[-1] / area), dtype=np.uint32)
-        key = _mixed(_mixed(np.full(1, octave, np.uint32) + OCTAVE_PRIME) + number)
+        key = _mixed(_mixed(np.full(1, octave, np.uint32) + const.OCTAVE_PRIME) + number)
         cell = np.searchsorted(self._sums, (number + _shares(key)) * area, side="right")
         return self._points(self._cells[np.minimum(cell, len(self._sums) - 1)], key)
 
     def _points(self, parts: _Parts, key: Hashes) -> Seeds:
         """Return one candidate in each part."""
-        first = _mixed(key + OCTAVE_PRIME)
-        share = np.stack([_shares(first), _shares(_mixed(first + OCTAVE_PRIME))], axis=-1)
+        first = _mixed(key + const.OCTAVE_PRIME)
+        share = np.stack([_shares(first), _shares(_mixed(first + const.OCTAVE_PRIME))], axis=-1)
         place = parts.low + parts.size * share
         position = self._positions(parts.cell, place)
         return Seeds(parts.cell, place, position, np.full(len(place), np.inf))
@@ -203,18 +208,17 @@ class ArrowSeeds:
     def _divided(self, parts: _Parts, area: float) -> _Parts:
         """Halve parts along their longer sides until none is larger than an area."""
         while (large := self._areas(parts) > area).any():
-            large_parts = parts[large]
+            large_parts, rest = parts[large], parts[~large]
             sides = norm(self._sides(large_parts))
             axis = (sides[1] > sides[0]).astype(int)
             size, rows = large_parts.size.copy(), np.arange(len(axis))
             size[rows, axis] *= 0.5
             beyond = large_parts.low.copy()
             beyond[rows, axis] += size[rows, axis]
-            halves = (
-                _Parts(large_parts.cell, low, size, _mixed(large_parts.key + prime))
-                for low, prime in ((large_parts.low, OCTAVE_PRIME), (beyond, SEED_PRIME))
-            )
-            parts = parts[~large] + next(halves) + next(halves)
+            for low, prime in ((large_parts.low, const.OCTAVE_PRIME), (beyond, const.SEED_PRIME)):
+                half = _Parts(large_parts.cell, low, size, _mixed(large_parts.key + prime))
+                rest = rest + half
+            parts = rest
         return parts
 
     def _positions(self, cell: Indices, place: Floats) -> Floats:
@@ -258,9 +262,9 @@ def _sees(view: TileView, points: Floats, reach: Floats | float) -> Bools:
 
 def _mixed(key: Hashes) -> Hashes:
     """Hash numbers."""
-    for factor in HASH_FACTORS:
-        key = (key ^ (key >> HASH_SHIFT)) * factor
-    return np.asarray(key ^ (key >> HASH_SHIFT))
+    for factor in const.HASH_FACTORS:
+        key = (key ^ (key >> const.HASH_SHIFT)) * factor
+    return np.asarray(key ^ (key >> const.HASH_SHIFT))
 
 
 def _shares(key: Hashes) -> Floats:

@@ -29,17 +29,22 @@ Point = tuple[float, float, float]
 #: Attributes of a camera by name, for JSON: lists of numbers, numbers, and a bool.
 CameraValues: TypeAlias = dict[str, Any]
 
-#: Direction from a curved surface to the camera, and the direction up.
-ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+#: Direction from a curved surface to the camera.
+ASIDE = (1.0, 1.0, 1.0)
+#: The direction up.
+UP = (0.0, 0.0, 1.0)
 #: The same for all of a globe: above longitude 0 and 20 degrees north.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 #: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
 LEAST_ASIDE = 0.2
-#: Limits for two surfaces to share a camera: the ratio of their extents, and the distance of their
-#: centres over the larger extent.
-MOST_LARGER, MOST_APART = 4.0, 0.5
-#: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
-FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
+#: Greatest ratio of the extents of two surfaces that share a camera.
+MOST_LARGER = 4.0
+#: Greatest distance of their centres over the larger extent.
+MOST_APART = 0.5
+#: Farthest that a camera may be, in extents of the surface: beyond, numbers end.
+FARTHEST_REACH = 1e9
+#: Nearest that a camera may be, in extents of the surface.
+NEAREST_REACH = 1e-9
 
 
 @dataclass(frozen=True)

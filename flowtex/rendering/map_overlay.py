@@ -23,10 +23,14 @@ class Stroke(NamedTuple):
 
 #: Lines by their options, from below to above.
 STROKES = {"graticule": Stroke("black", 0.4, 1.0), "coastlines": Stroke("black", 0.8, 1.1)}
-#: Height of a picture in which lines have their width, and how it changes with that at most.
-USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
-#: Distances of the points of lines in metres, and how many pixels they may have.
-SPACINGS, SPACING_PX = (200e3, 80e3, 20e3, 0.0), 2.0
+#: Height of a picture in which lines have their width.
+USUAL_HEIGHT_PX = 600
+#: Range of the factor by which the width changes with the height.
+WIDTH_RANGE = (0.6, 2.0)
+#: Distances of the points of lines in metres.
+SPACINGS = (200e3, 80e3, 20e3, 0.0)
+#: Most pixels between two points of a line.
+SPACING_PX = 2.0
 #: Share of the extent by which the box of a map is wider than its surface.
 WIDER = 1e-3
 #: Distance of the globe below the surface, in radii, in addition to the sagitta of its cells.

@@ -1,4 +1,4 @@
-"""Shader text from the files in ``shaders/``. Nothing here knows VTK or WebGL.
+"""Shader text from the files in ``shaders/``, and its constants. Nothing here knows VTK or WebGL.
 
 An installed wheel has the files as ``flowtex/_shaders``, a checkout (also one installed as
 editable) as ``shaders`` beside the package. The folder is found from this module's own place and
@@ -12,6 +12,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
+from statistics import NormalDist
+from typing import Any
+
+import numpy as np
+
+#: Kernels by their numbers in the shaders.
+KERNELS = ("hann", "box", "ramp")
+#: Values of a texture that stand for all, which are spread as a normal distribution.
+MEAN_VALUES = np.array([NormalDist().inv_cdf((n + 0.5) / 16) for n in range(16)])
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
@@ -76,3 +85,29 @@ def _expand(name: str, seen: set[str]) -> str:
         return ""
     seen.add(name)
     return _INCLUDE.sub(lambda match: _expand(match.group(1), seen), shader_source(name))
+
+
+def _constant(kind: str, value: str) -> Any:
+    """Return a constant of a type of GLSL; vectors are rows."""
+    numbers = re.findall(r"(?<![\w.])-?(?:0x[0-9a-f]+|[\d.]+(?:e-?\d+)?)", value)
+    if kind in ("int", "float"):
+        return {"int": int, "float": float}[kind](numbers[0])
+    if kind == "mat3":
+        return np.array(numbers, dtype=float).reshape(3, 3)
+    whole = np.array([int(number, 0) for number in numbers], dtype=np.uint32)
+    return whole[0] if kind == "uint" else whole
+
+
+class _Constants:
+    def __getattr__(self, name: str) -> Any:
+        """Read all constants when the first one is needed."""
+        text = shader_source("common/constants.glsl")
+        found = re.findall(r"const (\w+) FLOWTEX_(\w+) = ([^;]*);", text)
+        vars(self).update({name: _constant(kind, value) for kind, name, value in found})
+        if name not in vars(self):
+            raise AttributeError(f"the shaders have no constant {name!r}")
+        return vars(self)[name]
+
+
+#: The numbers of the method by their names without the prefix; the file explains each.
+const = _Constants()

@@ -13,9 +13,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
-from flowtex.rendering.constants import FAR_CELLS, KERNELS
+from flowtex.rendering.shaders import KERNELS, MEAN_VALUES, const
 from flowtex.settings import Settings
 from flowtex.textures.images import ImageTextures
 from flowtex.textures.texture_set import TextureSet
@@ -29,12 +28,17 @@ NOISE_DOUBLINGS = 30
 CLEAR_DOUBLINGS = 9
 #: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
 WAVE_PIXELS = 96.0
-#: Step of the coarse part of the clock, in base periods, and its end: times a power of two it
-#: stays exact.
-CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
+#: Step of the coarse part of the clock in base periods: times a power of two it stays exact.
+CLOCK_STEP = 2.0**-12
+#: End of the clock in base periods.
+MOST_TURNS = 2.0**12
 
-#: Pieces of an arrow, the least distance of two over the mean one, and that in pixels at least.
-ARROW_PIECES, ARROW_LEAST, ARROW_MOST_DENSE = 12, 0.85, 8.0
+#: Pieces of an arrow.
+ARROW_PIECES = 12
+#: Least distance of two arrows over the mean one.
+ARROW_LEAST = 0.85
+#: Least distance of two arrows in pixels.
+ARROW_MOST_DENSE = 8.0
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
@@ -109,7 +113,7 @@ def client_constants() -> dict[str, Any]:
             "mostDense": ARROW_MOST_DENSE,
             **seed_limits(),
         },
-        "farCells": FAR_CELLS,
+        "farCells": const.FAR_CELLS,
         "shading": {
             "toCones": const.TO_CONES.ravel().tolist(),
             "toLab": const.TO_LAB.ravel().tolist(),
@@ -117,7 +121,7 @@ def client_constants() -> dict[str, Any]:
             "fromCones": const.FROM_CONES.ravel().tolist(),
             "base": [const.BASE_DARK, const.BASE_LIGHT],
             "tone": [const.TONE_RANGE, const.TONE_SLOPE],
-            "values": const.MEAN_VALUES.tolist(),
+            "values": MEAN_VALUES.tolist(),
         },
     }
 
@@ -212,7 +216,7 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
         away = float(np.linalg.norm(view.eye[:3] - geometry.center)) - 0.5 * geometry.extent
         near *= max(away, 0.0) / to_focus
     side = settings.samples // 2 * _distance(textures, settings, view, near)
-    return bool(side < FAR_CELLS * textures.critical_cell)
+    return bool(side < const.FAR_CELLS * textures.critical_cell)
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:

@@ -1,4 +1,4 @@
-// The numbers of the method, which flowtex/rendering/constants.py reads.
+// The numbers of the method, which flowtex/rendering/shaders.py reads.
 
 // Length of the array of lags that a renderer sets.
 const int FLOWTEX_MOST_LAGS = 32;

@@ -7,8 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from flowtex.rendering import constants
-from flowtex.rendering.shaders import shader_names, shader_source
+from flowtex.rendering.shaders import KERNELS, const, shader_names, shader_source
 from flowtex.textures import texture_set
 
 NAMES = re.findall(r"FLOWTEX_(\w+) =", shader_source("common/constants.glsl"))
@@ -16,16 +15,16 @@ NAMES = re.findall(r"FLOWTEX_(\w+) =", shader_source("common/constants.glsl"))
 
 def test_matrices_of_colours_are_inverse() -> None:
     for there, back in (("TO_CONES", "FROM_CONES"), ("TO_LAB", "FROM_LAB")):
-        product = getattr(constants, there) @ getattr(constants, back)
+        product = getattr(const, there) @ getattr(const, back)
         np.testing.assert_allclose(product, np.eye(3), atol=1e-7)
 
 
 def test_numbers_that_follow_from_others_do() -> None:
-    assert pytest.approx(np.pi) == constants.PI
-    assert pytest.approx(np.sqrt(0.5)) == constants.SQRT_HALF
-    assert pytest.approx(constants.MOST_GRAIN**2 / 3) == constants.GRAIN_VARIANCE
-    assert [f"KERNEL_{kernel.upper()}" for kernel in constants.KERNELS] == NAMES[1:4]
-    assert [getattr(constants, name) for name in NAMES[1:4]] == [0, 1, 2]
+    assert pytest.approx(np.pi) == const.PI
+    assert pytest.approx(np.sqrt(0.5)) == const.SQRT_HALF
+    assert pytest.approx(const.MOST_GRAIN**2 / 3) == const.GRAIN_VARIANCE
+    assert [f"KERNEL_{kernel.upper()}" for kernel in KERNELS] == NAMES[1:4]
+    assert [getattr(const, name) for name in NAMES[1:4]] == [0, 1, 2]
 
 
 def test_every_constant_of_the_shaders_is_used() -> None:
@@ -39,4 +38,4 @@ def test_every_constant_of_the_shaders_is_used() -> None:
 
 @pytest.mark.parametrize("name", ["AGREED", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"])
 def test_textures_are_made_by_the_numbers_of_the_shaders(name: str) -> None:
-    assert getattr(constants, name) == getattr(texture_set, name)
+    assert getattr(const, name) == getattr(texture_set, name)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering.constants import MOST_GRAIN
 from flowtex.rendering.cpu.noise import Motion, noise_lattice, octave
 from flowtex.rendering.cpu.texture import shared
+from flowtex.rendering.shaders import const
 
 VALUES: dict[str, Any] = {
     "u_noiseFinest": 1.0,
@@ -61,8 +61,8 @@ def test_motion_keeps_mean_and_variance(rng: np.random.Generator, moment: float)
     p = rng.uniform(-500, 500, (30_000, 3))
     n = np.ones((len(p), 1))
     clock = n * [moment, 2 * moment]
-    shares = n * [0.6, 0.4] * MOST_GRAIN / np.hypot(0.6, 0.4)
-    motion = Motion(clock, 0 * clock, n * [1.0, 64.0] / (2 * MOST_GRAIN), shares)
+    shares = n * [0.6, 0.4] * const.MOST_GRAIN / np.hypot(0.6, 0.4)
+    motion = Motion(clock, 0 * clock, n * [1.0, 64.0] / (2 * const.MOST_GRAIN), shares)
     values = noise(p, 0, motion=motion)
     assert values.var() == pytest.approx(1.0, abs=0.04)
     assert values.mean() == pytest.approx(0.0, abs=0.03)

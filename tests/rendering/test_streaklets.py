@@ -12,9 +12,9 @@ from scipy import ndimage
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.locate import locator
-from flowtex.rendering import constants as const
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings

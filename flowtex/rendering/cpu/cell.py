@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.path import Places, Slices, TrianglePlaces, TriangleSlices
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 
 

@@ -10,16 +10,9 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.triangle_nodes import normals_at_corners
-from flowtex.rendering.constants import (
-    HUE_SHIFT,
-    LEAST_FACING,
-    LEAST_TEXELS,
-    LEVEL_DARKEST,
-    LEVELS_AROUND,
-    PI,
-)
 from flowtex.rendering.cpu.path import Places, TrianglePlaces
 from flowtex.rendering.cpu.raster import Coverage
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -132,7 +125,7 @@ def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
     ray = _unit(eye[:3] - eye[3] * position.value)
     toward = _unit(normal.value)
     facing = np.einsum("nc,nc->n", toward, ray)
-    facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), LEAST_FACING)
+    facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), const.LEAST_FACING)
 
     def moved(derivative: Floats) -> Floats:
         slope = np.einsum("nc,nc->n", toward, derivative) / facing
@@ -152,12 +145,12 @@ def slice_level(coordinate: Varying, values: Values) -> Floats:
         return np.zeros(len(coordinate.value))
     size = np.asarray(values["u_slicesSize"])
     _, shortest = footprint(coordinate.dx * size, coordinate.dy * size)
-    levels = np.log2(np.maximum(shortest, LEAST_TEXELS))
+    levels = np.log2(np.maximum(shortest, const.LEAST_TEXELS))
     return np.asarray(np.clip(levels, 0.0, values["u_deepest"]))
 
 
 def level_colour(level: Floats) -> Floats:
     """Return colours (..., 3) for levels of detail (...): one hue per doubling, six in a cycle."""
-    turn = level[..., None] / LEVELS_AROUND + HUE_SHIFT * np.array([0.0, -1.0, 1.0])
-    hue = 0.5 + 0.5 * np.cos(2 * PI * turn)
-    return np.asarray(LEVEL_DARKEST + (1.0 - LEVEL_DARKEST) * hue)
+    turn = level[..., None] / const.LEVELS_AROUND + const.HUE_SHIFT * np.array([0.0, -1.0, 1.0])
+    hue = 0.5 + 0.5 * np.cos(2 * const.PI * turn)
+    return np.asarray(const.LEVEL_DARKEST + (1.0 - const.LEVEL_DARKEST) * hue)

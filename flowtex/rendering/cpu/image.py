@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering.constants import LEAST_TEXELS
 from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 from flowtex.textures.images import ImageTextures
 
@@ -64,4 +64,4 @@ def mip_level(texels: Floats, values: Values) -> Floats:
     """Return the mip level at which a texel is as wide as that many of the finest level."""
     if not values["u_lod"]:
         return np.zeros(len(texels))
-    return np.asarray(np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0))
+    return np.asarray(np.maximum(np.log2(np.maximum(texels, const.LEAST_TEXELS)), 0.0))

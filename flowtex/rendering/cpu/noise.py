@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Ints
-from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.fragments import Fragments, footprint, on_surface
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 
 Hashes = NDArray[np.uint32]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.rendering import constants as const
+from flowtex.rendering.shaders import MEAN_VALUES, const
 from flowtex.settings import Settings
 
 
@@ -33,7 +33,7 @@ def mean_colours(table: Bytes, settings: Settings) -> Bytes:
     if settings.noise == "image":
         return table
     shaded = table.copy()
-    values = np.broadcast_to(const.MEAN_VALUES, (len(table), len(const.MEAN_VALUES)))
+    values = np.broadcast_to(MEAN_VALUES, (len(table), len(MEAN_VALUES)))
     colours = shade(table[:, None, :3] / 255.0, values, settings)
     shaded[:, :3] = np.rint(255 * colours.mean(axis=1))
     return shaded

@@ -9,10 +9,10 @@ from typing import Protocol
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import AxisSlices, Path, Places, Slices, TrianglePlaces, moved
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 
 

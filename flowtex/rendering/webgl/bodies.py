@@ -14,8 +14,10 @@ from flowtex._util.array_types import Bytes, Floats, Indices
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 
-#: Most vertices of all meshes together, and most labels, that are sent to a browser.
-MOST_VERTICES, MOST_LABELS = 500_000, 500
+#: Most vertices of all meshes together that are sent to a browser.
+MOST_VERTICES = 500_000
+#: Most labels that are sent to a browser.
+MOST_LABELS = 500
 #: Greatest component of a normal in eight bits.
 NORMAL_MAX = 127
 #: Factor by which the depths in view reach beyond the farthest vertex.

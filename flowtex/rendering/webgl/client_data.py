@@ -51,9 +51,12 @@ from flowtex.textures.tiles.pyramid import (
 )
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Shaders of the client, pairs of a vertex and a fragment shader, and those of one that traces.
+#: Shaders of the client.
 SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe")
-SHADER_PAIRS, TRACE_SHADERS = ("line", "ground", "body", "arrow"), ("trace", "layers")
+#: Pairs of a vertex and a fragment shader.
+SHADER_PAIRS = ("line", "ground", "body", "arrow")
+#: Shaders of a client that traces.
+TRACE_SHADERS = ("trace", "layers")
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5

@@ -29,11 +29,16 @@ from flowtex.textures.geometry import DrawnSurface
 
 #: Greatest number of a place on a line, of those that a side of the lines' box is divided into.
 LINE_STEPS = 65535
-#: Places along the longer side of a map at which longitude and latitude are sent, at most, their
-#: least distance in metres, and their fewest along a side: a cubic goes through so many.
-LONLAT_PLACES, NEAREST_PLACES_M, FEWEST_PLACES = 65, 5e4, 4
-#: Weights by which four places in a row continue to the next, and lines of places that do so.
-ONWARD, MOST_ONWARD = (4.0, -6.0, 4.0, -1.0), 3
+#: Most places along the longer side of a map at which longitude and latitude are sent.
+LONLAT_PLACES = 65
+#: Least distance of these places in metres.
+NEAREST_PLACES_M = 5e4
+#: Fewest places along a side: a cubic goes through so many.
+FEWEST_PLACES = 4
+#: Weights by which four places in a row continue to the next.
+ONWARD = (4.0, -6.0, 4.0, -1.0)
+#: Lines of places that are continued so.
+MOST_ONWARD = 3
 
 
 @dataclass(frozen=True, eq=False)

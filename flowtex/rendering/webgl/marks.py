@@ -29,8 +29,14 @@ MARK_PARTS = {
     "separatrices": "separatrices",
     "nullclines": "nullclines",
 }
-#: The number of a line is SADDLE times that of its saddle, plus a sum of flags.
-SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
+#: The number of a line is so many times that of its saddle, plus a sum of flags:
+SADDLE = 8
+#: a closed orbit,
+ORBIT = 4
+#: a line that leaves its saddle,
+LEAVING = 2
+#: and the side of the saddle.
+SIDE = 1
 
 
 class KindMark(NamedTuple):
@@ -63,11 +69,16 @@ LINE_COLORS = {
 }
 #: Lines along which the components along x and y are zero.
 NULLCLINE_COLORS = {"u = 0": "#ffa733", "v = 0": "#ff9ad5"}
-#: Around dots and lines, and in the middle of rings.
-RIM_COLOR, RIM_OPACITY, MIDDLE_COLOR = "#101418", 0.85, "#ffffff"
-#: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring; widths of
-#: the rim of a line and of its colour.
-DOT_PX, LINE_PX = (12.0, 9.0, 4.0), (3.6, 2.0)
+#: Colour around dots and lines.
+RIM_COLOR = "#101418"
+#: Opacity around dots and lines.
+RIM_OPACITY = 0.85
+#: Colour in the middle of rings.
+MIDDLE_COLOR = "#ffffff"
+#: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring.
+DOT_PX = (12.0, 9.0, 4.0)
+#: Widths in pixels of the rim of a line and of its colour.
+LINE_PX = (3.6, 2.0)
 
 
 def strokes(

@@ -31,11 +31,16 @@ from flowtex._util.cache import digest
 FORMAT = 6
 #: Level of gzip for the parts of a page.
 COMPRESSION_LEVEL = 6
-#: Highest order of differences of a part along an axis; numbers, and rows at least, of the sample
-#: from which the best order is chosen.
-MOST_DIFFERENCES, SAMPLE, LEAST_ROWS = 2, 20_000, 4
-#: Types of the whole numbers of which floats may be multiples, their bits, and exponents of a unit.
-WHOLE, MOST_SCALE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}, 100
+#: Highest order of differences of a part along an axis.
+MOST_DIFFERENCES = 2
+#: Numbers of the sample from which the best order is chosen.
+SAMPLE = 20_000
+#: Least rows of that sample.
+LEAST_ROWS = 4
+#: Types of the whole numbers of which floats may be multiples, and their bits.
+WHOLE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}
+#: Greatest exponent of a unit.
+MOST_SCALE = 100
 
 #: Values for JSON by name: a header, a section of one, or the description of a part.
 Header: TypeAlias = dict[str, Any]

@@ -33,19 +33,28 @@ from flowtex.trace.structure.formula_lines import formula_rates
 
 #: Least size of a cell in typical ones.
 LEAST_SIZE = 1e-4
-#: Unit of positions as a share of a small cell of the finest level, and which percentile that is.
-CELL_SHARE, SMALL_CELLS = 2**-13, 1.0
-#: Steps of a rate as a share of that along wide cells, and which percentile these are; of the
-#: speed, and of a share of it: its error is 2^-10 of itself, or 2^-13 of the typical one.
-RATE_UNIT, WIDE_CELLS, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 95, 2.0**-12, 2**9
+#: Unit of positions as a share of a small cell of the finest level.
+CELL_SHARE = 2**-13
+#: Percentile of small cells.
+SMALL_CELLS = 1.0
+#: Steps of a rate as a share of that along wide cells.
+RATE_UNIT = 2.0**-9
+#: Percentile of wide cells.
+WIDE_CELLS = 95
+#: Steps of the speed: its error is 2^-13 of the typical one,
+SPEED_UNIT = 2.0**-12
+#: or 2^-10 of itself, where it has so many steps.
+SPEED_STEPS = 2**9
 #: Bytes of a node at one time, about.
 NODE_BYTES = 4
 #: Steps whose flow a client holds to follow the paths to one of them, at most.
 MOST_STEPS = 64
 #: Greatest number in half precision.
 HALF_MAX = 65504.0
-#: Bytes of packed steps that are cached, and how many steps at least.
-CACHE_BYTES, LEAST_STEPS = 64_000_000, 2
+#: Bytes of packed steps that are cached.
+CACHE_BYTES = 64_000_000
+#: Least packed steps that are cached.
+LEAST_STEPS = 2
 #: Levels below the grid that is sent: enough for the deepest zoom.
 DEPTH = 20
 #: Before the name of a parameter among the settings, in the client as well.
