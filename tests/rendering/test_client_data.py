@@ -11,7 +11,6 @@ from triangle_meshes import sphere
 
 import flowtex
 from flowtex import FlowField, examples
-from flowtex._util.colours import colour_table
 from flowtex.host.view import TileSource, WebView, even_steps, web_views
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
@@ -142,21 +141,6 @@ def test_evenly_chosen_numbers() -> None:
     assert even_steps(4, 1) == (3,)
     with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 4"):
         even_steps(4, 0)
-
-
-def test_colour_maps_of_every_kind() -> None:
-    import pyvista as pv
-
-    named = colour_table("viridis")
-    assert named.shape == (256, 4)
-    assert named.dtype == np.uint8
-    assert named[0, :3].sum() < named[-1, :3].sum()
-    np.testing.assert_array_equal(colour_table(None), named)
-    np.testing.assert_array_equal(colour_table(pv.LookupTable("viridis")), named)
-    two = colour_table(np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]))
-    np.testing.assert_array_equal(np.unique(two[:, 0], return_counts=True), [[0, 255], [128, 128]])
-    with pytest.raises(ValueError, match=r"^cmap has shape \(3,\); expected a name"):
-        colour_table(np.zeros(3))
 
 
 def test_a_coarse_field_keeps_its_edges_and_its_data() -> None:

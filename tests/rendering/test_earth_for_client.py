@@ -74,41 +74,12 @@ def test_a_flow_elsewhere_has_nothing_of_the_earth() -> None:
     assert not {"coastlines", "graticule", "land", "lonlat"} & set(data.surface())
 
 
-def test_lines_and_land_follow_the_appearance() -> None:
-    field = earth("platecarree", hole=True)
-    header = header_of(field)["earth"]
-    assert header["coastlines"]
-    assert header["graticule"]
-    assert len(header["land"]) == 3
-    view, data = view_of(field, coastlines=False, graticule=False, land=None)
-    header = data.constants()["earth"]
-    assert not header["coastlines"]
-    assert not header["graticule"]
-    assert header["land"] is None
-    # A page has the lines all the same, which are shown by its switch.
-    assert {"coastlines", "graticule", "land"} <= set(data.surface())
-    view.scene.appearance = Options.split("appearance", land="red").appearance
-    header = view.recoloured(data).constants()["earth"]
-    assert header["coastlines"]
-    assert header["land"] == [1, 0, 0]
-
-
 def test_land_is_where_there_are_no_data() -> None:
     _, data = view_of(earth("platecarree", hole=True))
     parts = data.surface()
     np.testing.assert_array_equal(parts["land"], 1 - parts["cells"])
     assert "land" not in view_of(earth("platecarree"))[1].surface()
     assert "land" not in view_of(earth("globe", hole=True))[1].surface()
-
-
-def test_a_globe_lies_below_what_does_not_cover_it() -> None:
-    header = header_of(earth("globe"))["earth"]
-    assert header["below"]
-    assert header["radius"] == pytest.approx(6_371_000)
-    assert header["map"] is None
-    header = header_of(earth("platecarree"))["earth"]
-    assert not header["below"]
-    assert len(header["map"]) == 4
 
 
 def cubic(values: Floats, at: Floats) -> Floats:

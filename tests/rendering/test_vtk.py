@@ -211,24 +211,6 @@ def test_a_closed_plotter_lets_everything_go(opengl: Any) -> None:
     assert layer() is None
 
 
-def test_time_moves_the_picture_and_the_colours(plotter: Any) -> None:
-    y, x = np.mgrid[0:1:21j, 0:1:21j]
-    flat = np.stack([np.ones_like(x), 0 * x], -1)
-    steps = np.stack([flat, flat[..., ::-1]])
-    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), steps, times=[0.0, 50.0])
-    handle = plotter.flowtex.add(field, scalars=False)
-    ones = np.ones(plotter.window_size[::-1])
-    middle = np.zeros(ones.shape, dtype=bool)
-    height, width = ones.shape
-    middle[height // 3 : 2 * height // 3, 2 * width // 5 : 3 * width // 5] = True
-    handle.time = 0.0
-    early = streaks(plotter.screenshot(return_img=True), ones, 0 * ones, middle)
-    handle.time = 50.0
-    late = streaks(plotter.screenshot(return_img=True), 0 * ones, ones, middle)
-    assert early["angle"] < 5
-    assert late["angle"] < 5
-
-
 def test_a_period_closes_into_a_loop(plotter: Any) -> None:
     handle = plotter.flowtex.add(gyre_field(), scalars=False, motion="speed", period=2.0)
     frames = []

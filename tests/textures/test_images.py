@@ -214,14 +214,6 @@ def test_colours_survive_also_on_a_curved_surface_in_the_light(opengl: Any, step
     assert found[..., 1:].max() < 2
 
 
-def test_the_mean_is_kept_by_a_flow_that_keeps_area(opengl: Any, rng: np.random.Generator) -> None:
-    image = photo(rng)
-    whole = (np.abs(places()[0] - 1) < 1) & (np.abs(places()[1] - 0.5) < 0.5)
-    found = draw(gyre(), image=image)[whole].mean(axis=0)
-    np.testing.assert_allclose(found, image.mean(axis=(0, 1)), atol=2.5)
-    assert draw(gyre(), image=image)[whole].std() < 0.95 * image.std()
-
-
 def test_dye_lies_on_the_colour_of_the_surface(opengl: Any) -> None:
     dye = np.zeros((32, 64, 4))
     dye[..., 1] = 1.0  # green that is not seen where it is transparent
@@ -299,18 +291,6 @@ def test_an_image_can_come_later_and_go_again(plotter: Any, rng: np.random.Gener
     assert np.abs(plotter.screenshot(return_img=True).astype(float) - second).mean() > 5
     handle.settings.noise = "procedural"
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
-
-
-def test_an_image_that_came_later_stays_on_another_surface(
-    plotter: Any, rng: np.random.Generator
-) -> None:
-    first, later = photo(rng), photo(rng)
-    for image in (first, None):
-        handle = plotter.flowtex.add(gyre(), image=image)
-        handle.set_image(later)
-        handle.set_surface(uniform())
-        assert handle.settings.noise == "image"
-        np.testing.assert_array_equal(handle.scene.image, as_picture(later))
 
 
 def test_a_change_of_tiles_makes_no_textures() -> None:

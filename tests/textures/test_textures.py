@@ -174,17 +174,6 @@ def test_flat_surfaces_lie_in_their_own_plane(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(one, two, atol=1e-3)
 
 
-def test_curved_surfaces_keep_three_dimensions() -> None:
-    a, z = np.meshgrid(np.linspace(0, 3, 31), np.linspace(0, 1, 21))
-    points = np.stack([np.cos(a), np.sin(a), z], axis=-1)
-    velocity = np.stack([-np.sin(a), np.cos(a), 0 * z + 0.2], axis=-1)
-    made = textures(FlowField.from_arrays(points, velocity, periodic=""))
-    assert not made.geometry.planar
-    tangent = nodal(made, made.layers(dtype=np.float32)[0])[..., :3]
-    expected = velocity / np.linalg.norm(velocity, axis=-1, keepdims=True)
-    np.testing.assert_allclose(tangent[1:-1, 1:-1], expected[1:-1, 1:-1], atol=2e-3)
-
-
 def test_blanked_nodes_take_what_is_beside_them() -> None:
     field = double_gyre_field(shape=(21, 41))
     valid = np.ones(field.shape, bool)

@@ -11,7 +11,6 @@ from triangle_meshes import cube, random_plane, sphere
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
-from flowtex.field.steps import LazySteps
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import levels_of
@@ -155,24 +154,6 @@ def test_slopes_of_a_tile_are_those_of_the_field(make: Any, rng: np.random.Gener
     at = [points[tuple(p)] for p in tile.geometry.points[0]]
     off = np.abs(mine - theirs[:, at])[..., :3]
     assert np.percentile(off, 99.5) < 2e-3
-
-
-def test_steps_that_are_read_late_stay_so(rng: np.random.Generator) -> None:
-    from dataclasses import replace
-
-    field, reads = plane(rng), []
-
-    def read(step: int) -> Floats:
-        reads.append(step)
-        return np.asarray(field.velocity[0] * (1 + step))
-
-    late = replace(field, velocity=LazySteps(50, read), times=np.arange(50.0))
-    pyramid = TrianglePyramid(late)
-    assert not reads
-    np.testing.assert_allclose(
-        pyramid.root.velocity[3], 4 * TrianglePyramid(field).root.velocity[0]
-    )
-    assert reads == [3]
 
 
 def test_nodes_without_data_are_in_no_mean(rng: np.random.Generator) -> None:
