@@ -107,8 +107,8 @@ class ArrowSeeds:
     def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
         """Return whether the seeds of the last view are sufficient for another one."""
         points = self._corners_of(view)
-        last_distance = CLOSER * least * _pixel(last, _distances(last, points))
-        distance = spacing * _pixel(view, _distances(view, points))
+        last_distance = CLOSER * least * last.pixel(last.distances(points))
+        distance = spacing * view.pixel(view.distances(points))
         return bool((last_distance <= distance).all() and _sees(last, points, 0.0).all())
 
     def _corners_of(self, view: TileView) -> Floats:
@@ -131,7 +131,7 @@ class ArrowSeeds:
         geometry = self._geometry
         distance = np.inf if view.eye is None else norm(geometry.center - view.eye)
         nearest = max(distance - 0.5 * geometry.extent, 0.0) if view.eye is not None else 1.0
-        least = CLOSER * spacing * _pixel(view, np.array(nearest))
+        least = CLOSER * spacing * view.pixel(np.array(nearest))
         radius, parts, seeds = geometry.extent, self._cells, self._whole[0]
         for octave in range(MOST_OCTAVES):
             area = CANDIDATE_AREA * radius**2
@@ -149,7 +149,7 @@ class ArrowSeeds:
             radius *= OCTAVE
         points = self._mesh_points(seeds.position)
         near = _sees(view, points, 0.0) & (
-            seeds.radius >= CLOSER * spacing * _pixel(view, _distances(view, points))
+            seeds.radius >= CLOSER * spacing * view.pixel(view.distances(points))
         )
         return seeds[near]
 
@@ -201,7 +201,7 @@ class ArrowSeeds:
         """Return the parts in view, or near it, where the octave is needed."""
         middle = self._mesh_points(self._positions(parts.cell, parts.low + 0.5 * parts.size))
         reach = 0.5 * norm(self._sides(parts)).sum(axis=0)
-        pixel = _pixel(view, np.maximum(_distances(view, middle) - reach, 0.0))
+        pixel = view.pixel(np.maximum(view.distances(middle) - reach, 0.0))
         needed = radius >= OCTAVE * CLOSER * spacing * pixel
         return parts[needed & _sees(view, middle, reach + AROUND_RADII * radius)]
 
@@ -242,22 +242,9 @@ def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
     return np.asarray((1 - j) * low + j * high)
 
 
-def _distances(view: TileView, points: Floats) -> Floats:
-    """Return distances from the eye, or 1 where rays are parallel, (n,)."""
-    return np.ones(len(points)) if view.eye is None else norm(points - view.eye)
-
-
-def _pixel(view: TileView, away: Floats) -> Floats:
-    """Return the length that a pixel covers at distances from the eye."""
-    return 2 * view.half_height / view.pixels * away
-
-
 def _sees(view: TileView, points: Floats, reach: Floats | float) -> Bools:
     """Return which points (n, 3) are in view, or in the seeded margin beside it."""
-    slack = reach + AROUND * view.pixels * _pixel(view, _distances(view, points))
-    length = norm(view.planes[:, :3])
-    inside = points @ view.planes[:, :3].T + view.planes[:, 3] >= -slack[:, None] * length
-    return np.asarray(inside.all(axis=-1))
+    return view.sees(points, reach + AROUND * view.pixels * view.pixel(view.distances(points)))
 
 
 def _mixed(key: Hashes) -> Hashes:

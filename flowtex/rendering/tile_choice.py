@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.arrays import norm
 from flowtex.settings import Settings
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 
@@ -34,21 +35,27 @@ class TileView:
     #: Blocks of level 0 that nothing hides, (rows, columns); ``None`` where that is not known.
     visible: Bools | None = None
 
-    def sees(self, blocks: Floats) -> Bools:
-        """Return which blocks (J, I, 5) of a mesh may be in view."""
-        center, radius = blocks[..., :3], blocks[..., 3]
-        length = np.linalg.norm(self.planes[:, :3], axis=1)
-        inside = center @ self.planes[:, :3].T + self.planes[:, 3] >= -radius[..., None] * length
+    def sees(self, points: Floats, reach: Floats) -> Bools:
+        """Return which balls around points (..., 3) of a mesh, with radii (...), may be in view."""
+        slack = reach[..., None] * norm(self.planes[:, :3])
+        inside = points @ self.planes[:, :3].T + self.planes[:, 3] >= -slack
         return np.asarray(inside.all(axis=-1))
+
+    def distances(self, points: Floats) -> Floats:
+        """Return distances of points (..., 3) from the eye, or 1 where rays are parallel."""
+        return np.ones(points.shape[:-1]) if self.eye is None else norm(points - self.eye)
+
+    def pixel(self, distance: Floats) -> Floats:
+        """Return the length that a pixel covers at distances from the eye."""
+        return 2 * self.half_height / self.pixels * distance
 
     def cell_sizes(self, blocks: Floats) -> Floats:
         """Return the greatest size of the cells of blocks (J, I, 5), in pixels."""
-        center, radius, size = blocks[..., :3], blocks[..., 3], blocks[..., 4]
-        distance = np.ones(radius.shape)
+        radius, size = blocks[..., 3], blocks[..., 4]
+        distance = self.distances(blocks[..., :3])
         if self.eye is not None:
-            distance = np.linalg.norm(center - self.eye, axis=-1) - radius
-            distance = np.maximum(distance, size)
-        return np.asarray(size * 0.5 * self.pixels / (self.half_height * distance))
+            distance = np.maximum(distance - radius, size)
+        return np.asarray(size / self.pixel(distance))
 
 
 def cell_pixels(settings: Settings) -> float:
@@ -79,7 +86,7 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
         level = pyramid.depth if key is None else key.level
         rows, columns = pyramid.blocks_of(key)
         places = pyramid.places(level)[rows, columns]
-        seen, pixels = view.sees(places), view.cell_sizes(places)
+        seen, pixels = view.sees(places[..., :3], places[..., 3]), view.cell_sizes(places)
         if (visible := view.visible) is not None:
             for axis, count in enumerate(visible.shape):
                 visible = np.logical_or.reduceat(visible, np.arange(0, count, 1 << level), axis)

@@ -184,7 +184,7 @@ def check_cover(pyramid: Pyramid, seen: TileView, rng: np.random.Generator) -> N
     choices = choose_tiles(pyramid, seen)
     for wanted in wanted_tiles(choices):
         places = pyramid.places(wanted.level)[pyramid.blocks_of(wanted)]
-        sizes = seen.cell_sizes(places)[seen.sees(places)]
+        sizes = seen.cell_sizes(places)[seen.sees(places[..., :3], places[..., 3])]
         assert wanted.level == 0 or sizes.min() <= seen.cell_pixels
     ready = {key for key in choices if rng.random() < 0.6}
     shown = cover(choices, lambda key: key in ready)

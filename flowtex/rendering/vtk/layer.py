@@ -401,7 +401,8 @@ class FlowLayer:
         levels = self.mesh_levels.levels(view.eye, view.half_height, renderer.GetSize()[1])
         if prop.show_edges or prop.style != "Surface":
             levels = np.zeros_like(levels)
-        return np.where(view.sees(self.mesh_levels.blocks), levels, -1)
+        blocks = self.mesh_levels.blocks
+        return np.where(view.sees(blocks[..., :3], blocks[..., 3]), levels, -1)
 
     def set_triangles(self, levels: Ints, borders: Ints | None) -> None:
         """Draw other triangles; :meth:`MeshLevels.triangles` has the parameters."""
