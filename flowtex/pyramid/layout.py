@@ -48,7 +48,7 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
-from flowtex.pyramid.source import NodeSource
+from flowtex.pyramid.source import NodeSource, periods_of
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, level_shape, root_level
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
         "projection": field.projection and field.projection.written,
         "nodes": list(source.shape),
         "periodic": list(field.periodic),
-        "periods": [period.tolist() for period in source.periods],
+        "periods": [period.tolist() for period in periods_of(source)],
         "depth": depth,
         "tile_cells": TILE_CELLS,
         "parameter": parameter,

@@ -7,9 +7,8 @@ import os
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -46,59 +45,15 @@ from flowtex.trace.store import chosen_lines, judged_lines
 WHOLE_NODES = 2_000_000
 
 
-class NodeSource:
-    """Nodes (J, I) of a ``shape`` that a pyramid is built from, and the time steps of ``scalars``.
+class FieldSource:
+    """A field in the memory of the process that builds.
 
-    ``field`` has the names, the times and the map; only some sources have its nodes there.
+    It has nodes (J, I) of a ``shape``, and the time steps of ``scalars``. ``flat`` is whether nodes
+    and velocities lie in a plane of even height, ``rectilinear`` whether two lines of coordinates
+    give all positions, ``late`` whether steps are read when they are needed, and ``travels``
+    whether a worker elsewhere can read it. ``has_position`` are the nodes whose position is known;
+    ``None`` for all.
     """
-
-    field: FlowField
-    shape: tuple[int, int]
-    scalars: dict[str, int]
-    #: Whether nodes and velocities lie in a plane of even height, and if two lines of coordinates
-    #: give all positions.
-    flat: bool
-    rectilinear: bool
-    #: Whether a worker elsewhere can read it, and if its steps are read when they are needed.
-    travels: bool
-    late: bool
-    #: Nodes whose position is known, (J, I); ``None`` for all.
-    has_position: Bools | None = None
-
-    def points(self, rows: Lines, columns: Lines) -> Floats:
-        """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
-        raise NotImplementedError
-
-    def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
-        """Return the data of some nodes at a time step; ``valid`` where it is known already."""
-        raise NotImplementedError
-
-    def chosen_lines(self, lines: str) -> str:
-        """Return the kind of lines to draw, as :func:`flowtex.trace.chosen_lines` does."""
-        return chosen_lines(self.field, lines)
-
-    def with_uncertainty(self, value: Any) -> NodeSource:
-        """Return the source with an uncertainty of its direction, see :func:`with_uncertainty`."""
-        raise NotImplementedError
-
-    def identity(self) -> str:
-        """Return a hash that changes when the source may have; empty where values must be read."""
-        return ""
-
-    def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
-        """Return ends of scalars and of the speed, whole and robust, where they are known."""
-        return {}
-
-    @cached_property
-    def periods(self) -> tuple[Floats, Floats]:
-        """Vectors from the first line of an axis to the last, (3,), for both axes."""
-        ends, every = np.array([0, -1]), slice(None)
-        down, across = self.points(ends, every), self.points(every, ends)
-        return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
-
-
-class FieldSource(NodeSource):
-    """A field in the memory of the process that builds."""
 
     travels = False
 
@@ -121,11 +76,11 @@ class FieldSource(NodeSource):
         self.has_position = None if has_position is None or has_position.all() else has_position
 
     def points(self, rows: Lines, columns: Lines) -> Floats:
-        """Return positions of nodes."""
+        """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
         return np.asarray(self.field.points[rows][:, columns])
 
     def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
-        """Return the data of some nodes."""
+        """Return the data of some nodes at a time step; ``valid`` where it is known already."""
         del valid
         field, at = self.field, (rows, columns)
         scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
@@ -133,12 +88,20 @@ class FieldSource(NodeSource):
         has_position = None if self.has_position is None else self.has_position[at]
         return Nodes(field.points[at], field.valid[at], velocity, scalars, has_position)
 
-    def with_uncertainty(self, value: Any) -> NodeSource:
-        """Return the source of the field with this uncertainty."""
+    def chosen_lines(self, lines: str) -> str:
+        """Return the kind of lines to draw, as :func:`flowtex.trace.chosen_lines` does."""
+        return chosen_lines(self.field, lines)
+
+    def with_uncertainty(self, value: Any) -> FieldSource:
+        """Return the source with an uncertainty of its direction, see :func:`with_uncertainty`."""
         return FieldSource(with_uncertainty(self.field, value))
 
+    def identity(self) -> str:
+        """Return no hash that would change with the field: its values must be read."""
+        return ""
+
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
-        """Return ends of scalars and of the speed."""
+        """Return ends of scalars and of the speed, whole and robust."""
         field, typical = self.field, self.field.typical
         values = {k: np.asarray(s)[:, field.valid] for k, s in typical.scalars.items()}
         values.setdefault("speed", drawn_speeds(typical, Pyramid(field).root))
@@ -148,10 +111,14 @@ class FieldSource(NodeSource):
         return {name: ends for name, ends in both.items() if None not in ends}
 
 
-class RegionSource(NodeSource):
-    """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened."""
+class RegionSource:
+    """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened.
+
+    Its ``field`` has the names, the times and the map, but no nodes.
+    """
 
     travels = True
+    has_position = None
     files: Sequence[Path] = ()
     choice: str = ""
 
@@ -197,7 +164,7 @@ class RegionSource(NodeSource):
         )
         return chosen_lines(sample, lines)
 
-    def with_uncertainty(self, value: Any) -> NodeSource:
+    def with_uncertainty(self, value: Any) -> RegionSource:
         """Set the uncertainty: the name of a scalar, which is read by region."""
         unread = dict.fromkeys(self.scalars, np.zeros((1, 1, 1)))
         field = with_uncertainty(replace(self.field, scalars=unread), value)
@@ -215,6 +182,17 @@ class RegionSource(NodeSource):
             inside = (p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
             for file in sorted(inside):
                 yield file.resolve(), file.stat()
+
+
+#: What a pyramid is built from.
+NodeSource: TypeAlias = FieldSource | RegionSource
+
+
+def periods_of(source: NodeSource) -> tuple[Floats, Floats]:
+    """Return vectors from the first line of an axis to the last, (3,), for both axes."""
+    ends, every = np.array([0, -1]), slice(None)
+    down, across = source.points(ends, every), source.points(every, ends)
+    return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
 
 
 def source_of(data: Any, **options: Any) -> NodeSource:
