@@ -23,7 +23,7 @@ from flowtex.pyramid.layout import VELOCITY_BITS, About
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words, is_store, place_text
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, periods_of, source_of
-from flowtex.sources.datasets.read import read_datasets
+from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import (
