@@ -176,6 +176,10 @@ class RegionSource:
         infos = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
         return digest(words=(*infos, self.choice)).hex() if infos else ""
 
+    def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
+        """Return no ranges, which are found from samples."""
+        return {}
+
     def _members(self) -> Iterator[tuple[Path, os.stat_result]]:
         """Yield the files that the dataset was opened from, also those of folders."""
         for path in self.files:
