@@ -28,21 +28,30 @@ LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0
 POLAR = 66.0
 #: Span of longitudes from which on a region is around the Earth.
 AROUND = 359.0
-#: Distance in cells from another column, one turn further, up to which a column repeats it, and
-#: from the edge of a map, up to which it is moved there.
-SAME_LINE, NEAR_EDGE = 0.01, 0.1
-#: Least columns that close around the Earth, and widest gap between the last and first in cells.
-LEAST_RING, MOST_GAP = 8, 1.5
-#: Distance of lines, over those beside and over almost all, from which on data are missing between.
-GAP, ALMOST_ALL = 1.75, 0.9
-#: Share of different longitudes from which on nodes are scattered, and the square root of the
-#: sphere's area in square degrees.
-SCATTERED, SPHERE_DEGREES = 0.125, 203.0
+#: Distance in cells from another column, one turn further, up to which a column repeats it.
+SAME_LINE = 0.01
+#: Distance in cells from the edge of a map up to which a column is moved there.
+NEAR_EDGE = 0.1
+#: Least columns that close around the Earth.
+LEAST_RING = 8
+#: Widest gap in cells between the last column and the first, across which they close.
+MOST_GAP = 1.5
+#: Distance of lines, over those beside and over most others, from which on data lack between them.
+GAP = 1.75
+#: Share of the distances of lines that are most.
+ALMOST_ALL = 0.9
+#: Share of different longitudes from which on nodes are scattered.
+SCATTERED = 0.125
+#: Square root of the area of the sphere in square degrees.
+SPHERE_DEGREES = 203.0
 #: Scale of a map, over its median, beyond which the map ends.
 LARGEST = 4.0
-#: Scale of a map along an edge between nodes, over its median, up to which it is not torn; and from
-#: which on it is not drawn, if it is longer than this share of the map.
-PLAIN, WIDE, FAR = 1.5, 4.0, 0.5
+#: Scale of a map along an edge between nodes, over its median, up to which it is not torn.
+PLAIN = 1.5
+#: Scale from which on a long edge is not drawn.
+WIDE = 4.0
+#: Length of an edge from which on it is long, as a share of the map.
+FAR = 0.5
 #: Degrees by which nodes on the edge of a map lie inside it, so that rounding does not move them.
 INSIDE = 1e-9
 #: Share of a cell on both sides of a tear's end, between which nodes beside it lie.
@@ -50,8 +59,10 @@ BESIDE = 0.02
 #: Up to how many nodes one of the blank lines between parts remains where a coarser view leaves
 #: lines out, if there is one.
 COARSE_NODES = 20_000
-#: Degrees beside the edge of a map where it is looked for, and latitudes there.
-STEP, EDGE_LATITUDES = 0.02, np.linspace(-75.0, 75.0, 31)
+#: Degrees beside the edge of a map where it is looked for.
+STEP = 0.02
+#: Latitudes where the edge of a map is looked for.
+EDGE_LATITUDES = np.linspace(-75.0, 75.0, 31)
 #: Degrees from a pole at which a node is on it.
 AT_POLE = 1e-3
 

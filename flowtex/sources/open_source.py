@@ -130,12 +130,7 @@ class FlowSource:
         raise FieldError(f"level is {level!r}; expected a dataset, but this is a mesh")
 
     def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+        self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
     ) -> FlowField:
         """Make a field of one of :attr:`vectors`, the first by default, and of one plane.
 
@@ -143,11 +138,6 @@ class FlowSource:
         :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
         the function that makes the field, such as :meth:`FlowField.from_pyvista`.
         """
-        return self._field(vectors, plane, block, options)
-
-    def _field(
-        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
-    ) -> FlowField:
         raise NotImplementedError
 
     def part(self, block: str | None = None) -> FlowSource:
@@ -192,13 +182,14 @@ class MeshSource(FlowSource):
                 raise FieldError(file.problem)
             return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
 
-    def _field(
-        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    def field(
+        self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
     ) -> FlowField:
+        """Make a field, as :meth:`FlowSource.field` does."""
         if isinstance(self._mesh, FlowField):
             return self._mesh
         if self.blocks:
-            return self.part(block)._field(vectors, plane, None, options)
+            return self.part(block).field(vectors, plane, **options)
         if not {"slice", "contour"} & set(options):
             plane = plane or self.default_plane
             axis = plane.partition("=")[0].strip().lower()
@@ -334,9 +325,10 @@ class DatasetSource(FlowSource):
             raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
         return self
 
-    def _field(
-        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    def field(
+        self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
     ) -> FlowField:
+        """Make a field, as :meth:`FlowSource.field` does."""
         vectors = vectors or self.vectors[0]
         u, _ = two_names(vectors)
         axis, _, number = (plane or self.default_plane).partition("=")

@@ -48,14 +48,16 @@ if TYPE_CHECKING:
 #: not exist.
 Identity = tuple[tuple[str, int, int, int], ...]
 
-#: Endings of files that list others, the pattern of members, and bytes that are read of a list.
-LISTS, MEMBER, LIST_BYTES = (
-    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp"),
-    re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
-    4_000_000,
-)
-#: Levels of lists that are followed, and most files that are examined.
-LIST_DEPTH, MOST_FILES = 3, 10_000
+#: Endings of files that list others.
+LISTS = (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp")
+#: Pattern of the members of a list.
+MEMBER = re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"')
+#: Bytes that are read of a list.
+LIST_BYTES = 4_000_000
+#: Levels of lists that are followed.
+LIST_DEPTH = 3
+#: Most files that are examined.
+MOST_FILES = 10_000
 #: Endings of files whose data may be in others of the same name.
 WITH_OTHERS = (*plot3d.SURFACE_SUFFIXES, *plot3d.GRID_SUFFIXES, ".q")
 

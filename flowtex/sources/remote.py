@@ -31,8 +31,10 @@ PRELOAD = (
     *("xarray", "cf_xarray", "pyproj", "flowtex.sources.reader_errors:load_netcdf4"),
     *("dask.array", "cfgrib"),
 )
-#: Time limit of a request, which a large file extends by its bytes per second.
-REQUEST_TIMEOUT_S, BYTES_PER_S = 60.0, 10e6
+#: Time limit of a request.
+REQUEST_TIMEOUT_S = 60.0
+#: Bytes of a file that extend the limit by a second.
+BYTES_PER_S = 10e6
 #: Most readings of a file that changes meanwhile.
 MOST_READINGS = 3
 #: Classes of warnings by their names; others are plain ones of the user.
@@ -248,9 +250,10 @@ class RemoteSource(FlowSource):
         """Return the plane of a level, as :meth:`FlowSource.plane_of` does."""
         return str(self._file.ask("plane_of", level=level)[0])
 
-    def _field(
-        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    def field(
+        self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
     ) -> FlowField:
+        """Make a field, as :meth:`FlowSource.field` does."""
         block = self._block if block is None else block
         field = self._file.field({"vectors": vectors, "plane": plane, "block": block, **options})
         if self.reads_late:

@@ -268,7 +268,7 @@ class Library:
             with self._making[opener]:
                 field = source.field(
                     vectors=choice.vectors or None,
-                    plane=choice.plane or None,
+                    plane=choice.plane,
                     block=choice.block or None,
                 )
             self._identities[field] = source.identity

@@ -35,12 +35,16 @@ COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IG
 PRESSURE_NAMES = re.compile(r"^(p|plev\w*|pressure\w*|isobaric\w*)$", re.IGNORECASE)
 #: Names of levels that a model numbers from its top on.
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
-#: Names of the dimensions of nodes and of faces, where there is a mesh.
-NODES, FACES = "mesh_nodes", "mesh_faces"
+#: Name of the dimension of nodes, where there is a mesh.
+NODES = "mesh_nodes"
+#: Name of the dimension of faces, where there is a mesh.
+FACES = "mesh_faces"
 #: Names of the dimensions of rows and columns of a vertical section.
 SECTION = ("y_of_section", "x_of_section")
-#: Words for choices along an axis, beside its name.
-LEVEL, TIME = "level", "time"
+#: Word for a choice along a vertical axis, beside its name.
+LEVEL = "level"
+#: Word for a choice of a time.
+TIME = "time"
 #: Levels of pressure that models of weather use, in hPa.
 USUAL_HPA = (1000, 950, 925, 900, 850, 800, 700, 600, 500, 400, 300, 250, 200, 150, 100, 50)
 #: Greatest pressure in hPa, beyond which numbers without a unit are pascals.

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -85,13 +85,16 @@ class Places:
         return vector[..., 0], vector[..., 1]
 
 
+class Beside(NamedTuple):
+    """Datasets that belong together, and what is drawn along the axes of the velocity."""
+
+    datasets: Sequence[xr.Dataset]
+    drawn: Drawn
+    record: Record
+
+
 def find_places(
-    array: xr.DataArray,
-    dims: tuple[str, ...],
-    datasets: Sequence[xr.Dataset],
-    drawn: Drawn,
-    *,
-    any_axes: bool = True,
+    array: xr.DataArray, dims: tuple[str, ...], beside: Beside, *, any_axes: bool = True
 ) -> Places:
     """Return the places of values, by their coordinates, or by those of other datasets.
 
@@ -101,9 +104,10 @@ def find_places(
     Coordinates with further axes, such as the time of a nest that moves, are those of what is drawn
     along these axes.
     """
+    datasets, drawn, _ = beside
     shape = tuple(_size(d, array, datasets) for d in dims)
     found: Places | None = None
-    for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
+    for lon, lat in _pairs(array, dims, datasets, {"longitude": LONGITUDE, "latitude": LATITUDE}):
         if found is not None and lon.ndim > 1:
             continue
         a, b = _at_nodes(lon, lat, dims, shape, drawn)
@@ -127,10 +131,10 @@ def find_places(
             return places
     if found is not None:
         return found
-    for x, y in _pairs(array, dims, datasets, (ACROSS, UPWARD), ("X", "Y")):
+    for x, y in _pairs(array, dims, datasets, {"X": ACROSS, "Y": UPWARD}):
         a, b = _at_nodes(x, y, dims, shape, drawn)
         if a is not None and b is not None:
-            return _plane(array, x, y, a, b, datasets)
+            return _plane(x, y, a, b, _mapping(array, datasets))
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
@@ -211,15 +215,14 @@ def _pairs(
     array: xr.DataArray,
     dims: tuple[str, ...],
     datasets: Sequence[xr.Dataset],
-    patterns: tuple[re.Pattern[str], re.Pattern[str]],
-    words: tuple[str, str],
+    kinds: Mapping[str, re.Pattern[str]],
 ) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
     """Yield pairs of possible coordinates, the likely ones first."""
     candidates: list[list[xr.DataArray]] = [[], []]
     # All of them are looked up at each request.
     own = {**array.cf.axes, **array.cf.coordinates}
     others = [(ds, ds.cf.coordinates, ds.cf.standard_names) for ds in datasets]
-    for coordinates, pattern, word in zip(candidates, patterns, words, strict=True):
+    for coordinates, (word, pattern) in zip(candidates, kinds.items(), strict=True):
         declared = tuple(own.get(word, ()))
         named = [n for n in (*declared, *array.coords) if n in declared or pattern.match(str(n))]
         coordinates += [array.coords[n] for n in dict.fromkeys(named) if n in array.coords]
@@ -392,21 +395,16 @@ def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
             unit=units.symbol(unit) if units.parsed(unit) is not None else "",
             angle=_over_nodes(r, turn)[1],
         )
-    return _plane(x, x, y, a, b, ())
+    return _plane(x, y, a, b)
 
 
 def _plane(
-    array: xr.DataArray,
-    x: xr.DataArray,
-    y: xr.DataArray,
-    a: Floats,
-    b: Floats,
-    datasets: Sequence[xr.Dataset],
+    x: xr.DataArray, y: xr.DataArray, a: Floats, b: Floats, crs: Mapping[str, Any] | None = None
 ) -> Places:
-    """Return positions in a plane, or on the Earth if the grid mapping gives them."""
+    """Return positions in a plane, or on the Earth if a grid mapping gives them."""
     one, other = (str(c.attrs.get("units", "")).strip() for c in (x, y))
     why = f"{x.name} and {y.name}"
-    if (crs := _mapping(array, datasets)) is not None:
+    if crs is not None:
         pyproj = import_extra("pyproj", "xarray")
         source = pyproj.CRS.from_cf(crs)
         geodetic = pyproj.CRS.from_user_input(source.geodetic_crs or 4326)

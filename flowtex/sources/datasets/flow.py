@@ -42,7 +42,7 @@ from flowtex.sources.datasets.axes import (
     coordinate_of,
     horizontal_dims,
 )
-from flowtex.sources.datasets.coordinates import Places, ordered
+from flowtex.sources.datasets.coordinates import Beside, Places, ordered
 from flowtex.sources.datasets.masks import (
     Mask,
     find_masks,
@@ -305,8 +305,8 @@ def _is_turned(flow: Flow) -> bool:
 
 def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
     """Return a velocity on rows and columns, whose values are not known yet."""
-    along_earth = pair.along == "earth"
-    grid: Grid = find_grid(pair.u, pair.v, datasets, drawn, record, along_earth=along_earth)
+    beside = Beside(datasets, drawn, record)
+    grid: Grid = find_grid(pair.u, pair.v, beside, along_earth=pair.along == "earth")
     rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
     places = grid.places
     trimmed = unrepeated(places)

@@ -8,13 +8,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
 
-#: Shares of the spacing up to which labels are equal, also those in single precision.
-SAME, BLURRED = 0.02, 0.2
+#: Share of the spacing up to which labels are equal.
+SAME = 0.02
+#: Share up to which labels in single precision are equal.
+BLURRED = 0.2
 #: Shares of the way between two labels that count as the middle.
 MIDDLE = (0.4, 0.6)
 #: Seconds up to which dates are equal.
@@ -91,22 +94,17 @@ def tolerance(a: Floats, b: Floats) -> float:
 
 def _nearest(a: Floats, b: Floats, period: float | None) -> tuple[Floats, Indices]:
     """Return distances to the nearest of the labels b, and their numbers."""
-    if not len(b):
-        return np.full(len(a), np.inf), np.zeros(len(a), dtype=np.intp)
-    if period is not None:
-        a, b = a % period, b % period
-    order = np.argsort(b, kind="stable")
-    ordered, source = b[order], order
-    if period is not None:
-        ordered = np.concatenate([ordered[-1:] - period, ordered, ordered[:1] + period])
-        source = np.concatenate([order[-1:], order, order[:1]])
-    after = np.clip(np.searchsorted(ordered, a), 1, max(len(ordered) - 1, 1))
-    before = after - 1
-    after = np.minimum(after, len(ordered) - 1)
-    gaps = np.abs(np.stack([a - ordered[before], a - ordered[after]]))
-    nearer = np.where(gaps[0] <= gaps[1], before, after)
-    distance = gaps.min(axis=0)
-    return np.where(np.isnan(distance), np.inf, distance), source[nearer]
+    distance, nearest = np.full(len(a), np.inf), np.zeros(len(a), dtype=np.intp)
+    known, sought = np.flatnonzero(np.isfinite(b)), np.isfinite(a)
+    if len(known):
+        places, targets = (
+            x[:, None] if period is None else x[:, None] % period % period
+            for x in (b[known], a[sought])
+        )
+        tree: Any = scipy.spatial.cKDTree(places, boxsize=period)  # type: ignore[arg-type]
+        distance[sought], found = tree.query(targets)
+        nearest[sought] = known[found]
+    return distance, nearest
 
 
 def text(line: Any) -> str:

@@ -156,11 +156,17 @@ _USUAL = re.compile(
     r"-99\.[09]+|-?9{3,}\.[09]+|-(7{3,}|8{3,})\.[078]+|-?3276[78]\.0|65535\.0"
     r"|-?2\.1474836e\+09|-?1e\+10"
 )
-#: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data,
-#: if it exceeds the others by this factor. Below it an inlet or a moving wall may look the same.
-_HUGE, _HUGE_RATIO, _USUAL_RATIO = 1e11, 1e3, 0.5
-#: Least number of values, or share of all, that a repeated value has.
-_FEW, _SHARE = 10, 0.01
+#: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data.
+#: Below it an inlet or a moving wall may look the same.
+_HUGE = 1e11
+#: Factor by which such a value exceeds the others.
+_HUGE_RATIO = 1e3
+#: Factor by which a usual one does.
+_USUAL_RATIO = 0.5
+#: Least number of values that a repeated value has.
+_FEW = 10
+#: Least share of all values that it has, where these are fewer.
+_SHARE = 0.01
 
 
 def undeclared_fill(values: Floats) -> float | None:

@@ -54,8 +54,10 @@ from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Longest name that fits into a legend, and most values of an axis that are listed.
-LONGEST_NAME, MOST_VALUES = 40, 8
+#: Longest name that fits into a legend.
+LONGEST_NAME = 40
+#: Most values of an axis that are listed.
+MOST_VALUES = 8
 
 #: Variables that belong to the grid itself: places, sizes of cells, masks.
 OF_GRIDS = re.compile(

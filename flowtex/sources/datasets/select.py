@@ -52,8 +52,14 @@ AROUND = re.compile(
     r"^[uvw]?_?(phi|theta|t|a|az|azimuth|azimuthal|tangential|angular)$|^(azimuthal|tangential)_\w+$",
     re.I,
 )
-#: How the two variables of a velocity give its components.
-CARTESIAN, POLAR, FROM, TOWARDS = "cartesian", "polar", "direction from", "direction towards"
+#: The two variables of a velocity are its components.
+CARTESIAN = "cartesian"
+#: They are along a radius and an angle.
+POLAR = "polar"
+#: They are the speed, and the direction from which the flow comes.
+FROM = "direction from"
+#: They are the speed, and the direction to which the flow goes.
+TOWARDS = "direction towards"
 
 
 @dataclass(frozen=True, eq=False)

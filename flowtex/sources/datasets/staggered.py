@@ -18,8 +18,8 @@ from flowtex.errors import FieldError
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import renamed
-from flowtex.sources.datasets.axes import Drawn, as_slice, horizontal_dims
-from flowtex.sources.datasets.coordinates import Places, find_places
+from flowtex.sources.datasets.axes import as_slice, horizontal_dims
+from flowtex.sources.datasets.coordinates import Beside, Places, find_places
 from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
 
@@ -30,8 +30,10 @@ if TYPE_CHECKING:
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Distance, as a share of a cell, up to which a line of a grid repeats another one.
 REPEATED = 0.01
-#: Offsets of a grid in cells: up to which it is the same, and how exactly it is half a cell.
-SAME_NODE, HALF = 0.03, 0.1
+#: Offset of a grid in cells up to which it is the same.
+SAME_NODE = 0.03
+#: Difference of an offset from half a cell up to which it is that.
+HALF = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,18 +109,10 @@ def _mean(values: Floats, axis: int, sides: Sides) -> Floats:
     return np.asarray(mean)
 
 
-def find_grid(
-    u: xr.DataArray,
-    v: xr.DataArray,
-    datasets: Sequence[xr.Dataset],
-    drawn: Drawn,
-    record: Record,
-    *,
-    along_earth: bool,
-) -> Grid:
+def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: bool) -> Grid:
     """Return the grid of two components, or raise if they are not half a cell apart."""
-    dims = horizontal_dims(u), horizontal_dims(v)
-    nemo = _nemo_places(u, v, dims, datasets, drawn, along_earth=along_earth)
+    dims, (datasets, _, record) = (horizontal_dims(u), horizontal_dims(v)), beside
+    nemo = _nemo_places(u, v, beside, along_earth=along_earth)
     if nemo is not None:
         rows = Sides.counted(-1, v.sizes[dims[1][0]], v.sizes[dims[1][0]])
         count = u.sizes[dims[0][1]]
@@ -129,7 +123,7 @@ def find_grid(
     alike = u.sizes[dims[0][0]] == v.sizes[dims[1][0]] and u.shape == v.shape
     if apart or (dims[0] != dims[1] and alike):
         at = [
-            _own_places(array, pair, source, drawn)
+            _own_places(array, pair, source, beside)
             for array, pair, source in zip((u, v), dims, own, strict=True)
         ]
         # In one dataset, only positions on the Earth distinguish axes of other names.
@@ -137,7 +131,7 @@ def find_grid(
         if len(known) == 2 and known[0].is_earth == known[1].is_earth:
             grid = _by_positions(u, v, known[0], known[1], record)
             if grid is not None:
-                return _at_true_cells(grid, dims, datasets, drawn)
+                return _at_true_cells(grid, dims, beside)
     (row_u, column_u), (_, column_v) = dims
     if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
@@ -145,9 +139,10 @@ def find_grid(
                 f"{u.name} and {v.name} differ in size, {_sizes(u)} and {_sizes(v)}; expected "
                 "components of one grid"
             )
-        places = find_places(u, dims[0], [*own[:1], *datasets], drawn)
+        around = beside._replace(datasets=[*own[:1], *datasets])
+        places = find_places(u, dims[0], around)
         return Grid(u, v, places, None, None, "both components at the same position")
-    return _by_names(u, v, (row_u, column_v), datasets, drawn, record)
+    return _by_names(u, v, (row_u, column_v), beside)
 
 
 def _staggered(
@@ -167,16 +162,13 @@ def _staggered(
 
 
 def _at_true_cells(
-    grid: Grid,
-    dims: tuple[tuple[str, ...], tuple[str, ...]],
-    datasets: Sequence[xr.Dataset],
-    drawn: Drawn,
+    grid: Grid, dims: tuple[tuple[str, ...], tuple[str, ...]], beside: Beside
 ) -> Grid:
     """Return a grid at the 2-D positions of its cells, if known; lines may be nominal (MOM6)."""
     if grid.rows is None or grid.columns is None or {*dims[0]} & {*dims[1]}:
         return grid
     try:
-        places = _cell_places(grid.u, (dims[0][0], dims[1][1]), datasets, drawn)
+        places = _cell_places(grid.u, (dims[0][0], dims[1][1]), beside)
     except FieldError:
         return grid
     if places.is_line or places.is_earth != grid.places.is_earth:
@@ -185,13 +177,11 @@ def _at_true_cells(
     return grid._replace(places=replace(places, a=places.a[at], b=places.b[at]))
 
 
-def _cell_places(
-    u: xr.DataArray, cells: tuple[str, str], datasets: Sequence[xr.Dataset], drawn: Drawn
-) -> Places:
+def _cell_places(u: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Places:
     """Return the places in the middle of cells, by the dimensions of these."""
     other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
     inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
-    return find_places(inside, cells, datasets, drawn)
+    return find_places(inside, cells, beside)
 
 
 def _by_positions(
@@ -311,7 +301,7 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
 
 
 def _own_places(
-    array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, drawn: Drawn
+    array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, beside: Beside
 ) -> Places | None:
     """Return the places of a variable by coordinates that have its own dimensions."""
     own = {str(n): c for n, c in {**source.variables, **array.coords}.items()}
@@ -325,7 +315,7 @@ def _own_places(
     foreign = {d for n in names for d in source[n].dims} - {*array.dims, *dims}
     part = source[[n for n in names if not {*source[n].dims} & foreign]]
     try:
-        return find_places(array, dims, [part], drawn, any_axes=False)
+        return find_places(array, dims, beside._replace(datasets=[part]), any_axes=False)
     except FieldError:
         return None
 
@@ -334,14 +324,7 @@ def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
     return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
 
 
-def _by_names(
-    u: xr.DataArray,
-    v: xr.DataArray,
-    cells: tuple[str, str],
-    datasets: Sequence[xr.Dataset],
-    drawn: Drawn,
-    record: Record,
-) -> Grid:
+def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Grid:
     """Return a staggered grid by the names and sizes of its dimensions."""
     (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
     counts = {
@@ -355,14 +338,14 @@ def _by_names(
                 "by more than one, so they cannot be components of one staggered grid"
             )
     firsts = [
-        first_side(row_v, row_u, counts["row"], datasets),
-        first_side(column_u, column_v, counts["column"], datasets),
+        first_side(row_v, row_u, counts["row"], beside.datasets),
+        first_side(column_u, column_v, counts["column"], beside.datasets),
     ]
     try:
-        places = _cell_places(u, cells, datasets, drawn)
+        places = _cell_places(u, cells, beside)
     except FieldError as error:
         try:
-            on_sides = find_places(u, horizontal_dims(u), datasets, drawn)
+            on_sides = find_places(u, horizontal_dims(u), beside)
         except FieldError:
             raise error from None
         count = v.sizes[column_v]
@@ -372,7 +355,7 @@ def _by_names(
     columns = Sides.counted(firsts[1], *counts["column"], wraps=wraps)
     position = {0: "before", -1: "after"}[firsts[1]]
     words = f"Arakawa C, sides {position} the middle"
-    return _staggered(u, v, places, rows, columns, words, record)
+    return _staggered(u, v, places, rows, columns, words, beside.record)
 
 
 def _moved(places: Places, sides: Sides, count: int) -> Places:
@@ -387,26 +370,22 @@ def _moved(places: Places, sides: Sides, count: int) -> Places:
 
 
 def _nemo_places(
-    u: xr.DataArray,
-    v: xr.DataArray,
-    dims: tuple[tuple[str, ...], tuple[str, ...]],
-    datasets: Sequence[xr.Dataset],
-    drawn: Drawn,
-    *,
-    along_earth: bool,
+    u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: bool
 ) -> Places | None:
     """Return the places of NEMO's T points, where the components lie on the sides of cells."""
-    if dims[0] != dims[1] or u.shape != v.shape:
+    dims, datasets = horizontal_dims(u), beside.datasets
+    if dims != horizontal_dims(v) or u.shape != v.shape:
         return None
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
         of_t = next(ds for ds in datasets if "glamt" in ds.variables)
-        if not {*dims[0]} <= {*of_t["glamt"].dims}:  # of another model
+        if not {*dims} <= {*of_t["glamt"].dims}:  # of another model
             return None
-        return find_places(of_t["glamt"], dims[0], [of_t[["glamt", "gphit"]]], drawn)
+        of_cells = beside._replace(datasets=[of_t[["glamt", "gphit"]]])
+        return find_places(of_t["glamt"], dims, of_cells)
     if u.name != "vozocrtx" or along_earth:
         return None
-    at = [_own_places(a, dims[0], _source(a, datasets), drawn) for a in (u, v)]
+    at = [_own_places(a, dims, _source(a, datasets), beside) for a in (u, v)]
     if at[0] is None or at[1] is None or not at[0].is_earth or not at[0].is_near(at[1]):
         return None
     return at[0]

@@ -39,8 +39,10 @@ if TYPE_CHECKING:
 
 #: Numbers of rows and columns; ``None`` for all.
 Chosen: TypeAlias = tuple[Indices, Indices] | None
-#: Values of a step that are examined, and lines of each of the nine parts of larger ones.
-MOST_EXAMINED, PART_LINES = 4_000_000, 200
+#: Values of a step that are examined.
+MOST_EXAMINED = 4_000_000
+#: Lines of each of the nine parts of a larger one.
+PART_LINES = 200
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
 

@@ -24,8 +24,10 @@ DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
 #: Most bytes of a number.
 NUMBER_BYTES = 8
 GRIB_MAGIC = b"GRIB"
-#: Messages of GRIB 1 that are too long for three bytes count in units of 120.
-LONG_MESSAGE, LONG_UNIT = 0x800000, 120
+#: Length of a message of GRIB 1 from which on it counts in larger units.
+LONG_MESSAGE = 0x800000
+#: Bytes of such a unit.
+LONG_UNIT = 120
 #: Flag of GRIB 1 that a section has the grid.
 HAS_GRID = 0x80
 #: Flag of GRIB 1 that a section marks missing values.

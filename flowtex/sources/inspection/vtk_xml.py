@@ -28,7 +28,8 @@ SUFFIXES = (
 )
 CHUNK_BYTES = 1 << 20
 _TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
-_INTEGER, _BLANKS = re.compile(rb"\d+"), re.compile(rb"\s*")
+_INTEGER = re.compile(rb"\d+")
+_BLANKS = re.compile(rb"\s*")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
 #: Kinds of cells, and the attributes with their counts.
 CELLS = {"Verts": "NumberOfVerts", "Lines": "NumberOfLines"}

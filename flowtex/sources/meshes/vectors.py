@@ -63,9 +63,11 @@ _FORMS = tuple(
 )
 _UNIT = re.compile(r"\s*(\[[^\]]{2,}\]|\([^)]{2,}\))$")
 _EDGES = " _.:-()[]"
-#: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
-#: cells that are duplicates of a neighbouring piece carry data and count as visible.
-_HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
+#: Flag of VTK's ghost arrays for a hidden point. Points and cells that are duplicates of a
+#: neighbouring piece carry data and count as visible.
+_HIDDEN_POINT = 2
+#: Flags for a refined and for a hidden cell.
+_HIDDEN_CELL = 8 | 32
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,10 @@ from flowtex.sources.meshes.vectors import (
     visible_cells,
 )
 
-#: Values that are kept of an array, of all steps together, and at least of one.
-MOST_VALUES, LEAST_VALUES = 1 << 16, 1 << 10
+#: Values that are kept of an array, of all steps together.
+MOST_VALUES = 1 << 16
+#: Values that are kept at least of one step.
+LEAST_VALUES = 1 << 10
 #: Distance between sampled values, as a share of their number: it fits no axis of a grid.
 GOLDEN_SHARE = (5**0.5 - 1) / 2
 #: Samples by the states of their arrays, which VTK numbers: a moving slice asks again and again.

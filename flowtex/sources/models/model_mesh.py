@@ -272,8 +272,10 @@ def _corners_first(faces: AnyArray) -> Indices:
 #: Fewest points of a surface; fewer are stations.
 FEWEST = 30
 #: Circumradius, in those of typical triangles nearby, from which on a triangle spans a gap: times
-#: the ninth decile of all, as random points are less even than those of a grid; and at most.
-GAP, WIDEST_GAP = 2.4, 4.0
+#: the ninth decile of all, as random points are less even than those of a grid.
+GAP = 2.4
+#: Circumradius from which on any triangle spans a gap.
+WIDEST_GAP = 4.0
 #: Shortest edge of a typical triangle in its circumradius, below which points lie along a line.
 THIN = 0.08
 #: Cosine of the angle around their middle within which points on the sphere fit into a plane.

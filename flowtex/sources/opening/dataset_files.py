@@ -45,7 +45,8 @@ LETTERS = ("Times", "xtime")
 #: A unit of time of ICON: a date, with the share of the day behind its point.
 DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
-ZARR, JSON = (".zarr",), (".json", ".geojson")
+ZARR = (".zarr",)
+JSON = (".json", ".geojson")
 TABLES = {".csv": read_csv, ".vec": read_vec}
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)

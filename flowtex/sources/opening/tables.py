@@ -33,10 +33,14 @@ LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
 TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
 #: A column with its unit, as ``"u [m/s]"``.
 WITH_UNIT = re.compile(r"^(.*?)\s*[\[(](.*)[\])]$")
-#: Names and units of columns in the header of a .vec file, and its column of flags.
-VEC_COLUMN, VEC_FLAG = re.compile(r'"(\S+)\s*([^",]*)"'), "CHC"
-#: Most places of a grid for each row, and fewest whole cells, for which rows are a grid.
-MOST_PLACES, FEWEST_CELLS = 4, 0.4
+#: Names and units of columns in the header of a .vec file.
+VEC_COLUMN = re.compile(r'"(\S+)\s*([^",]*)"')
+#: The column of flags of a .vec file.
+VEC_FLAG = "CHC"
+#: Most places of a grid for each row, for which rows are a grid.
+MOST_PLACES = 4
+#: Fewest whole cells of a grid for each row.
+FEWEST_CELLS = 0.4
 #: Share of the points that must have values, over all times.
 FEWEST_ROWS = 0.5
 #: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
