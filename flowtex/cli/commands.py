@@ -173,9 +173,8 @@ def serve_processes(page: ServeFlags | None) -> bool:
     with waiting("Opening the page") as end_waiting:
 
         def announce(address: str) -> None:
-            end_waiting()
             sys.stderr.write(first["notices"])
-            announcer(first["description"], page.host)(address)
+            announcer(first["description"], page.host, end_waiting)(address)
 
         open_session = process_opener(ENTRY, PRELOAD, request, first.update)
         serve_sessions(open_session, secret, **vars(page), announce=announce)

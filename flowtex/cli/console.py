@@ -24,6 +24,11 @@ from flowtex.textures.images import load_image
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
+Announce = Callable[[str], None]
+OPEN_TO_OTHERS = (
+    "  Everyone who can reach this machine and has this address can use it;\n  the connection is "
+    "not encrypted, so put a proxy with TLS in front of it."
+)
 #: A word, such as the name of a file, that is too long to print.
 LONG_WORD = re.compile(r"(\S{200})\S{200,}(\S{100})")
 
@@ -65,23 +70,16 @@ def report(output: object, text: str, figures: str) -> None:
     say((str(output), "bold"), f"  {text}  ", (figures, "dim"))
 
 
-def announcer(
-    description: str, host: str, end_waiting: Callable[[], None] | None = None
-) -> Callable[[str], None]:
+def announcer(description: str, host: str, end_waiting: Callable[[], None]) -> Announce:
     """Return a function that ends the waiting and prints the address of a page."""
 
     def announce(address: str) -> None:
-        if end_waiting is not None:
-            end_waiting()
+        end_waiting()
         say(("flowtex", "bold"), f"  {description}\n")
         # A link that is wrapped or has several colours cannot be clicked.
         say("  ", (address, "cyan"), "\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
-            warning = (
-                "  Everyone who can reach this machine and has this address can use it;\n  the "
-                "connection is not encrypted, so put a proxy with TLS in front of it."
-            )
-            say((warning, "yellow"))
+            say((OPEN_TO_OTHERS, "yellow"))
         say(("  Press Ctrl-C to stop.", "dim"))
         sys.stdout.flush()
 

@@ -16,7 +16,7 @@ pytest.importorskip("trame_rca")
 from camera_moves import pan
 from small_pages import playing, small, small_page, zoom_of
 
-from flowtex import Camera, examples
+from flowtex import examples
 from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
@@ -35,16 +35,6 @@ def test_examples_make_an_app() -> None:
     assert (
         not app.area.scalars
         and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
-    )
-    app.close()
-
-
-def test_the_first_look_may_be_any_camera() -> None:
-    camera = Camera((0.5, 0.2, 3.0), (0.5, 0.2, 0.0), (0.0, 1.0, 0.0), view_angle=12.0)
-    app = FlowApp(examples.airfoil_field(), camera=camera, samples=5)
-    assert (
-        app.viewport.camera == camera
-        and app.controllers.viewpoint.describe()["camera"] == camera.to_dict()
     )
     app.close()
 

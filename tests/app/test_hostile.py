@@ -24,10 +24,7 @@ from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers.library import Choice
 from flowtex.app.streaming.stream import MOST_PIXELS
-from flowtex.app.streaming.viewport import Viewport
-from flowtex.errors import FieldError
 from flowtex.scene.fields import TracedFlow
-from flowtex.sources.open_source import FlowSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -161,19 +158,6 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
         assert app.state.get("out_progress") is None
         assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
     app.state.set(**before, problem="")
-
-
-async def test_a_picture_that_fails_says_so(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    app = page(field())
-
-    monkeypatch.setattr(Viewport, "copy", raising(RuntimeError("no memory")))
-    async with playing(app):
-        app.controllers.sharing.start()
-        await until(lambda: "no memory" in app.state.get("problem"))
-        assert app.state.get("out_progress") is None and "no memory" in caplog.text
-        assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
 
 
 # --- files and planes ----------------------------------------------------------------------------
@@ -317,33 +301,6 @@ async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -
         app.state.send(file="other")
         await until(lambda: app.controllers.data.name == "other" and app.field.steady)
         assert app.area.scalars == "speed" and app.area.clim is None
-
-
-def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    library = Library.of(field(name="quick"), field(name="slow"))
-    held, opening = threading.Event(), threading.Event()
-    entry = library._openers["slow"]
-
-    def waiting() -> FlowSource:
-        opening.set()
-        assert held.wait(10)
-        return entry()
-
-    library._openers["slow"] = waiting
-    thread = threading.Thread(target=library.source, args=("slow",))
-    thread.start()
-    assert opening.wait(10)
-    other = threading.Thread(target=library.field, args=("quick", Choice()))
-    other.start()
-    other.join(5)
-    in_time = not other.is_alive()
-    held.set()
-    thread.join()
-    other.join()
-    assert in_time
-    with pytest.raises(FieldError, match="is not among those") as told:
-        library.source("../" * 1000)
-    assert len(str(told.value)) < 300
 
 
 def test_what_stays_open_is_bounded_in_bytes() -> None:

@@ -162,23 +162,6 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     assert "water" in page.inner_text(".flowtex-planes")
 
 
-def test_what_has_the_focus_has_a_ring(page: Page) -> None:
-    rings = """() => {
-      let element = document.activeElement;
-      while (element.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;
-      const isRing = ({ outline }) => outline.startsWith("rgb(79, 209, 197) solid 2px");
-      const parts = [element, ...element.querySelectorAll("*"), element.closest(".v-field")];
-      return parts.some((part) => part && isRing(getComputedStyle(part)));
-    }"""
-    page.get_by_label("Open another file").focus()
-    for _ in range(10):
-        page.keyboard.press("Tab")
-        if page.evaluate("() => !!document.activeElement.closest('.flowtex-page')"):
-            view = page.evaluate("() => document.activeElement.matches(':has(> *), .flowtex')")
-            assert page.evaluate(rings) or view
-    page.evaluate("() => document.activeElement.blur()")
-
-
 def test_axe_finds_nothing(page: Page) -> None:
     """In light and dark, with all unfolded; that phones cannot zoom in is trame's own."""
     if not AXE.exists():

@@ -16,7 +16,7 @@ from page_reader import Reader
 from PIL import Image
 
 from flowtex import examples
-from flowtex.cli import commands, main
+from flowtex.cli import main
 from flowtex.cli.console import in_flags
 from flowtex.field.options import FieldOptions
 from flowtex.rendering import diagnostics
@@ -147,16 +147,6 @@ def test_values_beyond_the_colours_are_told(run: Run, tmp_path: Path, opengl: ob
     assert "Colour range" not in run(*base, "--size", "60x40", "--clim", "0,50")[1]
 
 
-def test_flow_that_leaves_the_surface_is_told(
-    run: Run, block: Path, tmp_path: Path, opengl: object
-) -> None:
-    out = tmp_path / "force.png"
-    _, output, _ = run(
-        "render", block, "-o", out, "--plane", "k=1", "--vectors", "force", "--size", "60x40"
-    )
-    assert "of the flow is normal to the surface" in output
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -280,15 +270,6 @@ def test_a_missing_extra_is_told_with_its_command(
         assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
 
 
-def test_a_fault_of_the_program_is_not_dressed_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object, **__: object) -> None:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr(commands, "app", broken)
-    with pytest.raises(ZeroDivisionError):
-        main(["info", "x"])
-
-
 def test_info_describes_the_file_and_the_flow(run: Run, gyre: Path) -> None:
     code, out, err = run("info", gyre)
     assert (code, err) == (0, "")
@@ -345,20 +326,6 @@ def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
     assert run("info", tmp_path / "wing.cgns", "--block", "1", "--plane", "k=0") == (code, out, "")
 
 
-def test_components_are_named_with_commas(run: Run, tmp_path: Path) -> None:
-    import pyvista as pv
-
-    mesh = pv.ImageData(dimensions=(4, 3, 1))
-    for name in ("X Velocity", "Y Velocity", "u", "v"):
-        mesh[name] = np.ones(12)
-    mesh.save(tmp_path / "flow.vti")
-    code, out, _ = run("info", tmp_path / "flow.vti")
-    assert "velocity Velocity, u,v" in out and "Velocity = X Velocity, Y Velocity" in out
-    assert "as in --vectors u,v" in out
-    code, out, _ = run("info", tmp_path / "flow.vti", "--vectors", "Y Velocity, u")
-    assert code == 0 and "What would be drawn" in out
-
-
 @pytest.mark.usefixtures("opengl")
 def test_a_port_in_use_is_told(run: Run) -> None:
     pytest.importorskip("trame_rca")
@@ -395,19 +362,6 @@ def test_the_console_script_runs_without_loading_vtk() -> None:
     assert done.returncode == 0, done.stderr
 
 
-def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: object) -> None:
-    words = [gyre, "--size", "200x80", "--motion", "speed", "--beside", "lod=false"]
-    words += ["--beside", "resolution=512"]
-    for name, clock in (("a", 0.0), ("b", 1.0)):
-        code, _, output = run("render", *words, "--clock", clock, "-o", tmp_path / f"{name}.png")
-        assert code == 0, output
-    first, second = (grey(tmp_path / f"{name}.png") for name in "ab")
-    assert first.shape == (80, 200)
-    assert np.abs(first - second).mean() > 2
-    below = slice(30, 60)
-    assert np.abs(first[below, 10:90] - first[below, 110:190]).mean() > 2
-
-
 @pytest.mark.usefixtures("quick_export")
 def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
@@ -441,33 +395,6 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
 )
 def test_messages_are_in_the_words_of_the_shell(said: str, told: str) -> None:
     assert in_flags(said) == told
-
-
-@pytest.mark.parametrize(
-    "flags",
-    [
-        ("--opacity", "0.3"),
-        ("--scalars", "none", "--color", "tomato"),
-        ("--lighting", "--cmap", "magma", "--log-scale", "--clim", "0.01,1"),
-        ("--camera", "parallel,1.0,0.5,3.0,1.0,0.5,0.0,1.0,1.0,0.0,0.4,30.0"),
-    ],
-)
-def test_the_look_is_chosen_by_flags(
-    run: Run, gyre: Path, tmp_path: Path, flags: tuple[str, ...], opengl: object
-) -> None:
-    base = ("render", gyre, "--size", "80x60", "--samples", 5)
-    assert run(*base, "-o", tmp_path / "a.png")[::2] == (0, "")
-    assert run(*base, *flags, "-o", tmp_path / "b.png")[::2] == (0, "")
-    before, after = (np.asarray(Image.open(tmp_path / f"{n}.png"), dtype=float) for n in "ab")
-    assert np.abs(after - before).mean() > 3
-
-
-@pytest.mark.filterwarnings("default:The surface is outside")
-def test_a_picture_of_nothing_is_warned_of(run: Run, gyre: Path, tmp_path: Path) -> None:
-    words = ["-o", tmp_path / "a.png", "--size", "80x60", "--zoom", "9", "--focus", "50,50"]
-    code, _, err = run("render", gyre, *words)
-    assert code == 0
-    assert err.startswith("flowtex: The surface is outside the picture")
 
 
 def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:

@@ -185,5 +185,5 @@ class Appearance(Controller):
     def _comparisons(self) -> list[str]:
         """Return the labels of second panes that the present flow allows."""
         others = [] if self.viewport.field.steady else [ANOTHER_TIME]
-        others += [ANOTHER_FILE] if self.beside.possible else []
+        others += [ANOTHER_FILE] if len(self.beside.data.names) > 1 else []
         return [*COMPARISONS, *others, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]

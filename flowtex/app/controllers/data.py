@@ -91,13 +91,13 @@ class Data(FlowOpener):
     def take_file(self) -> None:
         """Open another file."""
         name = self.state.get("file")
-        if name == self.name:
-            if self._goal[0] != self.name:  # back to the present file
-                self.cancel()
-        elif not isinstance(name, str):
+        if not isinstance(name, str):
             self._show_choice()
         elif name != self._goal[0]:
-            self.open(name, Choice())
+            if name == self.name:  # back to the present file
+                self.cancel()
+            else:
+                self.open(name, Choice())
 
     def take_parameter(self, name: str, value: float) -> None:
         """Show a formula with another value of a parameter."""
@@ -215,11 +215,11 @@ class Data(FlowOpener):
 
     def _requested(self) -> Choice:
         """Return the choice that the page requests; invalid parts are those of the present one."""
-        options = self._options()
+        options, get = self._options(), self.state.get
         choices_of = {"block": "blocks", "vectors": "vectors_choices", "axis": "axes"}
         block, vectors, axis = (
-            self.state.get(n) if name_among(self.state.get(n), options[choices]) else options[n]
-            for n, choices in choices_of.items()
+            value if name_among(value := get(name), options[choices]) else options[name]
+            for name, choices in choices_of.items()
         )
         if block != options["block"]:  # which has other planes and arrays
             arrays = self._current.source.block_vectors[block]
@@ -289,7 +289,7 @@ class FileBeside(FlowOpener):
 
     def __init__(self, context: Context, data: Data) -> None:
         super().__init__(context)
-        self._data = data
+        self.data = data
         self._name, self._choice = "", Choice()
         self._active = False
         self._flow: TracedFlow | None = None  #: What is shown, whose traces stay with it.
@@ -301,11 +301,6 @@ class FileBeside(FlowOpener):
     def name(self) -> str:
         """Name of the file in the second pane; empty without one."""
         return self._name if "field" in self.viewport.differences else ""
-
-    @property
-    def possible(self) -> bool:
-        """Whether another file exists."""
-        return len(self._data.names) > 1
 
     def begin(self) -> None:
         """Show the file that was chosen last, or the next one of the list."""
@@ -334,13 +329,13 @@ class FileBeside(FlowOpener):
     def open(self, name: str) -> None:
         """Open a file for the second pane, instead of the one being opened."""
         self.state.set(file_beside=name)
-        self._begin(LoadRequest(name, self._data.choice), follows=name == self._goal)
+        self._begin(LoadRequest(name, self.data.choice), follows=name == self._goal)
 
     def follow(self) -> None:
         """Follow the first pane to another plane, array or file."""
-        if self._goal and self._goal == self._data.name:  # which is in the first pane now
+        if self._goal and self._goal == self.data.name:  # which is in the first pane now
             self.open(self._next())
-        elif self._request is not None and self._request.choice != self._data.choice:
+        elif self._request is not None and self._request.choice != self.data.choice:
             self.open(self._goal)
         self.show_names()
 
@@ -351,9 +346,9 @@ class FileBeside(FlowOpener):
 
     def _names(self) -> tuple[str, ...]:
         """Return the names of the two files; that of the second with its differing parts."""
-        pairs = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
-        differing = [part for part, first in pairs if part != first]
-        return (self._data.name, " · ".join([self._name, *filter(None, differing)]))
+        pairs = zip(astuple(self._choice), astuple(self.data.choice), strict=True)
+        differing = [part for part, first in pairs if part not in (first, "")]
+        return (self.data.name, " · ".join([self._name, *differing]))
 
     def describe(self) -> State:
         """Return the file, and the part of it that is shown."""
@@ -385,12 +380,12 @@ class FileBeside(FlowOpener):
     def _chosen(self) -> str:
         """Return the requested name, which may not exist; empty for an invalid one."""
         name = self.state.get("file_beside")
-        return name if isinstance(name, str) and name != self._data.name else ""
+        return name if isinstance(name, str) and name != self.data.name else ""
 
     def _next(self) -> str:
         """Return the name after that of the first pane, cyclically."""
-        names = self._data.names
-        position = names.index(self._data.name) if self._data.name in names else -1
+        names = self.data.names
+        position = names.index(self.data.name) if self.data.name in names else -1
         return names[(position + 1) % len(names)]
 
     async def _open(self, request: LoadRequest) -> None:
@@ -410,7 +405,7 @@ class FileBeside(FlowOpener):
         units = [field.length_unit for field in (self.viewport.field, flow.field)]
         if all(units) and units[0] != units[1]:
             raise FieldError(
-                f"{request.name} is in {units[1]} and {self._data.name} in {units[0]}; expected "
+                f"{request.name} is in {units[1]} and {self.data.name} in {units[0]}; expected "
                 "the same unit of length in both files, because they share one camera"
             )
         self._name, self._choice, self._flow = request.name, choice, flow

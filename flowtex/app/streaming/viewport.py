@@ -163,8 +163,7 @@ class Viewport:
         scenes: list[Scene] = []
         try:
             for pane, flow in zip(self.panes, flows, strict=False):
-                scene = pane.scene
-                scenes.append(_fitting(scene, partial(scene.showing, flow), changes))
+                scenes.append(_fitting(pane.scene, partial(pane.scene.showing, flow), changes))
                 _ = scenes[-1].textures  # tracing may fail
         except BaseException:
             for scene in scenes:

@@ -13,7 +13,6 @@ from earth_data import winds
 from flowtex.app import Choice, Library
 from flowtex.app.controllers.serialization import to_python
 from flowtex.errors import FieldError
-from flowtex.sources.open_source import DatasetSource, open_source
 
 
 def levels() -> Any:
@@ -48,16 +47,6 @@ def test_a_file_offers_maps_and_levels(tmp_path: Path) -> None:
     ):
         with pytest.raises(FieldError):
             library.field("winds.nc", wrong)
-
-
-def test_a_dataset_is_a_source_too() -> None:
-    source = DatasetSource(levels(), name="winds")
-    assert source.plane_of(500) == "level=1"
-    with pytest.raises(FieldError, match="level is 20"):
-        source.plane_of(20)
-    assert Library.of(levels()).names == ("flow",)
-    with pytest.raises(FieldError, match=r"a.vts, b.vts: no such file"):
-        open_source(["a.vts", "b.vts"])
 
 
 def test_the_lines_of_python_make_the_same_field(tmp_path: Path) -> None:

@@ -85,21 +85,6 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
     assert difference(scene.draw(240, 160), shown) == 0
 
 
-def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: Path) -> None:
-    half = np.zeros((40, 60, 4), np.uint8)
-    half[:20] = [250, 20, 30, 128]
-    plain.handle.set_image(half)
-    plain.handle.settings.strength = 1.0
-    path = run(PictureJob(plain, tmp_path / "image.png", (120, 80)))
-    assert difference(pixels(path), plain.draw(120, 80)) < 0.5
-    plain.handle.settings.noise = "procedural"
-    plain.compare({"contrast": 0.0})
-    both = pixels(run(PictureJob(plain, tmp_path / "both.png", (242, 80))))
-    assert both.shape == (80, 242, 3) and (both[:, 120:122] == 128).all()
-    left, right = (part[32:48, 48:72].std(axis=1).mean() for part in (both[:, :120], both[:, 122:]))
-    assert left > 5 * right
-
-
 @pytest.mark.parametrize("kind", ["gif", "mp4"])
 def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, kind: str) -> None:
     path = tmp_path / f"flow.{kind}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -94,20 +93,6 @@ async def test_the_time_is_that_of_the_first_or_the_last() -> None:
         assert app.area.element.names == ("three", "one")
 
 
-async def test_dates_are_those_of_the_first() -> None:
-    begin = datetime(2020, 1, 1)
-    days = [np.datetime64(begin + timedelta(days=n)) for n in range(6)]
-    early, late = other(steps=4, times=days[:4]), other(steps=4, times=days[2:])
-    app = page(one=early, two=late)
-    async with playing(app):
-        await beside(app)
-        second = app.viewport.panes[1]
-        app.area.element.take_time(2.5 * 86400)
-        assert second.time == 0.5 * 86400
-        app.area.element.take_time(86400.0)
-        assert second.time == late.times[-1]
-
-
 def block(turn: float, nodes: int) -> pv.StructuredGrid:
     x, y, z = np.meshgrid(
         np.linspace(-2, 2, 9), np.linspace(-1, 1, 8), np.linspace(0, 1, nodes), indexing="ij"
@@ -190,17 +175,6 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
         opening = app.controllers.beside._opening
         assert opening is not None
         await until(opening.done)
-        assert len(app.viewport.panes) == 1
-
-
-async def test_two_units_of_length_are_refused() -> None:
-    kilometres = other(length_unit="km")
-    metres = FlowField.from_arrays(kilometres.points, kilometres.velocity[0], length_unit="m")
-    app = page(one=metres, two=kilometres)
-    async with playing(app):
-        app.state.send(compare=FILE)
-        await until(lambda: app.state.get("problem"))
-        assert app.state.get("problem").startswith("two is in km and one in m; expected the same")
         assert len(app.viewport.panes) == 1
 
 

@@ -130,16 +130,6 @@ def test_whatever_comes_is_taken_without_an_error(link: str) -> None:
 
 
 @property_test(25, fuzz=60)
-@given(st.lists(st.tuples(st.integers(0, 10_000), st.characters()), max_size=5))
-def test_a_link_that_was_changed_is_taken_without_an_error(changes: list[tuple[int, str]]) -> None:
-    text = list(to_link(STATE))
-    for at, letter in changes:
-        text[at % len(text)] = letter
-    state = from_link("".join(text))
-    assert to_link(from_link(to_link(state))) == to_link(state)
-
-
-@property_test(25, fuzz=60)
 @given(
     setting_values(resolution=8192, samples=200),
     st.fixed_dictionaries(

@@ -12,8 +12,6 @@ import pytest
 
 pytest.importorskip("aiohttp")
 
-from aiohttp import web
-from aiohttp.http_exceptions import HttpBadRequest
 
 from flowtex.app.server.site import (
     MESSAGE_LENGTH,
@@ -76,16 +74,3 @@ def test_connections_that_cannot_be_accepted_are_few_lines(
     with bounded_log():
         asyncio.run(story())
     assert 0 < len(caplog.records) <= MOST_RECORDS
-
-
-@pytest.mark.parametrize(
-    "fault", [HttpBadRequest("a"), web.RequestPayloadError(), ZeroDivisionError()]
-)
-def test_what_is_malformed_has_no_traceback(log: Log, fault: Exception) -> None:
-    logger, written, _ = log
-    try:
-        raise fault
-    except Exception:
-        logger.exception("a request failed")
-    assert written.getvalue().startswith("a request failed\n")
-    assert ("Traceback" in written.getvalue()) is isinstance(fault, ZeroDivisionError)

@@ -16,7 +16,7 @@ from aiohttp import web
 from waiting import PATIENCE_S
 
 from flowtex.app.server import security
-from flowtex.app.server.security import LIMIT, LimitedServer, guard, usual_most
+from flowtex.app.server.security import LIMIT, LimitedServer, guard
 
 HALF = b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "
 FORM = b"POST /form HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n"
@@ -137,9 +137,3 @@ async def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) ->
         assert (await ended(form)).startswith(b"HTTP/1.1 408")
         await socket.send_str("here")
         assert await socket.receive_str(timeout=PATIENCE_S) == "here"
-
-
-def test_files_of_the_process_are_left_for_others() -> None:
-    resource = pytest.importorskip("resource")
-    files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-    assert 1 <= usual_most() <= files / 2

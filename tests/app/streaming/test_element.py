@@ -128,15 +128,6 @@ def test_another_mesh_is_read_as_the_first_one_and_the_view_stays() -> None:
     area.close()
 
 
-def test_where_the_server_draws_the_page_has_what_its_controls_need() -> None:
-    app = large()
-    (scene,) = app.area.element.begin("server")["scenes"]
-    assert not app.stream.paused
-    parts = asking(app, scene)("controls")
-    assert parts.keys() == {"cmap", "maps", "position"} and parts["position"][0] < 500
-    app.close()
-
-
 def test_a_page_is_told_what_changes_here_and_what_others_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -80,16 +80,6 @@ def test_a_number_of_samples_that_is_not_the_one_set_has_a_reason() -> None:
     assert samples_of(got) == f"{len(got.lags)} of 49: the path ends"
 
 
-def test_a_point_where_nothing_moves() -> None:
-    y, x = np.mgrid[-1:1:9j, -1:1:9j]
-    speed = np.where(x > 0, 1.0, 0.0)
-    field = FlowField.from_arrays(np.stack([x, y], -1), np.stack([speed, 0 * x], -1), periodic="")
-    told = path_of(probe(view_of(field), (4.5, 1.5), pixel=0.01), (4.5, 1.5), field)
-    json.dumps(told, allow_nan=False)
-    assert ["step", None, ""] in json.loads(json.dumps(told["words"]))
-    assert len(told["samples"]) == 1
-
-
 def read(app: FlowApp, **at: Any) -> Any:
     return asyncio.run(app.area.points.read(0, at))
 

@@ -56,13 +56,3 @@ def test_a_flow_that_is_refused_leaves_the_comparison(act: str) -> None:
     view.compare(None)
     assert len(view.panes) == 1
     view.close()
-
-
-def test_a_comparison_that_the_new_flow_refuses_leaves_both() -> None:
-    view = Viewport(on_grid(), samples=5)
-    view.compare({"image": np.ones((2, 2))})
-    before = state(view)
-    with pytest.raises(SettingsError):
-        view.show(on_triangles())
-    assert state(view) == before
-    view.close()
