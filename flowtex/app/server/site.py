@@ -38,6 +38,7 @@ from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import (
     FAULT,
+    HEAD_S,
     LIMIT,
     LOCAL,
     LimitedServer,
@@ -149,7 +150,8 @@ class Site:
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
         try:
-            secret, token = _secret_and_token(await request.read())
+            async with asyncio.timeout(HEAD_S):
+                secret, token = _secret_and_token(await request.read())
         except ValueError:
             return _answer(400, words=MALFORMED)
         if not is_same(secret, self._secret):

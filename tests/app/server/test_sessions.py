@@ -201,6 +201,17 @@ async def test_what_is_no_request_is_refused_as_such(caplog: pytest.LogCaptureFi
     assert not caplog.records
 
 
+async def test_an_incomplete_request_at_the_door_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.app.server.site.HEAD_S", 0.01)
+    async with place() as here:
+        reader, writer = await asyncio.open_connection("127.0.0.1", here.site.port)
+        head = "POST /flowtex/session HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"
+        writer.write(head.encode())
+        async with asyncio.timeout(PATIENCE_S):
+            assert (await reader.readline()).startswith(b"HTTP/1.1 408")
+        writer.close()
+
+
 async def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
     caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
 ) -> None:
