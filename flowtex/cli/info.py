@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from flowtex.field import FlowField
     from flowtex.sources.read_files import FileSummary
 
-#: Times and blocks that are listed one by one at most.
-MOST_TIMES, MOST_BLOCKS = 8, 40
+#: Most times that are listed one by one.
+MOST_TIMES = 8
+#: Most blocks that are listed.
+MOST_BLOCKS = 40
 
 
 def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:

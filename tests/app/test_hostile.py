@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from small_pages import Streamer, playing
-from waiting import PATIENCE_S, until
+from waiting import until
 
 pytest.importorskip("trame_rca")
 
@@ -93,28 +93,6 @@ def test_a_view_has_a_size_that_can_be_drawn(app: FlowApp) -> None:
             assert width * height <= 1.01 * MOST_PIXELS
     app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
     assert app.viewport.size == (96, 64)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"position": [1e300, 0, 1]},
-        {"position": [1e200, 0, 1], "focal_point": [-1e200, 0, 0]},
-        {"parallel_scale": 1e-300},
-        {"parallel_scale": 1e300},
-        {"position": [0, 0], "up": [1, 0]},
-        {"view_angle": "x"},
-        {"position": "123456"},
-        {"up": [0, 0, 0]},
-    ],
-)
-def test_a_camera_that_sees_nothing_is_not_taken(app: FlowApp, change: dict[str, Any]) -> None:
-    before = app.viewport.camera.to_dict()
-    assert not app.area.element.take_camera({**before, **change})
-    app.controllers.viewpoint.restore({"camera": {**before, **change}})
-    assert app.viewport.camera.to_dict() == before
-    assert app.area.element.take_camera({**before, "parallel_scale": 0.5})
-    app.area.reset_camera()
 
 
 def raising(error: Exception) -> Callable[..., Any]:
@@ -311,50 +289,6 @@ def test_what_stays_open_is_bounded_in_bytes() -> None:
 
 
 # --- life cycle ----------------------------------------------------------------------------------
-
-
-def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = threading.enumerate()
-    app = page(block())
-    gates = slow(monkeypatch, app)
-
-    async def use() -> None:
-        async with playing(app):
-            app.area.element.take_playing(True)
-            app.state.send(index=5)
-            app.state.set(
-                out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0
-            )
-            app.controllers.sharing.start()
-            reading = asyncio.create_task(app.area.points.read(0, {"place": [0, 0], "path": True}))
-            await until(lambda: "k=5" in gates)
-            app.close()
-            gates.setdefault("k=5", threading.Event()).set()
-            tasks = [app.controllers.data._opening, app.controllers.sharing._task, reading]
-            await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
-            assert all(task is None or task.done() for task in tasks)
-            assert app.controllers.data.choice.plane == "k=3"
-            # What the page sends in its last moments is heard by nobody.
-            app.stream.update_size("test", {"w": 50, "h": 50})
-            app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": 1, "w": 9, "h": 9})
-            app.stream.changed()
-
-    asyncio.run(use())  # and it may be closed twice
-    for thread in [thread for thread in threading.enumerate() if thread not in before]:
-        thread.join(PATIENCE_S)
-        assert not thread.is_alive(), thread.name
-
-
-def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
-    app = page(field(steps=3))
-    app.area.element.take_playing(True)
-    app.show(field())
-    assert app.area.settings.motion == "speed"
-    assert app.area.player.playing
-    app.show(field(steps=2))
-    assert app.area.player.playing
-    assert app.state.get("last") == 1.0
-    app.close()
 
 
 # --- reading -------------------------------------------------------------------------------------

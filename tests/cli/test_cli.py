@@ -295,23 +295,6 @@ def test_info_says_what_is_needed(run: Run, block: Path, tmp_path: Path) -> None
     assert code == 0 and "6 × 5 (i × j)" in out
 
 
-def test_info_describes_a_volume_of_any_cells(run: Run, tmp_path: Path) -> None:
-    import pyvista as pv
-
-    box: Any = pv.ImageData(dimensions=(4, 4, 4))
-    mesh = box.to_tetrahedra(pass_data=False)
-    mesh["wind"] = np.cross([0, 0, 1.0], mesh.points) + np.array([0, 0, 1e-3])
-    mesh.save(tmp_path / "room.vtu")
-    code, out, _ = run("info", tmp_path / "room.vtu", "--slice", "z=1.5")
-    assert code == 0
-    assert "135 × tetra" in out and "--slice z=1.5" in out and "triangles" in out
-    assert "(i × j)" not in out and "periodic" not in out
-    code, out, _ = run("info", tmp_path / "room.vtu")
-    assert code == 0 and "the outer surface of the volume is drawn" in out
-    code, _, err = run("info", tmp_path / "room.vtu", "--slice", "-1,0,0 through 9,9,9")
-    assert code == 2 and "does not cut the mesh" in err and "--slice is" in err
-
-
 def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
     with CGNS.write(tmp_path / "wing.cgns") as file:
         file.base("Base", [("Tip 1", box(4, 3, 2)), ("Body", box(6, 3, 2, 3.0))], times=TIMES)
@@ -336,21 +319,6 @@ def test_a_port_in_use_is_told(run: Run) -> None:
         code, _, err = run("demo", "--no-browser", "--port", port)
     assert code == 2
     assert f"cannot listen on 127.0.0.1:{port}" in err and "Traceback" not in err
-
-
-def test_the_terminal_says_what_takes_long(
-    run: Run, gyre: Path, monkeypatch: pytest.MonkeyPatch, opengl: object
-) -> None:
-    app = pytest.importorskip("flowtex.app.flow_app")
-    monkeypatch.setenv("FORCE_COLOR", "1")  # to rich a terminal
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr("flowtex.cli.commands.FORKS", False)
-    monkeypatch.setattr(app, "serve", lambda _, announce, **__: announce("http://here"))
-    code, out, err = run("show", gyre, "--no-browser")
-    assert code == 0
-    assert "Reading gyre" in err
-    assert "Tracing gyre" in err
-    assert "http://here" in out
 
 
 def test_the_console_script_runs_without_loading_vtk() -> None:
@@ -395,21 +363,6 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
 )
 def test_messages_are_in_the_words_of_the_shell(said: str, told: str) -> None:
     assert in_flags(said) == told
-
-
-def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:
-    for n, mesh in enumerate(examples.double_gyre_series()[:9:4]):
-        mesh.save(tmp_path / f"gyre{n}.vts")
-    steps = [f'<DataSet timestep="{n}" part="0" file="gyre{n}.vts"/>' for n in range(3)]
-    series = tmp_path / "gyre.pvd"
-    collection = f"<Collection>{''.join(steps)}</Collection>"
-    series.write_text(f'<VTKFile type="Collection" version="0.1">{collection}</VTKFile>')
-    assert "lines streamlines (" in run("info", series)[1]
-    words = [series, "--size", "80x60", "--lines", "pathlines", "--time"]
-    # A moment between the times of the file.
-    assert run("render", *words, 1.5, "-o", tmp_path / "a.png")[0] == 0
-    assert "--time is 9.0; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
-    assert "need all times" in run("movie", *words, 1, "-o", tmp_path / "a.gif")[2]
 
 
 def test_data_of_the_earth_are_told_and_drawn(run: Run, tmp_path: Path) -> None:

@@ -49,9 +49,10 @@ FORKS = sys.platform == "linux"
 if FORKS:
     import fcntl
 
-#: Seconds between two checks whether an answer is still wanted, and for which the status of a
-#: child that has closed its pipe is waited for.
-CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0
+#: Seconds between two checks whether an answer is still wanted.
+CHECK_INTERVAL_S = 0.05
+#: Seconds for which the status of a child that has closed its pipe is waited for.
+STATUS_WAIT_S = 5.0
 #: Share of the available memory that a child may take.
 MEMORY_SHARE = 0.6
 #: How a child ended whose status is unknown, as when the fork server has died.
@@ -60,8 +61,10 @@ ENDED = "ended"
 PIPE_BYTES = 1 << 20
 #: Bytes of a request.
 REQUEST_BYTES = 65_536
-#: Length of a status, and of the signal that ends a process with its parent.
-STATUS_BYTES, PR_SET_PDEATHSIG = 4, 1
+#: Bytes of a status.
+STATUS_BYTES = 4
+#: Number of the request to the kernel that ends a process with its parent.
+PR_SET_PDEATHSIG = 1
 #: Seconds that a child has to end by itself.
 ENDING_S = 1.0
 

@@ -34,8 +34,10 @@ _PROGRAM = (
 )
 #: Priority, 0 to 1000, with which the system ends the child if memory runs out.
 OOM_SCORE = "800"
-#: Errors whose text is sufficient without a trace, and most characters of the text.
-QUIET, TEXT_LENGTH = ("Stopped", "MemoryError", "FieldError"), 4_000
+#: Errors whose text is sufficient without a trace.
+QUIET = ("Stopped", "MemoryError", "FieldError")
+#: Most characters of the text of an error.
+TEXT_LENGTH = 4_000
 #: Length of the header.
 _PREFIX = struct.Struct(">I")
 #: Most bytes of a header.

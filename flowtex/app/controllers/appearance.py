@@ -37,8 +37,12 @@ COMPARISONS: dict[str, dict[str, Any]] = {
         )
     },
 }
-#: Labels of other differences: another time, another file, and another scalar by its name.
-ANOTHER_TIME, ANOTHER_FILE, COLOUR_BY = "Another time", "Another file", "Colour by: "
+#: Label of a second pane at another time.
+ANOTHER_TIME = "Another time"
+#: Label of one with another file.
+ANOTHER_FILE = "Another file"
+#: Label of one with another scalar, before its name.
+COLOUR_BY = "Colour by: "
 #: Stops of the slider of another time between two steps of the field.
 STOPS_PER_STEP = 8
 

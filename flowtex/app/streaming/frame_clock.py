@@ -17,10 +17,14 @@ MOST_ON_WAY = 2
 LOST_S = 5.0
 #: Seconds by which a picture in motion may be later than the fastest one.
 SLACK_S = 0.04
-#: Share of its pixels that such a picture has, at first and at least.
-FIRST_SHARE, LEAST_SHARE = 0.25, 0.05
-#: Factors of this share from one picture to the next, at least and at most.
-LEAST_FACTOR, MOST_FACTOR = 0.5, 1.25
+#: Share of its pixels that such a picture has at first.
+FIRST_SHARE = 0.25
+#: Least share of its pixels.
+LEAST_SHARE = 0.05
+#: Least factor of this share from one picture to the next.
+LEAST_FACTOR = 0.5
+#: Greatest factor of it.
+MOST_FACTOR = 1.25
 #: Part of a delay that is no longer made up for, once pictures have the least share.
 GIVEN_UP = 0.25
 

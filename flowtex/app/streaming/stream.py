@@ -43,15 +43,22 @@ PARTIAL_INTERVAL_S = 0.2
 TILE_INTERVAL_S = 1.0
 #: Seconds between two checks whether a page is connected.
 WATCH_INTERVAL_S = 0.1
-#: JPEG qualities in motion, over a slow connection and otherwise, and at rest.
-LEAST_QUALITY, MOTION_QUALITY, REST_QUALITY = 50, 80, 94
+#: JPEG quality in motion over a slow connection.
+LEAST_QUALITY = 50
+#: JPEG quality in motion otherwise.
+MOTION_QUALITY = 80
+#: JPEG quality at rest.
+REST_QUALITY = 94
 #: Pixels of a picture, at most: a screen of 2,560 x 1,600.
 MOST_PIXELS = 4_100_000
-#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
-SIDES_PX, PIXEL_RATIOS = (16.0, 8192.0), (0.25, 8.0)
-#: Pixels and samples of a draft, at most: a processor draws it in about a fifteenth of a second.
-#: Its pixels are larger, so its streaks are as long with fewer samples.
-DRAFT_PIXELS, DRAFT_SAMPLES = 80_000, 9
+#: Sides of a picture in pixels, at least and at most.
+SIDES_PX = (16.0, 8192.0)
+#: Pixels for one of CSS, at least and at most.
+PIXEL_RATIOS = (0.25, 8.0)
+#: Most pixels of a draft: a processor draws it in about a fifteenth of a second.
+DRAFT_PIXELS = 80_000
+#: Most samples of a draft, whose pixels are larger, so that its streaks are as long.
+DRAFT_SAMPLES = 9
 #: Grey of the line between two panes.
 LINE_GREY = 128
 

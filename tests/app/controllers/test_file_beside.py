@@ -178,23 +178,6 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
         assert len(app.viewport.panes) == 1
 
 
-async def test_a_point_is_read_in_its_own_pane() -> None:
-    app = page(one=small(), two=other())
-    async with playing(app):
-        await beside(app)
-        read: Any = app.area.points.read
-        at = {"place": [0.0, 0.0], "path": True}
-        first, second = [await read(n, at) for n in (0, 1)]
-        assert "height" in first["point"]["values"] and first["alone"] is True
-        assert "height" not in second["point"]["values"]
-        assert second["path"]["velocity"][1] == pytest.approx(4.5, abs=0.1)
-        tip = await read(1, {"place": [0.0, 0.0]})
-        assert tip == {"point": second["point"]}
-        app.state.send(compare="Samples: 10")
-        both = await read(1, at)  # two panes of one flow
-        assert both["alone"] is False and len(both["samples"]) == 5
-
-
 async def test_a_link_and_the_lines_of_python_name_both() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
     async with playing(app):

@@ -17,7 +17,6 @@ from flowtex.pyramid import build
 from flowtex.scene.fields import TracedFlow
 from flowtex.settings import Settings
 from flowtex.sources.open_source import MeshSource
-from flowtex.sources.read_files import file_identity
 from flowtex.textures.tiles.shared import has_pyramid
 
 
@@ -158,22 +157,6 @@ def test_a_member_or_a_file_beside_that_changes_is_read_anew(folder: Path) -> No
         hull = library.field("hull.stl", Choice()) if "hull.stl" in library.names else None
         assert hull is not None
         assert np.linalg.norm(hull.velocity, axis=-1).max() == pytest.approx(turn / 2, rel=0.02)
-
-
-def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:
-    write_ensight(tmp_path / "wing.case", [("tip", box(4, 3, 2))])
-    (tmp_path / "foam").mkdir()
-    write_foam(tmp_path / "foam" / "run.foam")
-    for path, beside in (
-        (tmp_path / "wing.case", tmp_path / "wing.geo"),
-        (tmp_path / "foam" / "run.foam", tmp_path / "foam" / "1" / "U"),
-        (tmp_path / "foam", tmp_path / "foam" / "constant" / "polyMesh" / "points"),
-    ):
-        before = file_identity([path])
-        assert file_identity([path]) == before and str(beside) in {name for name, *_ in before}
-        beside.write_bytes(beside.read_bytes() + b"\n")
-        assert file_identity([path]) != before
-    assert file_identity([tmp_path / "gone.vts"]) == ((str(tmp_path / "gone.vts"), 0, 0, 0),)
 
 
 def test_a_source_whose_process_has_died_is_opened_anew(

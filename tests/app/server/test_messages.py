@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import logging
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,7 +11,7 @@ pytest.importorskip("trame_rca")
 import msgpack
 from wslink.chunking import generate_chunks
 
-from flowtex.app.server.sessions.local import MESSAGE_BYTES, LimitedMessages, restrict
+from flowtex.app.server.sessions.local import MESSAGE_BYTES, LimitedMessages
 
 
 def taken(message: Any) -> Any:
@@ -75,25 +72,3 @@ def test_names_that_nobody_declared_are_dropped(
     assert taken({"method": method, "args": known})["args"] == known
     assert taken({"method": method, "args": unknown}) is None
     assert taken({"method": method, "kwargs": {"area_name": "other", "name": "x"}}) is None
-
-
-def test_other_messages_pass() -> None:
-    for message in ({"method": "trame.state.get", "args": []}, {"method": 3}, [1], "a", 7):
-        assert taken(message) == message
-
-
-def test_an_error_is_answered_without_its_traceback(caplog: pytest.LogCaptureFixture) -> None:
-    answered: list[Any] = []
-
-    async def send(*values: Any, **named: Any) -> None:
-        answered.append((values, named))
-
-    calls = {"application.exit": 1, "trame.state.get": 2}
-    endpoint = SimpleNamespace(functionMap=calls, sendWrappedError=send)
-    restrict(endpoint)
-    assert calls == {"trame.state.get": 2}
-    fault = {"method": "trame.trigger", "exception": "KeyError()", "trace": 'File "/home/me"'}
-    with caplog.at_level(logging.ERROR):
-        asyncio.run(endpoint.sendWrappedError("id", -1, "Exception raised", fault, client_id="c"))
-    assert answered == [(("id", -1, "Exception raised"), {"client_id": "c"})]
-    assert "trame.trigger failed" in caplog.text and caplog.text.count("/home/me") == 1

@@ -134,24 +134,6 @@ def test_nothing_else_is_found(store: Path) -> None:
     visit(store, "word", ask)
 
 
-def test_faults_are_told_to_the_log_and_not_to_others(
-    store: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    def fail(*_: Any) -> Any:
-        msg = "the disk is /secret"
-        raise OSError(msg)
-
-    monkeypatch.setattr(ServedStore, "get", fail)
-
-    async def ask(client: Client, at: str) -> None:
-        for _ in range(3):
-            answer = await client.get(f"{at}/{TILE}")
-            assert answer.status == 500 and "secret" not in await text_of(answer)
-
-    visit(store, "word", ask)
-    assert "OSError: the disk is /secret" in caplog.text and "Traceback" not in caplog.text
-
-
 def test_what_a_browser_keeps_is_of_one_run(store: Path) -> None:
     places: list[str] = []
 

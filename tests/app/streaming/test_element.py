@@ -18,7 +18,6 @@ from trame.app import get_server
 
 import flowtex
 from flowtex.app import FlowApp, FlowArea
-from flowtex.errors import FieldError
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.textures.tiles.pyramid import Pyramid
 
@@ -65,14 +64,6 @@ def asking(app: FlowApp, scene: dict[str, Any]) -> Any:
         return parts_of(asyncio.run(app.context.routes.answer(stem + name)))
 
     return ask
-
-
-def test_a_page_is_told_what_axes_it_has() -> None:
-    app = FlowApp(flowtex.examples.double_gyre_field(), samples=3, axes="scale")
-    assert app.area.element.begin("browser")["scenes"][0]["header"]["axes"] == "scale"
-    with pytest.raises(FieldError, match=r"^axes is 'bar'; expected 'ticks'"):
-        FlowApp(app.field, axes="bar")
-    app.close()
 
 
 def test_a_tile_is_made_when_it_is_asked_for(

@@ -18,9 +18,9 @@ from small_pages import small_page
 
 from flowtex import FlowField
 from flowtex.app import FlowApp
-from flowtex.app.streaming.points import path_of, words_of
+from flowtex.app.streaming.points import path_of
 from flowtex.field.earth import Projection
-from flowtex.scene.probe import Probe, locate, probe
+from flowtex.scene.probe import locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
@@ -30,11 +30,6 @@ def flat() -> FlowField:
     velocity = np.stack([1 + 0 * x, 0.25 * x], axis=-1)
     points = np.stack([x, y], -1)
     return FlowField.from_arrays(points, velocity, periodic="", length_unit="m", time_unit="s")
-
-
-def samples_of(found: Probe) -> object:
-    """Return the text on the number of samples."""
-    return next(value for label, value, _ in words_of(found) if label == "samples")
 
 
 def view_of(field: FlowField, **settings: object) -> Scene:
@@ -65,19 +60,6 @@ def test_a_path_can_be_sent() -> None:
     assert words["grain on the screen"] == (pytest.approx(1.5), "pixels")
     assert words["step"] == (pytest.approx(0.0105, rel=1e-3), "m")
     assert words["value"][0].endswith(f"= {found.value:+.2f}")
-
-
-def test_a_number_of_samples_that_is_not_the_one_set_has_a_reason() -> None:
-    def said(**settings: object) -> object:
-        return samples_of(probe(view_of(flat(), **settings), (10.0, 20.0), pixel=0.01))
-
-    assert said(samples=21) == said(samples=21, two_sided=False) == "21"
-    assert said(samples=20) == "21: 20 are set, plus one for the point itself"
-    assert said(samples=20, two_sided=False) == "20"
-    assert said(samples=20, motion="speed") == "39: 20 are set; motion doubles them"
-    assert said(samples=1, motion="speed") == "1"
-    got = probe(view_of(flat()), (10.0, 0.5), pixel=0.02)
-    assert samples_of(got) == f"{len(got.lags)} of 49: the path ends"
 
 
 def read(app: FlowApp, **at: Any) -> Any:
