@@ -32,7 +32,7 @@ class Streamer:
         self.stream.on_interaction("page", {"number": meta["number"], "seconds": 0.0})
 
 
-def small(*, curved: bool = False, steps: int = 1) -> FlowField:
+def small(*, curved: bool = False, steps: int = 1, name: str = "") -> FlowField:
     """A patch of 24 x 16 nodes, flat or bent, in which everything moves along x."""
     x, y = np.meshgrid(np.linspace(0, 3, 24), np.linspace(0, 2, 16))
     z = 0.4 * np.sin(x) if curved else np.zeros_like(x)
@@ -40,16 +40,17 @@ def small(*, curved: bool = False, steps: int = 1) -> FlowField:
     velocity = np.zeros((steps, *points.shape))
     velocity[..., 0] = 1 + 0.1 * np.arange(steps)[:, None, None] + 0.2 * y
     times = np.arange(steps, dtype=float) if steps > 1 else None
-    return FlowField.from_arrays(
-        points, velocity if steps > 1 else velocity[0], times=times, scalars={"height": x}
-    )
+    moving = velocity if steps > 1 else velocity[0]
+    return FlowField.from_arrays(points, moving, times=times, scalars={"height": x}, name=name)
 
 
-def small_page(field: FlowField, samples: int, width: int, height: int) -> FlowApp:
+def small_page(
+    flow: Any, samples: int = 3, width: int = 96, height: int = 64, **options: Any
+) -> FlowApp:
     pytest.importorskip("trame_rca")
     from flowtex.app import FlowApp
 
-    app = FlowApp(field, samples=samples)
+    app = FlowApp(flow, samples=samples, **options)
     app.stream.update_size("test", {"w": width, "h": height, "p": 1})
     return app
 

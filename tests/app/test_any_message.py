@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from flows import swinging
 from hypothesis import given
+from small_pages import small_page
 from strategies import junk, links, property_test
 
 pytest.importorskip("trame_rca")
@@ -24,8 +25,7 @@ CHOICES = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "gra
 
 @pytest.fixture(scope="module")
 def app() -> Iterator[FlowApp]:
-    made = FlowApp(swinging(), samples=3)
-    made.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
+    made = small_page(swinging())
     yield made
     made.close()
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from small_pages import Streamer, playing
+from small_pages import Streamer, playing, small, small_page
 from waiting import until
 
 pytest.importorskip("trame_rca")
@@ -37,17 +37,6 @@ JUNK: list[Any] = [
 ]
 
 
-def field(*, curved: bool = False, steps: int = 1, name: str = "") -> FlowField:
-    """A patch of 12 x 8 nodes in which everything moves along x."""
-    x, y = np.meshgrid(np.linspace(0, 3, 12), np.linspace(0, 2, 8))
-    points = np.stack([x, y, 0.4 * np.sin(x) if curved else 0 * x], axis=-1)
-    velocity = np.zeros((steps, *points.shape))
-    velocity[..., 0] = 1 + 0.1 * np.arange(steps)[:, None, None] + 0.2 * y
-    times = np.arange(steps, dtype=float) if steps > 1 else None
-    moving = velocity if steps > 1 else velocity[0]
-    return FlowField.from_arrays(points, moving, times=times, scalars={"height": x}, name=name)
-
-
 def block(size: tuple[int, int, int] = (9, 8, 7), *arrays: str) -> pv.ImageData:
     """A grid in which the plane can be told from the velocity."""
     grid = pv.ImageData(dimensions=size)
@@ -59,16 +48,6 @@ def block(size: tuple[int, int, int] = (9, 8, 7), *arrays: str) -> pv.ImageData:
     return grid
 
 
-def page(flow: Any, **options: Any) -> FlowApp:
-    app = FlowApp(flow, samples=3, **options)
-    app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
-    return app
-
-
-def picture(app: FlowApp) -> Any:
-    return app.viewport.draw(*app.viewport.pane_size).astype(int)
-
-
 def opened(app: FlowApp) -> bool:
     """Return whether nothing is being opened."""
     return app.controllers.data._opening is None or app.controllers.data._opening.done()
@@ -76,7 +55,7 @@ def opened(app: FlowApp) -> bool:
 
 @pytest.fixture(scope="module")
 def app() -> Iterator[FlowApp]:
-    made = page(field(steps=3))
+    made = small_page(small(steps=3))
     yield made
     made.close()
 
@@ -106,7 +85,7 @@ async def test_a_picture_that_fails_is_not_the_last_one(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.ERROR)
-    app = page(field())
+    app = small_page(small())
     quick = app.stream.painter.quick
 
     async with playing(app):
@@ -142,7 +121,7 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
 
 
 async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
-    app = page(Library.of(block(), field(name="other")))
+    app = small_page(Library.of(block(), small(name="other")))
     data = app.controllers.data
 
     async def send(name: str, junk: Any, before: tuple[str, Choice]) -> None:
@@ -183,7 +162,7 @@ def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.E
 
 
 async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = page(block())
+    app = small_page(block())
     gates = slow(monkeypatch, app)
     shown: list[str] = []
     show = app.context.show
@@ -219,7 +198,7 @@ async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.Mo
 async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    app = page(Library.of(block(), field(name="other")))
+    app = small_page(Library.of(block(), small(name="other")))
     async with playing(app):
         before, failing = app.field, raising(RuntimeError("reader crashed"))
         places: list[tuple[Any, str]] = [
@@ -246,7 +225,7 @@ async def test_blocks_have_planes_of_their_own() -> None:
         {"large": block((9, 8, 20)), "small": block((9, 8, 4), "other", "third")}
     )
     library = Library.of(blocks)
-    app, beside = page(library), page(library)
+    app, beside = small_page(library), small_page(library)
     async with playing(app):
         app.state.send(index=15)
         await until(lambda: app.controllers.data.choice.plane == "k=15")
@@ -265,7 +244,7 @@ async def test_blocks_have_planes_of_their_own() -> None:
 
 async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None:
     steps = [block() for _ in range(3)]
-    app = page(Library.of(steps, field(name="other")), times=None)
+    app = small_page(Library.of(steps, small(name="other")), times=None)
     assert len(app.field.times) == 3
     async with playing(app):
         app.area.scalars, app.area.clim = "depth", (-1.0, 99.0)
@@ -282,7 +261,7 @@ async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -
 
 
 def test_what_stays_open_is_bounded_in_bytes() -> None:
-    library = Library.of(*(field(name=name) for name in "abcde"))
+    library = Library.of(*(small(name=name) for name in "abcde"))
     library._sources.max_bytes = 1
     sizes = [library.source(name).nbytes for name in library.names]
     assert min(sizes) > 1000 and len(library._sources) == 1
@@ -302,9 +281,9 @@ def test_what_stays_open_is_bounded_in_bytes() -> None:
     [((60, 240), 1, False), ((60, 240), 2, True), ((240, 60), 2, False)],
 )
 def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved: bool) -> None:
-    flow = field(curved=curved)
+    flow = small(curved=curved)
     # Long, so that one side of it tells nothing of another.
-    app = page(FlowField.from_arrays(flow.points * [4, 1, 1], flow.velocity[0]))
+    app = small_page(FlowField.from_arrays(flow.points * [4, 1, 1], flow.velocity[0]))
     app.stream.update_size("test", {"w": size[0], "h": size[1], "p": 1})
     app.area.compare({"lod": False} if panes == 2 else None)
 

@@ -14,7 +14,7 @@ pytest.importorskip("trame_rca")
 import xarray as xr
 from earth_data import winds
 from lying_files import crashing
-from small_pages import Streamer, playing, zoom_of
+from small_pages import Streamer, playing, small_page, zoom_of
 from waiting import until
 
 from flowtex import examples
@@ -41,8 +41,7 @@ def mean_speed(app: FlowApp) -> float:
 async def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) -> None:
     path = tmp_path / "latest.vts"
     examples.double_gyre(0.0).save(path)
-    app = FlowApp(Library.of(path), samples=5)
-    app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
+    app = small_page(Library.of(path), 5, 120, 80)
     async with playing(app):
         data, source = app.controllers.data, app.controllers.data._current.source
         assert app.state.get("is_file")
@@ -65,8 +64,7 @@ async def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path:
     examples.double_gyre(0.0).save(tmp_path / "flow.vts")
     (tmp_path / "torn.vtk").write_bytes(crashing())
     library = Library.of(tmp_path)
-    app = FlowApp(library, samples=5)
-    app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
+    app = small_page(library, 5, 120, 80)
     async with playing(app):
         shown = app.field
         app.state.send(file="torn.vtk")

@@ -12,7 +12,7 @@ import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
-from small_pages import playing, small
+from small_pages import playing, small, small_page
 from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
@@ -38,9 +38,7 @@ def other(*, steps: int = 1, **options: Any) -> FlowField:
 
 def page(*flows: Any, **named: Any) -> FlowApp:
     openers = {name: (lambda flow=flow: MeshSource(flow)) for name, flow in named.items()}
-    app = FlowApp(Library(openers) if openers else Library.of(*flows), samples=5)
-    app.stream.update_size("test", {"w": 240, "h": 80, "p": 1})
-    return app
+    return small_page(Library(openers) if openers else Library.of(*flows), 5, 240, 80)
 
 
 async def beside(app: FlowApp, name: str | None = None) -> None:
