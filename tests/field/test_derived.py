@@ -190,17 +190,6 @@ def test_ftle_holds_where_particles_rest(kind: str) -> None:
             assert rate[2:-2, 2:-2] == pytest.approx(expected, abs=0.01)
 
 
-def test_ftle_is_blank_where_particles_meet_a_mask() -> None:
-    p = lattice(20)
-    flow = np.broadcast_to([1.0, 0.0], p.shape).copy()
-    flow[8:13, 20] = np.nan  # at x = 1
-    rate = FlowField.from_arrays(p, flow).derive("ftle", horizon=0.5)[0]
-    x, y = np.moveaxis(p, -1, 0)
-    behind, beside = (x > 0.5) & (x < 1) & (np.abs(y - 0.5) < 0.12), np.abs(y - 0.5) > 0.2
-    assert np.isnan(rate[behind]).all()
-    assert rate[(x < 1.45) & (beside | (x < 0.4))] == pytest.approx(0, abs=1e-6)
-
-
 def gyre(p: Floats, t: float) -> Floats:
     """Velocity of the double gyre of Shadden, Lekien and Marsden (2005)."""
     x, y = p[..., 0], p[..., 1]

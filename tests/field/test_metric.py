@@ -112,16 +112,6 @@ def test_index_velocity_converges_with_order_two() -> None:
     assert (errors(worst) > 1.8).all()
 
 
-def test_positions_converge_with_order_two_or_better() -> None:
-    at = np.random.default_rng(2).random((500, 2))
-
-    def worst(n: int) -> float:
-        surface = open_surface(smooth(*grid(n)))
-        return float(np.abs(surface.at(at * (n - 1)) - smooth(at[:, 0], at[:, 1])).max())
-
-    assert (errors(worst) > 2.5).all()
-
-
 # --- tangents -------------------------------------------------------------------------------
 
 
@@ -170,16 +160,6 @@ def test_a_turn_of_a_flat_map_goes_on() -> None:
     np.testing.assert_allclose(
         surface.at(at + np.array([36, 0])), surface.at(at) + np.array([360, 0, 0]), atol=1e-11
     )
-
-
-def test_a_seam_is_nothing_special() -> None:
-    """Starting the ring elsewhere gives the same surface."""
-    surface = cylinder()
-    rolled = np.roll(surface.points[:-1], -7, axis=0)
-    points = np.concatenate([rolled, rolled[:1]])
-    other = GridSurface(points, surface.valid, (True, False))
-    at = inside(np.random.default_rng(5), 25, 6)
-    np.testing.assert_allclose(other.at(at), surface.at(at + np.array([0, 7])), atol=1e-12)
 
 
 # --- what is lost ---------------------------------------------------------------------------

@@ -93,11 +93,6 @@ def test_a_blanked_pole_is_a_hole() -> None:
     assert [pole.line for pole in poles(points, valid=valid)] == [18]
 
 
-def test_a_pole_that_is_not_exactly_a_point() -> None:
-    rounded = (sphere() * 6371.0 + 100.0).astype(np.float32).astype(float)
-    assert len(poles(rounded)) == 2
-
-
 # --- index space continues --------------------------------------------------------------------
 
 
@@ -130,14 +125,6 @@ def test_a_line_over_the_pole_goes_straight_on(turned: bool, bent: float) -> Non
         np.testing.assert_allclose(position @ side, 0, atol=2e-3)
         angle = np.unwrap(np.arctan2(position @ np.cross([0, 0, 1], side), position[:, 2]))
         np.testing.assert_allclose(np.abs(angle), np.abs(t) * np.pi / 18, atol=4e-3)
-
-
-def test_tangents_at_the_pole_are_those_of_the_sphere() -> None:
-    _, along_j = surface(sphere(37, 72)).tangents
-    a = np.linspace(0, 2 * np.pi, 73)
-    expected = np.stack([np.cos(a), np.sin(a), 0 * a], axis=-1) * np.sin(np.pi / 36)
-    np.testing.assert_allclose(along_j[0], expected, atol=1e-12)
-    np.testing.assert_allclose(along_j[-1], -expected, atol=1e-12)
 
 
 # --- the plane ------------------------------------------------------------------------------

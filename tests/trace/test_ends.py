@@ -29,19 +29,6 @@ def test_reach_is_the_lag_to_the_border() -> None:
     np.testing.assert_allclose(slices.forward_reach[0], expected[:, ::-1], atol=1e-4)
 
 
-def test_a_path_that_has_left_goes_straight_on() -> None:
-    points = plane(21, 21) - 10
-    field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1], periodic="")
-    lags = np.array([2.0, 20.0, 40.0])
-    found = paths(field, [[19.0, 16.0]], lags, tolerance=1e-6)
-    assert 2 < found.reach[0] < 20
-    first, second = found.positions[1, 0], found.positions[2, 0]
-    # Beyond the reach the rate is constant, and of the length of a tangent.
-    assert np.hypot(*(second - first)) == pytest.approx(20, rel=0.02)
-    exit_point = second - (second - first) / 20 * (40 - found.reach[0])
-    assert min(exit_point.min(), 20 - exit_point.max()) == pytest.approx(0, abs=0.05)
-
-
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
 def test_path_around_a_small_vortex_takes_few_steps(
     monkeypatch: pytest.MonkeyPatch, tolerance: float
@@ -137,11 +124,3 @@ def test_a_collapsed_edge_gives_numbers(parameter: str) -> None:
     speed = 1.0 if parameter == "arclength" else np.hypot(1, 0.3)
     expected = -np.array([1.0, 0.3]) / np.hypot(1, 0.3) * speed
     np.testing.assert_allclose(moved[4:-1, 2:-2, :2], lag[4:-1, 2:-2, None] * expected, atol=5e-3)
-
-
-def test_cells_of_very_different_size_finish() -> None:
-    x = np.concatenate([np.linspace(0, 1e-3, 11), np.geomspace(2e-3, 10, 11)])
-    points = np.stack(np.meshgrid(x, np.linspace(0, 1, 5)), axis=-1)
-    field = FlowField.from_arrays(points, np.broadcast_to([1.0, 0.0], points.shape), periodic="")
-    slices = trace(field, parameter="time", lags=[0.01, 1.0, 20.0])
-    np.testing.assert_allclose(slices.reach[0, 2], x, rtol=0.15, atol=1e-5)

@@ -87,13 +87,6 @@ def test_centres_gradients_and_spirals_have_none(u: str, v: str) -> None:
     assert flowtex.closed_orbits(field) == []
 
 
-def test_each_step_has_its_orbits() -> None:
-    field = turning("(t - 1)*(1 - x**2 - y**2)", 97, times=(0, 1, 2))
-    found = flowtex.closed_orbits(field)
-    assert [(orbit.time, orbit.stable) for orbit in found] == [(0.0, False), (2.0, True)]
-    assert flowtex.closed_orbits(field, steps=[1]) == []
-
-
 @pytest.mark.parametrize("nodes", [17, 25, 49])
 def test_a_flow_without_divergence_has_none_on_a_coarse_grid(nodes: int) -> None:
     random = np.random.default_rng(3)

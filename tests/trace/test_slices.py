@@ -107,14 +107,6 @@ def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSli
     np.testing.assert_array_equal(slices.downsample(1).displacement, slices.displacement)
 
 
-def test_one_step_of_several() -> None:
-    whole = trace(double_gyre_field(True, shape=(6, 11)))
-    for step in (0, 7, -1):
-        one = whole.at_step(step)
-        np.testing.assert_array_equal(one.displacement[0], whole.displacement[step])
-        assert one.times.tolist() == [whole.times[step]]
-
-
 # --- files ----------------------------------------------------------------------------------
 
 
@@ -239,10 +231,3 @@ def test_the_greatest_length_decides_how_many_lags_there_are(parameter: str) -> 
         assert ((longest >= 1) & (longest < 1.125)).all()
         part = SliceStore(field, longest=0.3, cell=3 * whole.unit[0, 0])
         np.testing.assert_allclose(part.unit, 0.75 * whole.unit)
-
-
-def test_cells_of_very_different_sizes_have_units_of_their_own() -> None:
-    x = np.concatenate([np.linspace(0, 1e-3, 30), [1.0, 2.0]])
-    points = np.stack(np.meshgrid(x, x), axis=-1)
-    field = FlowField.from_arrays(points, np.ones_like(points))
-    np.testing.assert_array_equal(SliceStore(field).unit, field.surface.cell_size)

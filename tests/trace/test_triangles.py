@@ -315,57 +315,9 @@ def check(slices: TraceSlices) -> None:
         assert (length <= slices.lags[:, None, None] * slices.unit * (1 + 1e-3)).all()
 
 
-def test_surfaces_with_one_side() -> None:
-    turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    strip = []
-    for s in (-0.3, 0.0, 0.3):
-        around = 1 + s * np.cos(turn / 2)
-        strip.append(np.stack([around, 0 * turn, s * np.sin(turn / 2)], axis=-1))
-    points = turned(np.concatenate(strip), np.tile(turn, 3))
-    quads = []
-    for k in range(40):
-        # The strip is turned over where it closes.
-        here, there = np.array([0, 1, 2]), np.array([0, 1, 2] if k < 39 else [2, 1, 0])
-        for low in (0, 1):
-            sides = [
-                (here[low], k),
-                (there[low], k + 1),
-                (there[low + 1], k + 1),
-                (here[low + 1], k),
-            ]
-            quads.append([40 * row + column % 40 for row, column in sides])
-    q = np.array(quads)
-    triangles = np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
-    field = FlowField.from_triangles(points, triangles, spin(points))
-    slices = trace(field, lags=[0.5, 20.0], unit=1.0)
-    check(slices)
-    # The middle line closes after one turn, on the other side.
-    middle = slice(40, 80)
-    assert np.isinf(slices.reach[0, 0, middle]).all()
-    assert np.abs(np.linalg.norm(found(field, slices)[middle], axis=1) - 1).max() < 0.1
-
-
 def doubled(field: FlowField, count: int) -> Floats:
     """Lags that double from a quarter of a small cell, in units of length."""
     return np.asarray(0.25 * small_cell(field) * 2.0 ** np.arange(count))
-
-
-@pytest.mark.parametrize("parameter", ["time", "arclength"])
-def test_composed_paths_go_round_a_sphere(parameter: str) -> None:
-    points, triangles = sphere(4000)
-    field = FlowField.from_triangles(points, triangles, spin(points))
-    lags = doubled(field, 9)
-    slices = trace(field, lags=lags, unit=1.0, parameter=parameter, compose=True)
-    p, away = field.points[0], np.linalg.norm(field.points[0, :, :2], axis=1)
-    some = away > 0.3
-    for sign, reach in ((-1, slices.reach), (1, slices.forward_reach)):
-        assert reach is not None
-        assert np.isinf(reach[0, 0, some]).all()
-        angle = sign * lags[-1] / (away if parameter == "arclength" else 1.0)
-        off = np.linalg.norm(found(field, slices, forward=sign > 0) - turned(p, angle), axis=1)
-        # After more than sixty cells.
-        assert np.median(off[some]) < 0.1 * small_cell(field)
-        assert np.quantile(off[some], 0.99) < 0.75 * small_cell(field)
 
 
 @pytest.mark.parametrize("parameter", ["time", "arclength"])

@@ -84,18 +84,6 @@ def test_values_used_longest_ago_are_dropped_when_there_are_too_many_bytes() -> 
     assert cache.peek("b") is None
 
 
-def test_a_count_bounds_the_values_as_well() -> None:
-    cache: ByteCache[int, Thing] = ByteCache(10, min_count=2, max_count=3)
-    for n in range(5):
-        cache.put(n, Thing(1))
-    assert [n for n in range(5) if n in cache] == [2, 3, 4]
-    for n in range(5):
-        cache.put(n, Thing(100))
-    assert [n for n in range(5) if n in cache] == [3, 4]
-    cache.clear()
-    assert len(cache) == 0
-
-
 def test_a_digest_tells_values_types_shapes_and_words_apart() -> None:
     a = np.arange(6.0)
     several = [

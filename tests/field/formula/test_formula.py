@@ -160,13 +160,6 @@ def test_sympy_and_functions_make_the_same_field() -> None:
         flowtex.formula(y, x * sympy.I)
 
 
-def test_the_time_is_a_name_where_there_are_times() -> None:
-    times = np.linspace(0, 3, 7)
-    field = flowtex.formula("cos(t)", "sin(t)", times=times, resolution=9)
-    assert_allclose(field.velocity[:, 2, 3, 0], np.cos(times))
-    assert_allclose(field.times, times)
-
-
 @pytest.mark.parametrize(
     "surface", ["sphere", ("cos(v)*cos(u)", "cos(v)*sin(u)", "sin(v)"), "torus", "cylinder"]
 )

@@ -13,7 +13,6 @@ from triangle_meshes import random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.triangles.triangle_nodes import nodal_means
 from flowtex.scene.scene import share_field
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -79,16 +78,6 @@ def test_nodes_at_one_place_are_one_with_their_mean(rng: np.random.Generator) ->
     degree = np.bincount(surface_of(field).triangles.ravel())
     total = float(field.scalars["number"][0, 0] @ degree)
     assert total == pytest.approx(len(points) * (len(points) - 1) / 2)
-
-
-def test_means_at_nodes_are_by_area(rng: np.random.Generator) -> None:
-    triangles = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4]])
-    values = rng.normal(size=(2, 3, 3))
-    areas = np.array([1.0, 3.0, 4.0])
-    means = nodal_means(values, triangles, areas, 6, known=np.array([True, True, False]))
-    np.testing.assert_allclose(means[:, 0], (values[:, 0] + 3 * values[:, 1]) / 4)
-    np.testing.assert_allclose(means[:, 3], values[:, 1])
-    assert np.isnan(means[:, 4:]).all()
 
 
 @property_test(40)
