@@ -25,7 +25,7 @@ from flowtex.cli.options import (
     pixels,
 )
 from flowtex.examples import NAMES
-from flowtex.field.formula import KNOWN
+from flowtex.field.formula.make import KNOWN
 
 if TYPE_CHECKING:
     from flowtex.app import Library

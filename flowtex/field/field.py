@@ -24,6 +24,7 @@ from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Read
 from flowtex.field.formula import Formula
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
+from flowtex.field.node_surface import IndexVelocity
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.steps import (
     LazySteps,
@@ -33,7 +34,6 @@ from flowtex.field.steps import (
     scaled_steps,
     typical_steps,
 )
-from flowtex.field.surface import IndexVelocity
 from flowtex.field.triangles.triangle_nodes import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.units import factor, speed_unit

@@ -17,7 +17,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.written import UnreadableError, numbers
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.field.formula import KNOWN, Formula
+from flowtex.field.formula import Formula
 
 NODES = 257  #: Nodes along the longer side of a plane.
 SURFACE_NODES = 129  #: The same of a surface, whose poles slow down tracing.
@@ -30,6 +30,22 @@ MOST_TITLE = 60
 MOST_LETTERS = 4000  #: Most letters of a line.
 MOST_TIMES = 200  #: Most steps of a line.
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
+#: Words of known formulas, and their lines.
+KNOWN = {
+    "pendulum": ("Pendulum", "y; -sin(x) - b*y; x=-7,7; y=-4,4; b=0.2,0,1"),
+    "van_der_pol": ("Van der Pol", "y; mu*(1 - x^2)*y - x; x=-5,5; y=-4,4; mu=1,0,4"),
+    "lotka_volterra": (
+        "Lotka–Volterra",
+        "x*(a - b*y); -y*(c - d*x); x=0,4; y=0,3; a=1,0,2; b=1,0,2; c=1,0,2; d=1,0,2",
+    ),
+    "duffing": ("Duffing", "y; x - x^3 - d*y; x=-2,2; y=-1.5,1.5; d=0.2,0,1"),
+    "dipole": (
+        "Dipole",
+        "(x + a)/hypot(x + a, y)^3 - (x - a)/hypot(x - a, y)^3; "
+        "y/hypot(x + a, y)^3 - y/hypot(x - a, y)^3; x=-3,3; y=-2,2; a=1,0.1,2",
+    ),
+    "saddle_node": ("Saddle-node bifurcation", "r + x^2; -y; x=-3,3; y=-2,2; r=-1,-2,2"),
+}
 
 
 def formula(
@@ -102,8 +118,8 @@ def formula(
     if len(expressions) == 1:
         title, expressions, defaults = _known_formula(expressions[0])
         name = name or title
-        x, y = x or defaults.pop("x"), y or defaults.pop("y")
-        defaults = {key: value for key, value in defaults.items() if key not in ("x", "y")}
+        ends = defaults.pop("x"), defaults.pop("y")
+        x, y = x or ends[0], y or ends[1]
         for key in parameters:
             if key not in defaults:
                 raise FieldError(f"{title} has no parameter {key!r}; {near_names(key, defaults)}")
@@ -147,20 +163,16 @@ def formula(
     return replace(field, formula=flow)
 
 
-def _known_formula(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
+def _known_formula(name: Any) -> tuple[str, tuple[str, ...], dict[str, Any]]:
     key = name.replace(" ", "_") if isinstance(name, str) else ""
     if key not in KNOWN:
-        hint = (
-            near_names(name, KNOWN)
-            if isinstance(name, str)
-            else f"expected one of: {', '.join(KNOWN)}"
-        )
         raise FieldError(
             f"only one expression is given, {name!r}, and it is not the name of a known formula; "
-            f"{hint}"
+            f"{near_names(str(name), KNOWN)}"
         )
-    title, expressions, arguments = KNOWN[key]
-    return title, expressions, dict(arguments)
+    title, line = KNOWN[key]
+    expressions, arguments = line_arguments(line)
+    return title, tuple(expressions), arguments
 
 
 def _times(times: ArrayLike) -> Floats:

@@ -21,7 +21,7 @@ from flowtex._util.arrays import bounds, norm, row_blocks
 from flowtex.errors import FieldError
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
-from flowtex.field.surface import IndexVelocity, NodeSurface, to_index_space
+from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.validation import finite_nodes
 
 #: Nodes closer than this share of the surface's extent lie at one point.

@@ -19,7 +19,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field.grids.grid_surface import GridSurface
-from flowtex.field.surface import IndexVelocity, NodeSurface, to_index_space
+from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.triangles.triangle_nodes import SHARP, flipped, neighbours, triangle_normals
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.

@@ -178,9 +178,8 @@ class CriticalPoints(Records, UserList[CriticalPoint]):
         for p in self:
             row: dict[str, Any] = {"kind": p.kind, "poincare_index": p.poincare_index}
             row |= {"time": p.time, "strength": p.strength}
-            row |= dict(zip("xyz", (float(x) for x in p.position), strict=True))
-            if p.lonlat is not None:
-                row |= {"lon": p.lonlat[0], "lat": p.lonlat[1]}
+            row |= dict(zip("xyz", p.position.tolist(), strict=True))
+            row |= dict(zip(("lon", "lat"), p.lonlat or (), strict=False))
             for n, value in enumerate(p.eigenvalues, 1):
                 row |= {f"real_{n}": float(value.real), f"imaginary_{n}": float(value.imag)}
             rows.append(row)
@@ -280,12 +279,10 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
 
 
 def _on_grid(field: FlowField) -> list[CriticalPoint]:
-    u, valid = field.index_velocity.components[0], field.valid
-    rows, columns = field.shape
-    speed = field.index_velocity.speed[0]
+    u = field.index_velocity.components[0]
+    speed, corners = field.index_velocity.speed[0], field.surface.cell_corners
     rest = speed <= REST_SHARE * speed.max(initial=0)
-    corners = [(slice(a, rows - 1 + a), slice(b, columns - 1 + b)) for a in (0, 1) for b in (0, 1)]
-    usable = np.logical_and.reduce([valid[c] for c in corners])
+    usable = field.surface.cells.copy()
     # A single node at rest may be a critical point; several are a wall or a region at rest.
     several = rest & (
         scipy.ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant") > 1

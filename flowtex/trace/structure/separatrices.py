@@ -93,8 +93,8 @@ class Separatrices(Records, list[Separatrix]):
             row: dict[str, Any] = {"time": line.saddle.time, "strength": line.saddle.strength}
             row |= {"forward": line.forward, "closed": line.closed}
             row["length"] = float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum())
-            for end, point in (("saddle", line.points[0]), ("end", line.points[-1])):
-                row |= {f"{end}_{axis}": float(x) for axis, x in zip("xyz", point, strict=True)}
+            names = (f"{end}_{axis}" for end in ("saddle", "end") for axis in "xyz")
+            row |= dict(zip(names, line.points[[0, -1]].ravel().tolist(), strict=True))
             rows.append(row)
         return rows
 
@@ -113,8 +113,8 @@ class Separatrices(Records, list[Separatrix]):
         cells = [[n, *range(first, first + n)] for n, first in zip(counts, firsts, strict=True)]
         points = np.concatenate([np.empty((0, 3)), *(line.points for line in self)])
         mesh = pv.PolyData(points, lines=np.concatenate(cells) if cells else None)
-        mesh.cell_data["forward"] = np.array([line.forward for line in self], dtype=np.uint8)
-        mesh.cell_data["closed"] = np.array([line.closed for line in self], dtype=np.uint8)
+        for name in ("forward", "closed"):
+            mesh.cell_data[name] = np.array([getattr(line, name) for line in self], dtype=np.uint8)
         mesh.cell_data["time"] = np.array([line.saddle.time for line in self])
         mesh.cell_data["strength"] = np.array([line.saddle.strength for line in self])
         return mesh

@@ -16,9 +16,9 @@ from strategies import property_test
 
 import flowtex
 from flowtex import FieldError
-from flowtex.field.formula import KNOWN, FormulaError
+from flowtex.field.formula import FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
-from flowtex.field.formula.make import is_line, line_field, line_python, with_parameter
+from flowtex.field.formula.make import KNOWN, is_line, line_field, line_python, with_parameter
 from flowtex.rendering.webgl.velocity import client_formula
 from flowtex.scene.scene import Scene
 
