@@ -123,26 +123,6 @@ def test_any_flipped_bit_is_mended(whole: Path, share: float, at: float) -> None
     assert contents(place) == contents(whole)
 
 
-def test_shards_in_each_others_place_are_found(whole: Path, copy: Path) -> None:
-    one, other = (copy / f"0/velocity/c/{step}/0/0/0" for step in (0, 1))
-    data = one.read_bytes()
-    one.write_bytes(other.read_bytes())
-    other.write_bytes(data)
-    faults = verify(copy, progress=False)
-    assert len(faults) == 2 and all("differs from what was written" in fault for fault in faults)
-    build(flow(), copy, progress=False)
-    assert contents(copy) == contents(whole)
-
-
-def test_what_tells_of_arrays_is_written_anew(whole: Path, copy: Path) -> None:
-    told = copy / "0/velocity/zarr.json"
-    told.write_text(told.read_text().replace("float32", "float64"))
-    (copy / "1/zarr.json").write_text("{")
-    assert any("0/velocity" in fault for fault in [*verify(copy, progress=False)])
-    build(flow(), copy, progress=False)
-    assert contents(copy) == contents(whole)
-
-
 def test_the_command_says_what_is_corrupt(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["pyramid", str(copy), "--verify"]) == 0
     assert "is whole" in capsys.readouterr().out

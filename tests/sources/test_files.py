@@ -16,7 +16,7 @@ from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.plot3d import find_grid, find_layout, find_solution
+from flowtex.sources.meshes.plot3d import find_grid, find_solution
 from flowtex.sources.read_files import describe
 from flowtex.sources.reader_errors import errors_of_file
 
@@ -276,31 +276,6 @@ def test_a_grid_without_its_solution(tmp_path: Path) -> None:
         "in the same folder (tried postq.bin, postxyz.q); put it there under one of these names"
     ):
         FlowField.from_file(path)
-
-
-def test_random_bytes_are_no_plot3d(tmp_path: Path) -> None:
-    rng = np.random.default_rng(0)
-    for size in (1, 4, 12, 100, 4096):
-        (tmp_path / "a.xyz").write_bytes(rng.bytes(size))
-        assert find_layout(tmp_path / "a.xyz") is None
-    for text in ("1", "3 4 5", "1 2 3 4 5 6 7 8 9 10", "2.5 1 1", "-1 -1 -1"):
-        (tmp_path / "a.xyz").write_text(text, encoding="ascii")
-        assert find_layout(tmp_path / "a.xyz") is None
-
-
-def test_the_post(data_dir: Path) -> None:
-    """The paper's own data: an O-grid whose 76 nodes around the post are the surface's j."""
-    field = FlowField.from_file(data_dir / "postxyz.bin", plane="k=20")
-    assert field.shape == (76, 38)
-    assert field.periodic == (True, False)
-    assert field.name == "postxyz"
-    assert field.valid.all(), "no node of the post has IBlank 0: -1 marks its walls"
-    assert np.ptp(field.points[..., 2]) == 0.0
-    assert not field.velocity[0, :, 0].any(), "the ring at the post is a wall"
-    assert set(field.scalars) == {"Density", "StagnationEnergy"}
-    tangents = np.linalg.norm(field.surface.tangents, axis=-1)
-    assert (tangents[0].max() / tangents[0].min()) * (tangents[1].max() / tangents[1].min()) > 100
-    assert FlowField.from_file(data_dir / "postq.bin", plane="k=20").shape == (76, 38)
 
 
 # --- what cannot be read --------------------------------------------------------------------

@@ -167,13 +167,3 @@ def test_nemo_in_three_files_and_in_two() -> None:
     other = FlowField.from_file(paths[:2], globe=True)
     distance = np.linalg.norm(other.points - field.points, axis=-1)[ok & other.valid]
     assert distance.max() < 1e-3 * EARTH_RADIUS * np.radians(0.25)
-
-
-@needs_data
-def test_roms_and_globcurrent_are_read_without_a_word() -> None:
-    roms = FlowField.from_file(DATA / "roms_his_0001.nc", globe=True)
-    assert roms.shape == (7, 12) and len(roms.times) == 2
-    days = sorted(DATA.glob("globcurrent_*.nc"))
-    currents = FlowField.from_file(days)
-    assert len(currents.times) == 8 and currents.times[1] == 86400.0
-    assert 0.1 < (~currents.valid).mean() < 0.4

@@ -190,25 +190,6 @@ def test_what_cannot_be_told_is_one_error(change: Any, words: str) -> None:
         FlowField.from_xarray(change(winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))))
 
 
-def test_units_are_those_of_velocities_and_the_same() -> None:
-    ds = winds(np.arange(0.0, 30.0), np.arange(40.0, 60.0))
-    knots = ds.copy()
-    for name in "uv":
-        knots[name] = ds[name].assign_attrs(units="knots")
-    assert np.allclose(
-        FlowField.from_xarray(knots, globe=True).velocity,
-        FlowField.from_xarray(ds, globe=True).velocity * 1852 / 3600,
-    )
-    whole = FlowField.from_xarray(ds, globe=True).velocity
-    ds["v"] = (100 * ds["v"]).assign_attrs(ds["v"].attrs | {"units": "cm/s"})
-    mixed = FlowField.from_xarray(ds, globe=True)
-    assert np.allclose(mixed.velocity, whole)
-    assert "v converted from cm/s to m s-1" in str(mixed.reading)
-    ds["v"].attrs["units"] = "kg"
-    with pytest.raises(FieldError, match="'kg', which is not a unit of velocity"):
-        FlowField.from_xarray(ds, "u", "v")
-
-
 def test_a_region_is_cut_from_the_dataset() -> None:
     ds = winds(np.arange(0.0, 30.0), np.arange(60.0, 40.0, -1.0))
     with pytest.raises(

@@ -1,4 +1,4 @@
-"""Lines of a grid that repeat others, masks, and pictures across the date line."""
+"""Rows and columns of a grid that repeat others."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from earth_data import DEGREES, components, winds
+from earth_data import DEGREES, components
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -58,32 +58,3 @@ def test_rows_beyond_the_fold_are_left_out(pivot: int) -> None:
     assert columns == slice(0, 40)
     plain = Places(lon[:20], lat[:20], is_earth=True, is_line=False, why="")
     assert unrepeated(plain) == (slice(0, 20), slice(0, 40))
-
-
-def test_a_mask_and_places_without_a_position_are_land() -> None:
-    lon, lat = np.meshgrid(np.linspace(0, 20, 30), np.linspace(40, 50, 20))
-    lon = lon + lat / 10
-    mask = np.ones(lon.shape)
-    mask[:5] = 0
-    field = FlowField.from_xarray(curvilinear(lon, lat, tmask=(("y", "x"), mask)), globe=True)
-    assert np.array_equal(field.valid, mask > 0)
-    lon[15:], lat[15:] = 0.0, 0.0  # as where a model leaves out processors
-    field = FlowField.from_xarray(curvilinear(lon, lat), globe=True)
-    assert np.array_equal(field.valid, np.arange(20)[:, None] < 15) or field.valid[:15].all()
-    assert not field.valid[15:].any()
-
-
-@pytest.mark.parametrize("projection", ["platecarree", "mercator", "robinson", "equalearth"])
-@pytest.mark.parametrize("first", [-180.0, -178.0, 0.0, 2.0])
-def test_columns_of_the_earth_reach_from_edge_to_edge(projection: str, first: float) -> None:
-    lon = np.arange(first, first + 360.0, 4.0)
-    field = FlowField.from_xarray(winds(lon, np.arange(-80.0, 80.1, 4.0)), projection=projection)
-    x = field.points[20, :, 0]  # on the equator
-    steps = np.diff(x)
-    assert steps[1:-1] == pytest.approx(np.ptp(x) / 90)
-    beside = 1.0 if first % 4 == 0 else 0.5  # between two columns
-    assert steps[[0, -1]] == pytest.approx(beside * np.ptp(x) / 90)
-    assert field.projection is not None
-    assert x[[0, -1]] == pytest.approx(
-        field.projection.positions(np.array([-180, 180]), np.zeros(2))[:, 0]
-    )

@@ -28,10 +28,6 @@ def test_form_is_right_or_names_the_cause(name: str, tmp_path: Path) -> None:
     judge(FORMS[name], tmp_path)
 
 
-def test_there_are_many_forms() -> None:
-    assert len(FORMS) >= 60 and all(one.make.__module__ for one in FORMS.values())
-
-
 def test_positions_in_millimetres_leave_legends_true() -> None:
     """Solid rotation of 150 per second: vorticity is 300 per second."""
     import xarray as xr
@@ -51,31 +47,6 @@ def test_positions_in_millimetres_leave_legends_true() -> None:
     assert np.allclose(values, 300)
 
 
-def test_two_components_on_an_oblique_sheet_lie_in_it() -> None:
-    """Nothing says along which directions they are, so that an error is right as well."""
-    import pyvista as pv
-
-    mesh = pv.Plane(direction=(1, 2, 2), i_resolution=10, j_resolution=8)
-    u, v = plane(mesh.points[:, 0].astype(float), mesh.points[:, 1].astype(float))
-    mesh["U"] = np.stack([u, v], axis=-1)
-    try:
-        field = read(mesh)
-    except FieldError as error:
-        assert "component" in str(error)
-        return
-    assert field.normal_share < 1e-6
-    lengths = np.linalg.norm(np.asarray(field.velocity)[0], axis=-1)
-    assert np.allclose(np.sort(lengths.ravel()), np.sort(np.hypot(u, v)), rtol=1e-5)
-
-
-def test_triangles_between_points_do_not_cross_a_notch() -> None:
-    data, _ = value_forms.rows_of_points()
-    field = read(data)
-    assert field.triangles is not None
-    x, y = field.points[0][field.triangles].mean(axis=1)[:, :2].T
-    assert ((x < 0.15) | (y < 0.15)).all()
-
-
 def test_errors_about_laboratory_axes_have_no_longitude() -> None:
     ds = lab(np.linspace(0, 3, 9), np.linspace(0, 1, 7)).rename(y="row", x="column")
     ds = ds.drop_vars(["row", "column"])
@@ -83,24 +54,6 @@ def test_errors_about_laboratory_axes_have_no_longitude() -> None:
         read(ds)
     except FieldError as error:
         assert "longitude" not in str(error)
-
-
-@pytest.mark.parametrize("projection", ["+proj=eqc", "+proj=robin", "+proj=merc", "EPSG:3857"])
-def test_pacific_is_not_stretched_over_africa(projection: str) -> None:
-    """On a map around Greenwich no cell reaches from one edge to the other."""
-    field = read(label_forms.pacific()[0], projection=projection)
-    corners = np.stack([field.points.reshape(-1, 3)[i] for i in corner_numbers(field)])
-    width = np.ptp(corners[..., 0], axis=0)
-    assert width.max() < 1.5 * np.median(width)
-
-
-def corner_numbers(field: FlowField) -> Any:
-    """Numbers of the nodes at the corners of the drawn cells, (4 or 3, M)."""
-    if field.triangles is not None:
-        return field.triangles[field.valid[0][field.triangles].all(axis=1)].T
-    number = np.arange(field.valid.size).reshape(field.shape)
-    at = (number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:])
-    return [corner[field.surface.cells] for corner in at]
 
 
 def test_shuffled_x_of_arrays_is_sorted_or_refused() -> None:

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import re
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from strategies import property_test
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
@@ -436,31 +432,6 @@ def test_a_volume_offers_its_cuts() -> None:
 
 
 # --- any surface ----------------------------------------------------------------------------------
-
-
-@property_test(40)
-@given(st.integers(0, 2**31), st.integers(3, 30), st.integers(1, 40), st.booleans(), st.booleans())
-def test_any_triangles_make_a_field_or_an_error(
-    seed: int, nodes: int, cells: int, double: bool, on_cells: bool
-) -> None:
-    random = np.random.default_rng(seed)
-    points = random.normal(size=(nodes, 3)).round(1)
-    if double:
-        points[random.integers(nodes, size=nodes // 3)] = points[0]
-    corners = random.integers(nodes, size=(cells, 3))
-    mesh = pv.PolyData.from_regular_faces(points, corners)
-    data, count = (mesh.cell_data, cells) if on_cells else (mesh.point_data, nodes)
-    vectors = random.normal(size=(count, 3))
-    vectors[random.random(count) < 0.2] = np.nan
-    data["v"] = vectors
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            field = FlowField.from_pyvista(mesh)
-        except FieldError:
-            return
-    assert np.isfinite(field.points).all() and np.isfinite(field.velocity).all()
-    assert field.valid[0, field.triangles].shape[1] == 3 and 0 <= field.normal_share <= 1
 
 
 @pytest.mark.filterwarnings(ACROSS)
