@@ -23,7 +23,6 @@ from functools import partial
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
-import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Complexes, Floats, Floats32, Indices
 from flowtex._util.progress import check
@@ -190,8 +189,9 @@ class _SliceLookup:
         self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
         self._trust = np.zeros(self._pace.shape, np.float32)
         # The second differences at the corners of a cell take the nodes beside them.
-        least = scipy.ndimage.minimum_filter(counts, 3) if np.ptp(counts) else counts
-        self._filled = _corners(np.minimum, least[None])
+        rows, columns = (np.clip(np.arange(-1, n + 1), 0, n - 1) for n in counts.shape)
+        least = _corners(np.minimum, counts[np.ix_(rows, columns)][None])
+        self._filled = _corners(np.minimum, _corners(np.minimum, least))
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
         #: Which nodes have a path that has come close to a pole, (T, J, I).

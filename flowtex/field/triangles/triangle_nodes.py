@@ -11,6 +11,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.validation import (
@@ -28,6 +29,8 @@ from flowtex.field.validation import (
 FLAT_TRIANGLE = 1e-12
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
+#: Direction, of at most unit length, along which points of no usual mesh coincide.
+GENERIC = np.array([0.36787944, 0.69314718, 0.61983])
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them near nodes that lie in the plane up to rounding in single precision.
 NEEDLE_SHARE = 1e-4
@@ -268,11 +271,12 @@ def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()]
         # Exact twins first, as in most files: few remain for the tree.
         _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
         twins = np.stack([border[first[at.ravel()]], border], axis=-1)
+        pairs = np.concatenate([pairs, twins[twins[:, 0] != twins[:, 1]]])
         left = border[first]
-        close: Indices = scipy.spatial.cKDTree(points[left]).query_pairs(
-            near, output_type="ndarray"
-        )
-        pairs = np.concatenate([pairs, twins[twins[:, 0] != twins[:, 1]], left[close]])
+        # Along this line hardly any two are as close.
+        if (np.diff(np.sort((points[left] - points[left[0]]) @ GENERIC)) <= near).any():
+            tree = scipy.spatial.cKDTree(points[left])
+            pairs = np.concatenate([pairs, left[tree.query_pairs(near, output_type="ndarray")]])
     if not len(pairs):
         return np.arange(count)
     graph = scipy.sparse.coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
@@ -295,8 +299,8 @@ def triangle_normals(points: Floats, triangles: Indices) -> Floats:
 
 def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     """Return least and greatest coordinates of the corners of triangles, (M, 3) each."""
-    corners = points[triangles]
-    return corners.min(axis=1), corners.max(axis=1)
+    a, b, c = (points[corner] for corner in triangles.T)
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:
@@ -324,17 +328,17 @@ def _straightest(
     counts: Indices,
     result: Indices,
 ) -> None:
-    for first, count in zip(starts, counts, strict=True):
-        sides = order[first : first + count]
-        tips = points[triangles.reshape(-1)[sides]]
-        ends = points[edges_of(triangles[sides[:1] // 3])[0, sides[0] % 3]]
-        along = ends[1] - ends[0]
-        away = tips - ends[0]
-        away -= np.outer(away @ along, along) / max(float(along @ along), np.finfo(float).tiny)
-        away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
-        straight = away @ away.T
-        np.fill_diagonal(straight, np.inf)
-        result[sides] = sides[np.argmin(straight, axis=1)] // 3
+    for count in np.unique(counts):
+        sides = order[starts[counts == count][:, None] + np.arange(count)]
+        triangle, corner = np.divmod(sides[:, :1], 3)
+        begin, end = (points[triangles[triangle, (corner + k) % 3]] for k in (1, 2))
+        along, away = end - begin, points[triangles.reshape(-1)[sides]] - begin
+        share = dot(away, along) / np.maximum(dot(along, along), np.finfo(float).tiny)
+        away -= share[..., None] * along
+        away /= np.maximum(norm(away), np.finfo(float).tiny)[..., None]
+        straight = away @ away.swapaxes(1, 2)
+        straight[:, np.arange(count), np.arange(count)] = np.inf
+        result[sides] = np.take_along_axis(sides, np.argmin(straight, axis=2), axis=1) // 3
 
 
 def flipped(triangles: Indices, beside: Indices) -> Bools:

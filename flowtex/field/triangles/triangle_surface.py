@@ -13,14 +13,19 @@ from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
-import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
-from flowtex.field.triangles.triangle_nodes import SHARP, flipped, neighbours, triangle_normals
+from flowtex.field.triangles.triangle_nodes import (
+    SHARP,
+    flipped,
+    neighbours,
+    sums_at,
+    triangle_normals,
+)
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
 MOST_SHARE = 1 - 1e-7
@@ -110,8 +115,8 @@ class TriangleSurface(NodeSurface):
         corners = self.points[0][self.triangles]
         first, second = (np.roll(corners, by, axis=1) - corners for by in (-1, 1))
         angle = np.arctan2(length, dot(first, second))
-        at = self.triangles.ravel(), np.repeat(np.arange(len(corners)), 3)
-        total = scipy.sparse.csr_array((angle.ravel(), at), (self.shape[1], len(corners))) @ unit
+        at, cell = self.triangles.ravel(), np.repeat(np.arange(len(corners)), 3)
+        total = sums_at(at, unit, self.shape[1], cell, angle.ravel())
         size = np.linalg.norm(total, axis=1, keepdims=True)
         away = np.divide(total, size, out=np.zeros_like(total), where=size > 1e-12)
         away[size[:, 0] <= 1e-12] = (0.0, 0.0, 1.0)

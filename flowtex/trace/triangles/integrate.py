@@ -117,14 +117,13 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
     begins = np.cumsum(count) - count
     owner = np.repeat(np.arange(len(nodes)), count)
     at = mesh.around[np.arange(len(owner)) + (start - begins)[owner]]
-    triangle, corner = np.divmod(at, 3)
-    shares = np.stack([corner == 1, corner == 2]).astype(float)
-    still = np.zeros(len(at))
+    leasts = np.empty(mesh.corners.shape)
     with np.errstate(all="ignore"):
-        now = motion.at(triangle, shares, still, still + 1)
-        inward = _three(now.first) * mesh.heights[triangle].T * (now.size / now.pace)
-    inward[corner, np.arange(len(at))] = np.inf
-    least = np.nan_to_num(inward.min(axis=0))
+        for corner in range(3):
+            inward = _three(motion.at_corner(corner)) * mesh.heights.T
+            beside = inward[corner - 2], inward[corner - 1]
+            leasts[:, corner] = np.nan_to_num(np.minimum(*beside))
+    least = leasts.take(at)
     best = np.flatnonzero(least == np.maximum.reduceat(least, begins)[owner])[::-1]
     result = np.empty(len(nodes), dtype=np.intp)
     result[owner[best]] = at[best]

@@ -192,6 +192,14 @@ class Motion(ABC):
         The particles are at ``lag`` (N,), and are followed until ``last`` (N,).
         """
 
+    def at_corner(self, corner: int) -> Floats:
+        """Return changes of the second and third share, by length, at a corner of each triangle."""
+        count = len(self.mesh.corners)
+        shares, still = np.zeros((3, count)), np.zeros(count)
+        shares[corner] = 1
+        now = self.at(np.arange(count), shares[1:], still, still + 1)
+        return now.first * (now.size / now.pace)
+
 
 class SteadyMotion(Motion):
     """A field that does not change, by the length of path or by time."""
@@ -228,6 +236,11 @@ class SteadyMotion(Motion):
         else:
             rest = STILL_CELLS * pace / last
         return Derivatives(first, second, third, second, part[6:9], size, pace, rest * rest)
+
+    def at_corner(self, corner: int) -> Floats:
+        """Return changes of the shares at a corner, see :meth:`Motion.at_corner`."""
+        rates = self.table[:, :2] + (self.table[:, 2 * corner : 2 * corner + 2] if corner else 0)
+        return (rates * (self.direction * self.table[:, 9] / self.table[:, 10])[:, None]).T
 
     def _lead_along(
         self, triangle: Indices, metric: Floats, first: Floats, second: Floats, third: Floats

@@ -26,13 +26,13 @@ from flowtex.trace.triangles.motion import (
 )
 
 #: Particles followed together.
-BLOCK = 16384
+BLOCK = 65536
 #: Length in small cells up to which paths are integrated, and least number of such slices.
 DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
 #: Rounds of steps for these, twice those that meshes need; more are circles about a node.
-DIRECT_STEPS = 150
+DIRECT_STEPS = 75
 #: Paths that are continued together.
-PIECE_BLOCK = 8192
+PIECE_BLOCK = 32768
 #: Most edges crossed in search of a point: beyond a ridge no triangle may contain it.
 MOST_CROSSED = 24
 #: Share of a triangle, and of a lag, by which rounding may miss it.
