@@ -89,7 +89,7 @@ class TriangleGeometry(DrawnSurface):
         """Rows and columns (H, W) of texels: about a square, with a power of two as W."""
         return image_size(self.shape[1])
 
-    @property
+    @cached_property
     def normal(self) -> Floats32:
         """Unit normals at the nodes, (1, n, 3), in the mesh's own axes."""
         surface = self.field.surface

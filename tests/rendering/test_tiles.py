@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from waiting import PATIENCE_S
 
 import flowtex
@@ -79,9 +80,7 @@ def test_tiles_draw_what_the_whole_draws(make: Any, monkeypatch: pytest.MonkeyPa
 def test_tiles_in_the_background_come_after_a_coarse_picture(
     _tiled: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import pyvista as pv
-
-    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
     handle = plotter.flowtex.add(flat(), scalars=False)
     told: list[int] = []
     go, textures = threading.Event(), Pyramid.region
@@ -125,9 +124,7 @@ def test_a_tile_that_fails_is_told_and_shown_coarse(
 
 
 def test_an_image_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
-    import pyvista as pv
-
-    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
     field = flat()
     handle = plotter.flowtex.add(field)
     tiled = np.asarray(plotter.screenshot(return_img=True), float)
@@ -143,14 +140,12 @@ def test_an_image_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
 
 
 def test_tiles_have_the_colours_of_this_moment(_tiled: None) -> None:
-    import pyvista as pv
-
     first: dict[str, Any] = {"scalars": "speed", "cmap": "viridis"}
     then: dict[str, Any] = {"scalars": "depth", "cmap": "magma", "clim": (0.2, 1.5), "opacity": 0.7}
     depth = flat().points[..., 0]
     pictures = []
     for options, changes in ((first, then), (then, {})):
-        plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+        plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
         field = replace(flat(), scalars={"depth": depth[None]})
         handle = plotter.flowtex.add(field, show_scalar_bar=False, **options)
         pictures.append(plotter.screenshot(return_img=True))
@@ -171,6 +166,22 @@ def view(rng: np.random.Generator) -> TileView:
     sides = [(1, 0, half * 4 / 3 - middle[0]), (-1, 0, half * 4 / 3 + middle[0])]
     sides += [(0, 1, half - middle[1]), (0, -1, half + middle[1])]
     return TileView(None, half, 600, np.array([(x, y, 0, d) for x, y, d in sides], dtype=float))
+
+
+def test_root_is_traced_where_it_is_seen(_tiled: None) -> None:
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    handle = plotter.flowtex.add(flat(), scalars=False)
+    plotter.camera_position = "xy"
+    plotter.camera.zoom(4.0)
+    near = plotter.screenshot(return_img=True)
+    assert not handle.scene.store.traced
+    plotter.camera.zoom(0.05)
+    plotter.render()
+    assert handle.scene.store.traced
+    plotter.camera.zoom(20.0)
+    plotter.render()
+    assert np.array_equal(plotter.screenshot(return_img=True), near)
+    plotter.close()
 
 
 def test_what_is_in_view_is_covered_once_and_as_fine_as_pixels(_tiled: None) -> None:

@@ -149,6 +149,7 @@ class FlowLayer:
         #: Whether passes before the frame sum the pixels, and what they have summed.
         self.deferred = False
         self.sums: vtkTextureObject | None = None
+        self._is_blank = False
         self._observed = observe_draws(self._mapper, self.before_draw)
 
     @property
@@ -194,7 +195,7 @@ class FlowLayer:
             self._steps = (before, after)
         first, last = self.textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
-        if self._drawn and self.view.time != old_time:
+        if self._drawn and not self._is_blank and self.view.time != old_time:
             ahead = after + (between > 0) if self.view.time > old_time else before - 1
             self._prefetch.prepare(ahead)
 
@@ -351,9 +352,13 @@ class FlowLayer:
 
     def _slices(self, number: int) -> dict[str, Any]:
         """Return the slices of the first or the second of the two steps, as of a texture."""
-        step = self._steps[number]
-        layers = self._layers(step) if self._layers else self._prefetch.take(step)
-        return {"texels": layers, "levels": self.textures.geometry.levels}
+        step, textures = self._steps[number], self.textures
+        if self._is_blank:
+            layers = np.zeros((textures.count, *textures.geometry.size, 4), np.float16)
+            layers[0, ..., 3] = 1.0
+        else:
+            layers = self._layers(step) if self._layers else self._prefetch.take(step)
+        return {"texels": layers, "levels": textures.geometry.levels}
 
     def look(self) -> None:
         """Choose the shader, and transform the camera and the anchor to the mesh's coordinates."""
@@ -374,11 +379,18 @@ class FlowLayer:
         height = 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2))
         self.height = float(2 * camera.GetParallelScale() if parallel else height) / scale
         self.view.pixel = self.height / renderer.GetSize()[1]
-        if "u_slices" not in self._gpu and not self._layers:
-            # A separate thread traces while this one continues with meshes and shaders.
-            self._prefetch.prepare(self._steps[0])
         self._write_text(renderer)
         self._move_anchor()
+
+    def prepare(self, *, blank: bool = False) -> None:
+        """Begin to trace for the next frame; where hardly anything is seen, it has no paths."""
+        blank &= not has_arrows(self.textures, self._settings)
+        if self._is_blank and not blank:
+            self._retire("u_slices", "u_slicesNext")
+        self._is_blank = blank and (self._is_blank or "u_slices" not in self._gpu)
+        if "u_slices" not in self._gpu and not self._is_blank:
+            # A separate thread traces while this one continues with meshes and shaders.
+            self._prefetch.prepare(self._steps[0])
 
     def _move_anchor(self) -> None:
         """Move the origin of positions near the focus where precision needs it."""

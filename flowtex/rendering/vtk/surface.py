@@ -10,7 +10,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -22,7 +22,7 @@ from flowtex._util.array_types import Floats, Ints
 from flowtex.errors import notify
 from flowtex.field import FlowField
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
-from flowtex.rendering.mesh_levels import MeshLevels, Region, TriangleBlocks, join, mesh_levels_of
+from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_levels_of
 from flowtex.rendering.tile_choice import (
     TileView,
     cell_pixels,
@@ -61,6 +61,20 @@ LOOK_INTERVAL_MS = 250
 RIBBON = "flowtexRibbon"
 
 
+class Scalars(NamedTuple):
+    """Values that a function returns for a field, (J, I), as a point array of a name."""
+
+    name: str
+    values: Callable[[FlowField], Floats]
+    on_cells: bool
+
+    def write(self, textures: TextureSet, mesh: pv.PolyData) -> None:
+        """Write the values of a texture set's field to its mesh."""
+        geometry = textures.geometry
+        drawn = geometry.drawn_values(self.values(geometry.field), on_cells=self.on_cells)
+        mesh.point_data[self.name] = geometry.at_vertices(drawn, on_cells=self.on_cells)
+
+
 class FlowSurface:
     """Draws a flow by an actor whose mesh comes from :func:`surface_mesh`, and by tiles.
 
@@ -79,7 +93,7 @@ class FlowSurface:
         self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
         self._base = FlowLayer(actor, renderer, textures, settings)
         self._moment = (0, 0, 0.0)
-        self._scalars: tuple[str, Callable[[FlowField], Floats], bool] | None = None
+        self._scalars: Scalars | None = None
         self._drawn: tuple[Any, ...] = ()
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, FlowLayer] = {}
@@ -156,11 +170,13 @@ class FlowSurface:
         self, name: str, values: Callable[[FlowField], Floats], *, on_cells: bool = False
     ) -> None:
         """Write the values that a function returns for a field, (J, I), as a point array."""
-        self._scalars = (name, values, on_cells)
+        self._scalars = Scalars(name, values, on_cells)
         self.write_scalars()
 
     def write_scalars(self) -> None:
         """Write the values again after they have changed."""
+        # Another object, so that tiles on their way do not count as written.
+        self._scalars = self._scalars and self._scalars._replace()
         for layer in (self._base, *self._tiles.values()):
             self._write_scalars(layer)
 
@@ -177,13 +193,11 @@ class FlowSurface:
             self._loader.close()
         self._base.close()
 
-    def _write_scalars(self, layer: FlowLayer) -> None:
-        if self._scalars is not None:
-            name, values, on_cells = self._scalars
-            geometry = layer.textures.geometry
-            drawn = geometry.drawn_values(values(geometry.field), on_cells=on_cells)
-            layer.mesh.point_data[name] = geometry.at_vertices(drawn, on_cells=on_cells)
-            layer.flat_array = name if on_cells else None
+    def _write_scalars(self, layer: FlowLayer, written: Scalars | None = None) -> None:
+        if (scalars := self._scalars) is not None:
+            if scalars is not written:
+                scalars.write(layer.textures, layer.mesh)
+            layer.flat_array = scalars.name if scalars.on_cells else None
 
     def _before_frame(self) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""
@@ -194,7 +208,7 @@ class FlowSurface:
             return
         self._base.look()
         view = self._tile_view(renderer)
-        shown = self._choose(view)
+        shown, is_covered = self._choose(view)
         layers: dict[TileKey | None, FlowLayer] = {None: self._base}
         layers |= {key: self._tiles[key] for key in shown if key in self._tiles}
         self._show(list(layers))
@@ -204,6 +218,7 @@ class FlowSurface:
             layer.view = replace(self._base.view, anchor=layer.view.anchor)
             layer.set_moment(*self._moment)
             layer.look()
+        self._base.prepare(blank=is_covered)
         self._set_triangles(layers, shown, view)
         self._passes.show(self, list(layers.values()))
         pyramid = None if self._loader is None else self._loader.pyramid
@@ -213,11 +228,14 @@ class FlowSurface:
         for layer in (self._base, *self._tiles.values()):
             layer.after_frame()
 
-    def _choose(self, view: TileView) -> dict[TileKey | None, list[TileKey]]:
-        """Return the tiles to draw with the finer ones that cover parts, and request others."""
+    def _choose(self, view: TileView) -> tuple[dict[TileKey | None, list[TileKey]], bool]:
+        """Return the tiles to draw with the finer ones that cover parts, and request others.
+
+        The second value is whether tiles cover all that is seen of the surface.
+        """
         loader = self._loader
         if loader is None:
-            return {None: []}
+            return {None: []}, False
         before, after, between = self._moment
         steps = sorted({before, after if between else before})
         choices = choose_tiles(loader.pyramid, view)
@@ -229,7 +247,8 @@ class FlowSurface:
             loader.wait()
         self._report(loader.errors)
         self._drop([key for key in self._tiles if not loader.keeps(key)])
-        return cover(choices, lambda key: self._ready(key, steps))
+        shown = cover(choices, lambda key: self._ready(key, steps))
+        return shown, not choices[None].needed and shown[None] == choices[None].finer
 
     def _report(self, errors: Mapping[TileKey, Exception]) -> None:
         """Warn, once each, of tiles that could not be made; coarser ones are in their place."""
@@ -290,12 +309,12 @@ class FlowSurface:
         """Return a loader that does not keep this surface alive."""
         reference = weakref.ref(self)
 
-        def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels | TriangleBlocks]:
-            surface = reference()
-            if surface is not None and surface._scalars is not None:
-                surface._scalars[1](textures.geometry.field)  # which caches the values
-            _ = textures.unit, textures.cell, textures.critical_cell  # which are cached as well
-            return surface_mesh(textures), mesh_levels_of(textures)
+        def prepare(textures: TextureSet) -> tuple[Any, ...]:
+            surface, mesh = reference(), surface_mesh(textures)
+            if scalars := surface and surface._scalars:
+                scalars.write(textures, mesh)
+            _ = textures.unit, textures.cell, textures.critical_cell  # which are cached
+            return mesh, mesh_levels_of(textures), scalars
 
         def notify() -> None:
             surface = reference()
@@ -306,14 +325,15 @@ class FlowSurface:
 
     def _layer_of(self, tile: Tile, textures: TextureSet) -> FlowLayer:
         """Make the actor of a tile, with the properties of the surface's own one."""
-        mesh, mesh_levels = tile.prepared
+        mesh, mesh_levels, written = tile.prepared
         actor = pv.Actor(mapper=FlowMapper(mesh))
         actor.SetProperty(self._actor.prop)
         actor.SetUserMatrix(self._actor.GetMatrix())
         settings, take = self._settings, tile.take
         layer = FlowLayer(actor, self._renderer(), textures, settings, take, mesh_levels)
-        self._write_scalars(layer)
-        textures.geometry.field.forget()
+        self._write_scalars(layer, written)
+        if written is not self._scalars:
+            textures.geometry.field.forget()
         return layer
 
     def _show(self, keys: list[TileKey | None]) -> None:

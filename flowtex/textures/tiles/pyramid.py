@@ -445,6 +445,13 @@ def is_cut(textures: TextureSet, step: int) -> bool:
         first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, len(field.times))
     moment = field.at_steps(range(first, last))
     j, i = (np.arange(n)[p] for n, p in zip(field.shape, textures.geometry.texels, strict=True))
+    # No path is longer than by the greatest velocity.
+    flow, is_open = moment.index_velocity, np.array(textures.grid.open_sides)
+    speed = np.maximum(flow.speed, np.finfo(float).tiny) if store.parameter == "arclength" else 1.0
+    rate = np.abs(np.asarray(flow.components)) / np.asarray(speed)[..., None]
+    room = np.array([(k[0], n - 1 - k[-1]) for k, n in zip((j, i), field.shape, strict=True)])
+    if (room > needed * rate.max(axis=(0, 1, 2))[::-1, None])[is_open].all():
+        return False
     start = np.stack(np.meshgrid(i[::SAMPLED_LINES], j[::SAMPLED_LINES]), axis=-1).reshape(-1, 2)
     start = start[field.valid[start[:, 1], start[:, 0]]]
     for forward in (False, True):
