@@ -40,10 +40,11 @@ from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.host.export import page_text
 from flowtex.host.view import WebView, asset, client_script, web_views
-from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
+from flowtex.plotting.component import open_plotter
 from flowtex.plotting.vtk_camera import point_camera
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
+from flowtex.scene.scene import make_scenes
 
 #: Folder of the site's own files, told to the kernels of notebooks as well.
 FOLDER = "FLOWTEX_SITE_STATIC"
@@ -87,10 +88,10 @@ class View:
     def pictures(self) -> list[Image.Image]:
         """Pictures of the sizes, without ground, so that they lie on light and dark pages."""
         options = Options.split(**{**self.look, "show_scalar_bar": False})
-        plotter = new_plotter(STILL, options.view, off_screen=True, lighting="light kit")
+        drawing: dict[str, Any] = {"labels": False, "off_screen": True, "lighting": "light kit"}
+        scenes = make_scenes(self.mesh, options)
+        plotter, handles = open_plotter(scenes, options.view, STILL, outline_samples=4, **drawing)
         try:
-            plotter.enable_anti_aliasing("msaa", multi_samples=4)
-            handles = add_scenes(plotter, self.mesh, options, labels=False)
             result = []
             for size, coarser in self.sizes:
                 plotter.window_size = list(size)

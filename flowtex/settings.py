@@ -79,6 +79,8 @@ class Setting:
 
     def check(self, value: Any) -> Any:
         """Return the value in the setting's type; raise a SettingsError if it is invalid."""
+        if type(value) is self.kind and value == self.default:
+            return value
         if self.switch is not None and isinstance(value, bool):
             value = self.switch if value else 0
         if self.kind is bool:
@@ -178,7 +180,22 @@ def _row(
     return field(default=default, metadata=row)
 
 
-Observer = Callable[[str, Any], None]
+class Signal:
+    """An event, and the functions that it calls."""
+
+    def __init__(self) -> None:
+        self._listeners: list[Callable[..., object]] = []
+
+    def connect(self, listener: Callable[..., object]) -> Callable[[], None]:
+        """Call a function at each event, after the others; the returned function ends this."""
+        listeners = self._listeners
+        listeners.append(listener)
+        return lambda: listeners.remove(listener) if listener in listeners else None
+
+    def emit(self, *values: object) -> None:
+        """Call the connected functions with these values."""
+        for listener in list(self._listeners):
+            listener(*values)
 
 
 @dataclass
@@ -327,7 +344,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Start without observers."""
-        self._observers: list[Observer] = []
+        self._changed = Signal()
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a value, set it, and call the observers when it differs."""
@@ -337,9 +354,8 @@ class Settings:
         checked = setting(name).check(value)
         changed = name not in self.__dict__ or self.__dict__[name] != checked
         object.__setattr__(self, name, checked)
-        if changed:
-            for observer in list(self.__dict__.get("_observers", ())):
-                observer(name, checked)
+        if changed and "_changed" in self.__dict__:
+            self._changed.emit(name, checked)
 
     def update(self, **values: Any) -> None:
         """Set several settings; if one value is invalid, none is changed."""
@@ -347,10 +363,9 @@ class Settings:
         for name, value in checked.items():
             setattr(self, name, value)
 
-    def observe(self, observer: Observer) -> Callable[[], None]:
+    def observe(self, observer: Callable[[str, Any], None]) -> Callable[[], None]:
         """Call ``observer(name, value)`` after each change; the returned function ends this."""
-        self._observers.append(observer)
-        return lambda: self._observers.remove(observer) if observer in self._observers else None
+        return self._changed.connect(observer)
 
     def copy(self) -> Settings:
         """Return a copy without the observers."""

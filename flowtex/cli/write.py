@@ -202,9 +202,9 @@ def write_picture(picture: AnyArray, output: Path) -> None:
 
 def _print_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
     from flowtex.scene.options import Options
-    from flowtex.scene.scene import Scene
+    from flowtex.scene.scene import make_scenes
 
-    scene = Scene.from_options(field, Options.split(**options))
+    scene = make_scenes(field, Options.split(**options))[0]
     name = scene.scalar_name
     if name is None or options.get("clim") is not None or not any(scene.beyond):
         return

@@ -41,9 +41,9 @@ from flowtex.host.view import WebView, browser_options, client_module, web_views
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene.fields import read_field
+from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import Appearance, AppearanceAttributes, ViewOptions
-from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image, share_field
+from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey

@@ -99,15 +99,13 @@ def _refuse_vtk(options: dict[str, Any]) -> None:
 
 
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
-    from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter
-    from flowtex.plotting.vtk_camera import point_camera
+    from flowtex.plotting.component import open_plotter
+    from flowtex.scene.scene import make_scenes
 
     bar_options = options.pop("scalar_bar_args", None)
-    arguments = Options.split(mesh=mesh, **options)
-    plotter = new_plotter(checked_size(size), arguments.view)
-    plotter.disable_anti_aliasing()
-    handles = add_scenes(plotter, mesh, arguments, bar_options)
-    point_camera(plotter, handles[0].scene.whole.surface, arguments.view)
+    arguments, size = Options.split(mesh=mesh, **options), checked_size(size)
+    scenes = make_scenes(mesh, arguments)
+    plotter, _ = open_plotter(scenes, arguments.view, size, scalar_bar_args=bar_options)
     plotter.show()
 
 

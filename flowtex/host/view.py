@@ -25,9 +25,8 @@ from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.rendering.webgl.velocity import Packing, packing_of
-from flowtex.scene.fields import read_field
 from flowtex.scene.options import Options, default_cmap
-from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.scene import Scene, make_scenes
 from flowtex.settings import TABLE
 from flowtex.sources.notices import notify_section
 from flowtex.textures.texture_set import TextureSet
@@ -212,15 +211,11 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
     """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it."""
-    field = share_field(read_field(mesh, options.field))
-    notify_section(field.section)
-    background, changes = options.view.background, options.view.beside
-    first = Scene(field, options.make_settings(field), options.appearance)
-    make = partial(WebView, background=background, steps=steps, bodies=options.bodies)
-    views = [make(first)]
-    if changes is not None:
-        views.append(make(first.beside(changes), own=changes))
-    return tuple(views)
+    scenes = make_scenes(mesh, options)
+    notify_section(scenes[0].field.section)
+    view, own = options.view, ((), tuple(options.view.beside or ()))
+    make = partial(WebView, background=view.background, steps=steps, bodies=options.bodies)
+    return tuple(make(scene, own=changes) for scene, changes in zip(scenes, own, strict=False))
 
 
 def even_steps(count: int, steps: int | None) -> tuple[int, ...]:

@@ -6,7 +6,7 @@ that asks for ``plotter.flowtex``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,10 +20,11 @@ from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import point_camera
-from flowtex.rendering.camera import read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
-from flowtex.scene.options import Appearance, Options
-from flowtex.scene.scene import Scene
+from flowtex.scene.annotations import difference_text
+from flowtex.scene.options import Appearance, Options, ViewOptions
+from flowtex.scene.scene import Scene, make_scenes
 from flowtex.textures.images import as_image
 
 #: Name of the colours among the arrays of a mesh.
@@ -109,7 +110,7 @@ class FlowtexComponent:
         """
         options |= {"vectors": vectors, "scalars": scalars, "cmap": cmap}
         chosen = Options.split("field", "appearance", mesh=mesh, **options)
-        scene = Scene.from_options(mesh, chosen)
+        (scene,) = make_scenes(mesh, chosen)
         actor: dict[str, Any] = {
             "name": name,
             "pickable": pickable,
@@ -207,6 +208,54 @@ class FlowtexComponent:
     def __plotter_close__(self) -> None:
         """Free the graphics card when the plotter closes."""
         self.clear(render=False)
+
+
+def open_plotter(
+    scenes: Sequence[Scene],
+    view: ViewOptions,
+    size: tuple[int, int],
+    *,
+    margin: float = CAMERA_LIMITS.margin,
+    outline_samples: int = 0,
+    labels: bool = True,
+    scalar_bar_args: Mapping[str, Any] | None = None,
+    **options: Any,
+) -> tuple[Any, list[FlowHandle]]:
+    """Return a plotter with a scene, or with two side by side, and their textures.
+
+    The ``options`` are those of PyVista's plotters. Two scenes share a camera, and labels say how
+    they differ. Raises a FieldError when the view has axes, which only browsers draw.
+    """
+    if view.axes is not None:
+        raise FieldError(
+            f"axes is {view.axes!r}, but only browsers draw axes; omit it, or draw a figure with "
+            "flowtex.axes"
+        )
+    plotter: Any = pv.Plotter(
+        window_size=list(size), shape=(1, len(scenes)), border=False, **options
+    )
+    try:
+        plotter.set_background(view.ground)
+        if outline_samples:
+            plotter.enable_anti_aliasing("msaa", multi_samples=outline_samples)
+        else:
+            plotter.disable_anti_aliasing()
+        component, handles = FlowtexComponent(plotter), []
+        for column, scene in enumerate(scenes):
+            plotter.subplot(0, column)
+            handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
+            if labels and len(scenes) > 1:
+                text = difference_text(scene, view.beside or {})
+                label = plotter.add_text(text, font_size=9, color="black")
+                label.prop.background_color, label.prop.background_opacity = "white", 0.8
+        if len(scenes) > 1:
+            plotter.link_views()
+            plotter.subplot(0, 0)
+        point_camera(plotter, scenes[0].whole.surface, view, margin)
+    except BaseException:
+        plotter.close()
+        raise
+    return plotter, handles
 
 
 class _NotDrawnError(Exception):

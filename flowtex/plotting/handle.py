@@ -18,9 +18,9 @@ from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
 from flowtex.rendering.vtk.mesh import Ends
-from flowtex.scene.fields import read_field
+from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import Appearance, AppearanceAttributes
-from flowtex.scene.scene import Change, Scene, share_field
+from flowtex.scene.scene import Change, Scene
 from flowtex.sources.meshes.parts import leaves
 
 #: A lit surface: dark sides stay bright enough to read the texture there.

@@ -31,9 +31,9 @@ from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.scene.fields import TracedFlow, is_tiled, read_field, share_field, with_scalars
+from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
-from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.settings import TABLE, Affects, Settings, SettingsError, Signal
 from flowtex.textures.images import as_picture, load_image
 from flowtex.textures.texture_set import TextureSet, check_noise
 from flowtex.textures.tiles.pyramid import Pyramid
@@ -49,11 +49,8 @@ from flowtex.textures.tiles.structure import STRUCTURE, Structure, check_structu
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
-__all__ = ["NO_IMAGE", "Change", "Scene", "TracedFlow", "follow", "lay_image", "share_field"]
-
 #: The kind of a change: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
-Notice = Callable[[Change], None]
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
@@ -98,7 +95,7 @@ class Scene:
             self._store = SliceStore(field, slices=slices)
         self._textures: TextureSet | None = None
         self._version = 0  # of the textures
-        self._notices: list[Notice] = []
+        self._changed = Signal()
         self._time = float(field.times[0])
         self._end = self.settings.observe(self._setting_changed)
 
@@ -109,13 +106,7 @@ class Scene:
         These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings. Raises a
         FieldError, SettingsError or ImageError where one does not fit.
         """
-        return cls.from_options(mesh, Options.split("field", "appearance", mesh=mesh, **options))
-
-    @classmethod
-    def from_options(cls, mesh: Any, options: Options) -> Scene:
-        """Return the scene of a mesh or a field; :meth:`of` has the errors."""
-        field = read_field(mesh, options.field)
-        return cls(field, options.make_settings(field), options.appearance)
+        return make_scenes(mesh, Options.split("field", "appearance", mesh=mesh, **options))[0]
 
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
         """Return a second scene of the same field, or of another one, that differs in changes.
@@ -162,7 +153,7 @@ class Scene:
         self._appearance = value
         if picture is not None:
             self._lay(picture)
-        self._notify("appearance")
+        self._changed.emit("appearance")
 
     @property
     def is_lit(self) -> bool:
@@ -271,7 +262,7 @@ class Scene:
             return
         if self._textures is not None:
             self._textures = self._textures.with_image(self.image)
-        self._notify("textures")
+        self._changed.emit("textures")
 
     @property
     def time(self) -> float:
@@ -288,7 +279,7 @@ class Scene:
                 notify(f"time is {value!r}, but the field is steady: it is the same at all times")
             return
         self._time = time_within(self.field.start, self.field.times, value)
-        self._notify("uniform")
+        self._changed.emit("uniform")
 
     @property
     def moment(self) -> tuple[int, int, float]:
@@ -439,20 +430,18 @@ class Scene:
 
     def follow(self, before: Scene) -> None:
         """Replace another scene, and notify its observers."""
-        self._notices, before._notices = before._notices, []
+        self._changed, before._changed = before._changed, Signal()
         before.close()
-        self._notify("trace")
+        self._changed.emit("trace")
 
-    def observe(self, notice: Notice) -> Callable[[], None]:
-        """Call ``notice(affects)`` after each change; return a function that ends this."""
-        notices = self._notices  # another scene may take over the list
-        notices.append(notice)
-        return lambda: notices.remove(notice) if notice in notices else None
+    def observe(self, observer: Callable[[Change], None]) -> Callable[[], None]:
+        """Call ``observer(affects)`` after each change; the returned function ends this."""
+        return self._changed.connect(observer)
 
     def close(self) -> None:
         """Stop following the settings."""
         self._end()
-        self._notices.clear()
+        self._changed = Signal()
 
     def _setting_changed(self, name: str, value: Any) -> None:
         if name in STRUCTURE:
@@ -482,11 +471,18 @@ class Scene:
         if affects != "uniform":
             self._version += 1
             self._textures = None
-        self._notify(affects)
+        self._changed.emit(affects)
 
-    def _notify(self, affects: Change) -> None:
-        for notice in list(self._notices):
-            notice(affects)
+
+def make_scenes(mesh: Any, options: Options) -> list[Scene]:
+    """Return the scene of a mesh or a field, and one beside it if the view asks for it.
+
+    Equal fields are one, and share their traces. Raises a FieldError, SettingsError or ImageError
+    where an argument does not fit.
+    """
+    field, changes = share_field(read_field(mesh, options.field)), options.view.beside
+    first = Scene(field, options.make_settings(field), options.appearance)
+    return [first] if changes is None else [first, first.beside(changes)]
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:

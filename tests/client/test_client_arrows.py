@@ -20,7 +20,7 @@ from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Options
-from flowtex.scene.scene import Scene
+from flowtex.scene.scene import Scene, make_scenes
 from flowtex.settings import Settings
 
 pytestmark = pytest.mark.browser
@@ -80,7 +80,8 @@ def test_arrows_have_the_colours(client: ClientPage) -> None:
 
 def frame(field: FlowField, *, time: float | None = None, **options: Any) -> Bytes:
     """Draw a frame of a view that may come nearer."""
-    with closing(OffscreenPlotter(field, Options.split(**options), size=SIZE)) as plotter:
+    chosen = Options.split(**options)
+    with closing(OffscreenPlotter(make_scenes(field, chosen), chosen.view, size=SIZE)) as plotter:
         return plotter.picture(time=time)
 
 

@@ -17,8 +17,8 @@ from flowtex.field.options import FieldOptions
 from flowtex.field.uncertainty import UNCERTAINTY, unknown_share, with_uncertainty
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
-from flowtex.scene.fields import read_field
-from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.fields import read_field, share_field
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from paper import quality
 

@@ -299,7 +299,7 @@ def test_nothing_is_left_after_closing(make: Make) -> None:
     settings = widget.settings
     widget.close()
     widget.close()
-    assert settings._observers == []
+    assert settings._changed._listeners == []
     assert repr(widget).endswith("closed)")
 
     def left() -> list[str]:

@@ -14,7 +14,8 @@ import flowtex
 from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.pyramid import build
-from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.fields import share_field
+from flowtex.scene.scene import Scene
 from flowtex.textures.tiles.shared import has_pyramid
 
 zarr = pytest.importorskip("zarr")

@@ -20,7 +20,7 @@ from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
-from flowtex.scene.scene import Scene, follow, lay_image
+from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
 from flowtex.settings import SettingsError
 
 
@@ -56,7 +56,7 @@ def test_an_argument_that_a_function_names_itself_stands_once() -> None:
 
 def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
     options = Options.split(samples=7, cmap="magma", image=np.ones((4, 4)))
-    first = Scene.from_options(gyre(), options)
+    (first,) = make_scenes(gyre(), options)
     second = first.beside({"lod": False, "cmap": "viridis"})
     assert second.field is first.field
     assert (first.settings.lod, second.settings.lod) == (True, False)

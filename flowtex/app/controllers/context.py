@@ -13,11 +13,11 @@ from typing import Any, TypeAlias, TypeVar
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.server.files import Routes
-from flowtex.app.server.page import PageState, Signal, shortened
+from flowtex.app.server.page import PageState, shortened
 from flowtex.app.streaming.area import FlowArea
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.settings import Settings
+from flowtex.settings import Settings, Signal
 
 #: The state of a page by name, as in :mod:`.serialization`.
 State: TypeAlias = Mapping[str, Any]

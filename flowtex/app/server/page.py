@@ -1,4 +1,4 @@
-"""Common tools of a page: its state and elements, signals, tasks, and checks of its values.
+"""Common tools of a page: its state and elements, tasks, and checks of its values.
 
 A page may send anything instead of a number or a name. Invalid values are dropped or clipped here,
 so that no handler has to check again.
@@ -21,22 +21,6 @@ from trame_client.widgets.core import AbstractElement
 MESSAGE_LENGTH = 400
 _log = logging.getLogger(__name__)
 _count = itertools.count(1)
-
-
-class Signal:
-    """An event of the page, and the functions that it calls."""
-
-    def __init__(self) -> None:
-        self._listeners: list[Callable[..., object]] = []
-
-    def connect(self, listener: Callable[..., object]) -> None:
-        """Call a function at each event, after those that were connected before."""
-        self._listeners.append(listener)
-
-    def emit(self, *values: object) -> None:
-        """Call the connected functions with these values."""
-        for listener in list(self._listeners):
-            listener(*values)
 
 
 def running_loop() -> asyncio.AbstractEventLoop | None:

@@ -22,7 +22,7 @@ from typing import Any
 
 import trame_rca.module
 
-from flowtex.app.server.page import PageElement, PageState, Signal, start_task
+from flowtex.app.server.page import PageElement, PageState, start_task
 from flowtex.app.streaming.element import Element, Player
 from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
@@ -32,6 +32,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import Change, Scene
+from flowtex.settings import Signal
 
 
 class FlowArea(AppearanceAttributes):

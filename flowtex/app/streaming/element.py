@@ -21,7 +21,6 @@ from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
 from flowtex.app.server.page import (
     PageState,
-    Signal,
     mapping,
     name_among,
     number,
@@ -38,7 +37,7 @@ from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, parts_file
 from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.options import ROBUST
-from flowtex.settings import TABLE
+from flowtex.settings import TABLE, Signal
 from flowtex.textures.tiles.pyramid import TileKey
 
 _log = logging.getLogger(__name__)

@@ -24,12 +24,13 @@ from PIL import Image
 from trame_rca.protocol import AreaAdapter
 
 from flowtex._util.array_types import Bytes
-from flowtex.app.server.page import Signal, clipped, mapping, number
+from flowtex.app.server.page import clipped, mapping, number
 from flowtex.app.streaming.frame_clock import MOST_ON_WAY, FrameClock
 from flowtex.app.streaming.viewport import GAP_PX, TILE_PX, Viewport
 from flowtex.errors import FieldError
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.diagnostics import opengl_report
+from flowtex.settings import Signal
 
 #: Seconds to answer a new page before anything is drawn for it.
 ANSWER_S = 0.05

@@ -28,7 +28,7 @@ from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Options
-from flowtex.scene.scene import Scene, follow
+from flowtex.scene.scene import Scene, follow, make_scenes
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image, averaged
 
@@ -73,7 +73,7 @@ class Viewport:
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
         self._still = True
         #: The textures of the views side by side, one or two.
-        self.panes: list[FlowHandle] = [self._pane(Scene.from_options(field, first))]
+        self.panes: list[FlowHandle] = [self._pane(make_scenes(field, first)[0])]
         self.handle = self.panes[0]  #: The texture of the first pane.
         # Only draw() renders: a texture requests a picture at each change.
         self.plotter.suppress_rendering = True

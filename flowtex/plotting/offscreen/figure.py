@@ -38,7 +38,7 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.annotations import time_text
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
-from flowtex.scene.scene import Scene
+from flowtex.scene.scene import make_scenes
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.opening.dataset_files import dataset_paths
 
@@ -103,7 +103,7 @@ def extent(
     chosen, size = Options.split(mesh=mesh, **options), checked_size(size)
     if chosen.view.beside is not None:
         raise FieldError("beside makes two views, which do not have one common extent; omit it")
-    surface = Scene.from_options(mesh, chosen).whole.surface
+    surface = make_scenes(mesh, chosen)[0].whole.surface
     frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
     camera = view.first_camera(surface, aspect, margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
@@ -278,7 +278,7 @@ class FlowImage(AxesImage):
             mesh, options = read_field(mesh, options.field), replace(options, field=FieldOptions())
             scalar = options.appearance.scalar_name
             mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
-        self._scene = scene = Scene.from_options(mesh, options)
+        (self._scene,) = (scene,) = make_scenes(mesh, options)
         self._projection = projection = scene.field.projection
         if projection is None and is_geo(ax):
             raise FieldError(
@@ -289,8 +289,6 @@ class FlowImage(AxesImage):
             self._unit = unit_of(projection)
         surface = scene.whole.surface
         self._frame = frame = _frame(surface)
-        # The scene keeps alive the data that each drawing shares with it.
-        self._options = replace(options, field=FieldOptions())
         self._flow = scene.field
         self._scales: AxesScales | None = None
         self._supersampling, self._clock = supersampling, 0.0
@@ -349,8 +347,7 @@ class FlowImage(AxesImage):
         """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
         if self._scene.scalar_name is None:
             return
-        look = replace(self._options.appearance, cmap=cmap)
-        self._show(self._scene.field, replace(self._options, appearance=look))
+        self._scene.appearance = replace(self._scene.appearance, cmap=cmap)
         super().set_cmap(self._bar_colours())
 
     def _follow_scales(self, scales: AxesScales | None) -> None:
@@ -365,15 +362,10 @@ class FlowImage(AxesImage):
         flow = self._flow
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
-        self._scales = scales
-        self._show(flow, self._options)
+        before, self._scales = self._scene, scales
+        self._scene = before.showing(flow, {})
+        before.close()
         self._frame = _frame(self._scene.whole.surface)
-
-    def _show(self, flow: FlowField, options: Options) -> None:
-        """Draw a field with options from now on, at the same time."""
-        time, self._options = self._scene.time, options
-        self._scene = Scene.from_options(flow, options)
-        self._scene.time = time
 
     @property
     def flow(self) -> FlowField:
@@ -464,8 +456,8 @@ class FlowImage(AxesImage):
         width, height = (int(n) for n in np.maximum(high - low, 1))
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
-        look = self._options.appearance
-        shown += (self.axes.get_facecolor(), self._changes, look.cmap, self.get_alpha())
+        cmap = self._scene.appearance.cmap
+        shown += (self.axes.get_facecolor(), self._changes, cmap, self.get_alpha())
         if shown != self._shown:
             self._picture = self._draw(corners, (width, height), density)
             self._shown = shown
@@ -477,7 +469,7 @@ class FlowImage(AxesImage):
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)
-        look = self._options.appearance
+        look = self._scene.appearance
         if self.norm is not self._first_norm or look.norm is not None:  # set by matplotlib
             look = replace(look, norm=self.norm, clim=None, log_scale=False)
         elif self.get_clim() != self._first_clim:
@@ -488,9 +480,11 @@ class FlowImage(AxesImage):
             camera=self._camera(corners.mean(axis=0), float(spans[1])),
             background=self.axes.get_facecolor(),
         )
+        scene = self._scene.copy()
+        scene.appearance = look
         plotter = OffscreenPlotter(
-            self._scene.field,
-            replace(self._options, appearance=look, view=view),
+            [scene],
+            view,
             size=(width, height),
             supersampling=self._supersampling,
             density=density,

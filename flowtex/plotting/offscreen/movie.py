@@ -34,6 +34,7 @@ from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.uniforms import WAVE_PIXELS
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
+from flowtex.scene.scene import make_scenes
 from flowtex.settings import TABLE, Settings
 
 #: Seconds for one run through the times of a field: so many for each step, within limits.
@@ -301,7 +302,8 @@ def _prepare(
     options = replace(options, field=FieldOptions(), settings=values)
 
     def draw() -> Generator[Bytes, None, None]:
-        with closing(OffscreenPlotter(field, options, **drawing)) as plotter:
+        scenes = make_scenes(field, options)
+        with closing(OffscreenPlotter(scenes, options.view, **drawing)) as plotter:
             for number in range(len(shown)):
                 if shown.times:
                     picture = plotter.picture(time=shown.times[number])

@@ -1,8 +1,8 @@
-"""A PyVista plotter that shows a scene, or two side by side, in a window or without one."""
+"""Pictures of flows without a window: :func:`render`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import Any
@@ -13,15 +13,14 @@ from flowtex._util.arguments import checked_size, sized
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
-from flowtex.plotting.component import FlowtexComponent
-from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import open_plotter
+from flowtex.plotting.vtk_camera import WHOLE, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
-from flowtex.rendering.diagnostics import begin_trial, require_opengl
-from flowtex.scene.annotations import Layout, annotate, difference_text
-from flowtex.scene.fields import TracedFlow, read_field
+from flowtex.rendering.diagnostics import require_opengl
+from flowtex.scene.annotations import Layout, annotate_views
+from flowtex.scene.fields import TracedFlow
 from flowtex.scene.options import Appearance, Options, ViewOptions
-from flowtex.scene.scene import Scene, share_field
+from flowtex.scene.scene import Scene, make_scenes
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 
@@ -38,16 +37,16 @@ NOTHING_SEEN = (
 
 
 class OffscreenPlotter:
-    """A plotter without a window that draws pictures of a flow.
+    """Pictures of one scene, or of two side by side, drawn by VTK without a window.
 
     Parameters and errors are those of :func:`flowtex.render`; ``density`` and ``still`` are those
-    of the handles, which are the textures of the views.
+    of the handles, which are the textures of the views. The scenes are closed with it.
     """
 
     def __init__(
         self,
-        mesh: Any,
-        options: Options,
+        scenes: Sequence[Scene],
+        view: ViewOptions = WHOLE,
         *,
         size: tuple[int, int],
         supersampling: int = 1,
@@ -57,43 +56,34 @@ class OffscreenPlotter:
         annotations: bool = False,
         scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
-        begin_trial()
         _check_size(size, supersampling)
-        # Equal fields share their traces.
-        field = share_field(read_field(mesh, options.field))
-        notify_section(field.section)
-        # The trial has run while the field was read.
         require_opengl()
-        options = replace(options, field=FieldOptions())
-        appearance = options.appearance
-        self._legend = appearance.has_bar
-        if scalar_bar_args and (annotations or not appearance.show_scalar_bar):
-            case = "without annotations" if annotations else "with show_scalar_bar=True"
-            notify(f"scalar_bar_args is given, but this bar is drawn only {case}; it is not used")
-        if annotations or appearance.show_scalar_bar is None:
-            options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
-        self._supersampling = supersampling
-        self._view, self._annotations = options.view, annotations
-        large = (size[0] * supersampling, size[1] * supersampling)
-        self._plotter = new_plotter(large, self._view, off_screen=True, lighting="light kit")
-        try:
-            if supersampling == 1:  # supersampling smooths outlines as well
-                self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
-            else:
-                self._plotter.disable_anti_aliasing()
-            self.handles = add_scenes(
-                self._plotter, field, options, scalar_bar_args, labels=not annotations
-            )
-            window = self._plotter.render_window
-            window.SetDPI(window.GetDPI() * supersampling)
-            for handle in self.handles:
-                handle.density, handle.still = supersampling * density, still
-            self._point_camera(margin)
-            if annotations:
-                self._reserve(size, margin)
-        except BaseException:
-            self._plotter.close()
-            raise
+        notify_section(scenes[0].field.section)
+        self._legend = scenes[0].appearance.has_bar
+        for scene in scenes:
+            if annotations or scene.appearance.show_scalar_bar is None:
+                scene.appearance = replace(scene.appearance, show_scalar_bar=False)
+        self._supersampling, self._margin, self._view = supersampling, margin, view
+        self._plotter, self.handles = open_plotter(
+            scenes,
+            view,
+            (size[0] * supersampling, size[1] * supersampling),
+            margin=margin,
+            # Supersampling smooths outlines as well.
+            outline_samples=OUTLINE_SAMPLES if supersampling == 1 else 0,
+            labels=not annotations,
+            scalar_bar_args=scalar_bar_args,
+            off_screen=True,
+            lighting="light kit",
+        )
+        window = self._plotter.render_window
+        window.SetDPI(window.GetDPI() * supersampling)
+        for handle in self.handles:
+            handle.density, handle.still = supersampling * density, still
+        #: A picture without the flow, and the rows of the flow in it; only with annotations.
+        self._canvas: Bytes | None = None
+        if annotations:
+            self._reserve(size)
 
     def picture(
         self, *, time: float | str | None = None, clock: float = 0.0, transparent: bool = False
@@ -116,17 +106,14 @@ class OffscreenPlotter:
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
         picture = averaged(pixels, self._supersampling)
-        if not self._annotations:
+        if self._canvas is None:
             return picture
         canvas = self._canvas.copy()
         canvas[self._rows] = picture
         self._annotate(canvas)
         return canvas
 
-    def _point_camera(self, margin: float) -> None:
-        point_camera(self._plotter, self.handles[0].scene.whole.surface, self._view, margin)
-
-    def _reserve(self, size: tuple[int, int], margin: float) -> None:
+    def _reserve(self, size: tuple[int, int]) -> None:
         """Leave room for annotations above and below the flow of a small picture."""
         width, height = size
         self._rows, ground = slice(0, height), self._plotter.background_color.int_rgb
@@ -139,69 +126,25 @@ class OffscreenPlotter:
             self._rows = slice(above, height - below)
             drawn = (width, height - above - below)
             self._plotter.window_size = [self._supersampling * side for side in drawn]
-            self._point_camera(margin)
+            surface = self.handles[0].scene.whole.surface
+            point_camera(self._plotter, surface, self._view, self._margin)
 
     def _annotate(self, canvas: Bytes) -> list[Layout]:
-        """Write on a picture, in place."""
-        changes, legend = self._view.beside or {}, self._legend
-        look: dict[str, Any] = {"background": self._view.ground, "legend": legend}
-        look["flow_height"] = self._rows.stop - self._rows.start
-        camera, views = read_camera(self._plotter.camera), len(self.handles)
-        return [
-            annotate(view, h.scene, camera, label=difference_text(h.scene, changes), **look)
-            for view, h in zip(np.array_split(canvas, views, axis=1), self.handles, strict=True)
-        ]
+        return annotate_views(
+            canvas,
+            [handle.scene for handle in self.handles],
+            read_camera(self._plotter.camera),
+            self._view.beside or {},
+            background=self._view.ground,
+            legend=self._legend,
+            flow_height=self._rows.stop - self._rows.start,
+        )
 
     def close(self) -> None:
         """Free the graphics card."""
         for handle in self.handles:
             handle.remove(render=False)
         self._plotter.close()
-
-
-def new_plotter(size: tuple[int, int], view: ViewOptions, **options: Any) -> Any:
-    """Return a PyVista plotter with the background and the one or two views of options."""
-    import pyvista as pv
-
-    shape = (1, 1) if view.beside is None else (1, 2)
-    plotter = pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
-    plotter.set_background(view.ground)
-    return plotter
-
-
-def add_scenes(
-    plotter: Any,
-    mesh: Any,
-    options: Options,
-    scalar_bar_args: Mapping[str, Any] | None = None,
-    *,
-    labels: bool = True,
-) -> list[FlowHandle]:
-    """Add a flow to one view, or to two that share a camera; labels say how they differ.
-
-    Raises a FieldError when the view has axes, which only browsers draw.
-    """
-    if options.view.axes is not None:
-        raise FieldError(
-            f"axes is {options.view.axes!r}, but only browsers draw axes; omit it, or draw a "
-            "figure with flowtex.axes"
-        )
-    component, changes = FlowtexComponent(plotter), options.view.beside
-    scenes = [Scene.from_options(mesh, options)]
-    if changes is not None:
-        scenes.append(scenes[0].beside(changes))
-    handles = []
-    for column, scene in enumerate(scenes):
-        if changes is not None:
-            plotter.subplot(0, column)
-        handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
-        if changes is not None and labels:
-            label = plotter.add_text(difference_text(scene, changes), font_size=9, color="black")
-            label.prop.background_color, label.prop.background_opacity = "white", 0.8
-    if changes is not None:
-        plotter.link_views()
-        plotter.subplot(0, 0)
-    return handles
 
 
 def _check_size(size: tuple[int, int], supersampling: int) -> None:
@@ -281,9 +224,13 @@ def render(
     >>> flowtex.render(field, size=(160, 120), zoom=4, samples=9).shape
     (120, 160, 3)
     """
+    chosen = Options.split(mesh=mesh, **options)
+    if scalar_bar_args and (annotations or not chosen.appearance.show_scalar_bar):
+        case = "without annotations" if annotations else "with show_scalar_bar=True"
+        notify(f"scalar_bar_args is given, but this bar is drawn only {case}; it is not used")
     plotter = OffscreenPlotter(
-        mesh,
-        Options.split(mesh=mesh, **options),
+        make_scenes(mesh, chosen),
+        chosen.view,
         size=size,
         supersampling=supersampling,
         margin=margin,

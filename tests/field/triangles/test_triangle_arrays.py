@@ -13,7 +13,7 @@ from triangle_meshes import random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.scene.scene import share_field
+from flowtex.scene.fields import share_field
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])

@@ -21,6 +21,7 @@ from flowtex import FlowField, TraceSlices, examples
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.scene.fields import kept_flows
 from flowtex.scene.options import Options
+from flowtex.scene.scene import make_scenes
 from flowtex.sources.notices import DatasetNotice
 from flowtex.trace import store
 
@@ -157,7 +158,8 @@ def test_arrows_are_opaque_or_absent() -> None:
     views: list[dict[str, Any]] = [{"zoom": zoom} for zoom in (1, 1.2, 1.5, 1.8)]
     for view in (*views, {"uncertainty": doubtful}):
         options = Options.split(mesh=field, **look, **view)
-        with closing(OffscreenPlotter(field, options, size=(320, 200))) as plotter:
+        scenes = make_scenes(field, options)
+        with closing(OffscreenPlotter(scenes, options.view, size=(320, 200))) as plotter:
             moving = plotter.picture()  # the frame of a movie
         still = flowtex.render(field, size=(320, 200), **look, **view)
         assert faded(still) == faded(moving) == 0
