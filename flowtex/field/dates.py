@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 DAY_S = 86_400.0
+#: Decimals of a time beyond which it is written with an exponent.
+MOST_DECIMALS = 6
+#: Times from which on they are written with an exponent.
+LONGEST_TIME = 1e9
+#: Longest unit of a time that is written, in letters.
+UNIT_LENGTH = 8
 #: Text of a date of any precision.
 _DATE = re.compile(
     r"(\d{1,4})(?:-(\d\d?)(?:-(\d\d?)(?:[T ](\d\d)(?::(\d\d)(?::(\d\d)(?:\.(\d+))?)?)?)?)?)?Z?"
@@ -62,6 +69,23 @@ def date_text(start: Any, time: float, step: float) -> str:
     whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
     return str((start + timedelta(seconds=time)).strftime(form))
+
+
+def time_text(field: Any, time: float, longest_unit: int = UNIT_LENGTH) -> str:
+    """Return a time of a field: its date, or a number that distinguishes its steps.
+
+    A unit is shown up to this length.
+    """
+    alone = DAY_S if field.start is not None else abs(time) or 1.0
+    step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone
+    if field.start is not None:
+        return date_text(field.start, time, step)
+    power = math.floor(math.log10(step))
+    decimals = max(2 - power, 0) if power >= 0 else 1 - power
+    short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
+    number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
+    unit = field.time_unit if len(field.time_unit) <= longest_unit else ""
+    return f"t = {number} {unit}".strip()
 
 
 def seconds_since(start: Any, date: Any) -> float:

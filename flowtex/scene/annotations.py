@@ -20,8 +20,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import ColourScale, distinct_texts, is_light, rgb
-from flowtex.field import FlowField
-from flowtex.field.dates import DAY_S, date_text
+from flowtex.field.dates import UNIT_LENGTH, time_text
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.marks import (
     DOT_PX,
@@ -53,13 +52,10 @@ OPACITY = 0.8
 TICK_PX = 4
 #: Share of the range by which a number may lie beyond an end: less than a pixel.
 BEYOND = 0.004
-#: Length above which a unit of time is left out, if the time would take more than this share of
-#: the picture's width.
-UNIT_LENGTH, TIME_WIDTH = 8, 0.4
+#: Share of the picture's width above which a time is written without a long unit.
+TIME_WIDTH = 0.4
 #: Widest legend with all of its values, as a share of the width of the picture.
 LEGEND_WIDTH = 0.6
-#: Decimals of a time, and times, beyond which it is written with an exponent.
-MOST_DECIMALS, LONGEST_TIME = 6, 1e9
 METRES_PER_KM = 1000
 #: Diameter of a dot in a legend and height of a line there, in lines of text, and how much larger
 #: they are drawn to be smooth.
@@ -419,23 +415,6 @@ def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[floa
     ends = scaled([low, high])
     shares = (scaled(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
     return list(zip(map(float, shares), distinct_texts(values), strict=True))
-
-
-def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
-    """Return a time of a field: its date, or a number that distinguishes its steps.
-
-    A unit is shown up to this length.
-    """
-    alone = DAY_S if field.start is not None else abs(time) or 1.0
-    step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone
-    if field.start is not None:
-        return date_text(field.start, time, step)
-    power = math.floor(math.log10(step))
-    decimals = max(2 - power, 0) if power >= 0 else 1 - power
-    short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
-    number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
-    unit = field.time_unit if len(field.time_unit) <= longest_unit else ""
-    return f"t = {number} {unit}".strip()
 
 
 def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:

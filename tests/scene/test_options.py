@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import pyvista as pv
 from flows import gyre
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -117,20 +116,6 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
         read_field(path, FieldOptions(times=[1.0]))
     with pytest.raises(FieldError, match=r"none\.vts: the file does not exist"):
         read_field(str(tmp_path / "none.vts"), FieldOptions())
-
-
-@pytest.mark.usefixtures("quick_export")
-def test_every_front_end_takes_a_path(tmp_path: Path) -> None:
-    path = tmp_path / "gyre.vts"
-    flowtex.examples.double_gyre(2.5).save(path)
-    plotter = pv.Plotter(off_screen=True, window_size=[80, 60])
-    handle = plotter.flowtex.add(str(path))
-    assert handle.field.name == "gyre"
-    plotter.close()
-    assert flowtex.render(str(path), size=(80, 60), samples=5).std() > 0
-    assert flowtex.export(path, tmp_path / "page.html").steps == 1
-    assert flowtex.movie(path, tmp_path / "a.gif", size=(80, 60), seconds=0.2, fps=20).frames == 4
-    assert flowtex.FlowWidget(str(path)).field.name == "gyre"
 
 
 @pytest.mark.parametrize("view", [{"focus": (50.0, 50.0), "zoom": 8}, {"focus": (3.0, 0.5, 0)}])

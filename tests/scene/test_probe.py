@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import weakref
 from collections.abc import Callable
 from dataclasses import fields
 from functools import cache
@@ -20,7 +18,7 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Appearance
-from flowtex.scene.probe import LoadedTextures, Probe, locate, probe
+from flowtex.scene.probe import Probe, locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
@@ -153,17 +151,6 @@ def check_shapes(got: Probe) -> None:
     for axis in range(3):
         along = np.interp(-got.lags, -got.path_lags, got.path[:, axis])
         assert along == pytest.approx(got.points[:, axis], abs=0.01 * spread + 1e-9)
-
-
-def test_a_width_is_a_picture_seen_straight_on() -> None:
-    field = gyre()
-    view, shot = view_of(field), camera(field)
-    picture = render(view.textures, view.settings, shot, SIZE)
-    width = 2 * shot.parallel_scale / SIZE[1]
-    at = locate(field, picture.position[12, 20])
-    got = probe(view, at, pixel=width)  # type: ignore[arg-type]
-    assert got.pixel == pytest.approx(width)
-    assert got.value == pytest.approx(picture.value[12, 20], abs=1e-6)
 
 
 def test_a_width_on_a_curved_surface_is_that_width() -> None:
@@ -318,44 +305,3 @@ def test_a_seam_is_passed() -> None:
         assert got.coordinates[:, 1] == pytest.approx((got.points[:, 0] / 5) % 72, abs=0.02)
     one, again = (probe(view_of(field), (12.0, i), pixel=1.0).value for i in (0.4, 72.4))
     assert again == pytest.approx(one)
-
-
-def test_a_path_around_a_ring_comes_back() -> None:
-    a, r = np.meshgrid(np.linspace(0, 2 * np.pi, 61), np.linspace(1, 2, 21))
-    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
-    field = FlowField.from_arrays(points, np.stack([-points[..., 1], points[..., 0]], axis=-1))
-    got = probe(view_of(field, samples=31), (10.0, 0.0), pixel=0.02)
-    assert len(got.lags) == got.asked
-    assert np.linalg.norm(got.points, axis=-1) == pytest.approx(np.full(31, 1.5), rel=3e-3)
-    angle = np.arctan2(got.points[:, 1], got.points[:, 0])
-    assert got.coordinates[:, 1] == pytest.approx(angle / (2 * np.pi) * 60 % 60, abs=0.02)
-    assert got.coordinates[:, 0] == pytest.approx(np.full(31, 10.0), abs=0.1)
-
-
-def test_from_afar_slices_are_coarse() -> None:
-    field = turn()
-    view, c = view_of(field), field.surface.center
-    shot = Camera((*c[:2], 5.0), (*c[:2], 0.0), (0.0, 1.0, 0.0), True, 1.2)
-    picture = render(view.textures, view.settings, shot, (12, 9))
-    for y, x in np.argwhere(picture.covered)[::7]:
-        at = locate(field, picture.position[y, x])
-        got = probe(view, at, pixel=shot, size=(12, 9))  # type: ignore[arg-type]
-        assert got.slice_level > 2
-        assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
-
-
-def test_textures_are_let_go() -> None:
-    # A flow that no other test draws: views of equal fields share their textures.
-    whole = swinging()
-    field = FlowField.from_arrays(whole.points, 1.5 * whole.velocity, times=whole.times)
-    view = view_of(field)
-    textures = view.textures
-    for time in (0.1, 0.5, 0.7):
-        view.time = time
-        probe(view, (15, 15), pixel=0.01)
-    loaded = LoadedTextures.of(textures)
-    assert len(loaded._mips) == 2
-    reference = weakref.ref(loaded)
-    del view, textures, loaded
-    gc.collect()
-    assert reference() is None

@@ -11,7 +11,7 @@ from flowtex.app.server.page import name_among, number
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.scene.annotations import time_text
+from flowtex.field.dates import time_text
 from flowtex.scene.options import EARTH_LINES
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values

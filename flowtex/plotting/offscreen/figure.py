@@ -22,6 +22,7 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
+from flowtex.field.dates import time_text
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (
     AxesScales,
@@ -35,7 +36,6 @@ from flowtex.plotting.offscreen.axes_kinds import (
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.scene.annotations import time_text
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
