@@ -103,18 +103,13 @@ def uncertain_gyre() -> FlowField:
 
 
 @cache
-def half_still(kind: str = "grid", steps: int = 1) -> FlowField:
+def half_still(steps: int = 1) -> FlowField:
     """Return a flow that is slow or fast at the right, and zero or rounding at the left."""
     x, y = np.meshgrid(np.linspace(0, 2, 61), np.linspace(0, 1, 31))
     speed = np.where(x < 1, 1e-18, np.where(y < 0.5, 1e-4, 1.0))
     velocity = speed[..., None] * np.stack([0.5 + 0 * x, np.cos(6 * x)], axis=-1)
-    velocity[y > 0.5] *= velocity[y > 0.5] > 1e-9 if kind == "grid" else 1
+    velocity[y > 0.5] *= velocity[y > 0.5] > 1e-9
     points = np.stack([x, y], axis=-1)
-    if kind == "triangles":
-        node = np.arange(x.size).reshape(x.shape)
-        a, b, c, d = node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1]
-        corners = np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
-        return FlowField.from_triangles(points.reshape(-1, 2), corners, velocity.reshape(-1, 2))
     if steps > 1:
         return FlowField.from_arrays(
             points, velocity * np.arange(1, steps + 1)[:, None, None, None]
@@ -125,7 +120,6 @@ def half_still(kind: str = "grid", steps: int = 1) -> FlowField:
 #: Each is another part of the shaders, or of what they are given.
 VIEWS: dict[str, View] = {
     "whole": View(),
-    "zoom 256": View(camera=straight(256)),
     "zoom 4096": View(camera=straight(4096)),
     "many cells in a pixel": View(dense_gyre),
     "many samples": View(camera=straight(4), settings={"samples": 49, "spacing": 1.2}),
@@ -139,9 +133,7 @@ VIEWS: dict[str, View] = {
     "one-sided": View(camera=straight(4), settings={"two_sided": False, "kernel": "ramp"}),
     "by time": View(camera=straight(4), settings={"parameter": "time"}),
     "fixed grain": View(camera=straight(2), settings={"fixed_grain": True, "resolution": 128}),
-    "grain, contrast, seed": View(settings={"grain": 3.0, "contrast": 2.0, "seed": 7}),
     "streaming": View(camera=straight(2), settings=MOTION, clock=1.7),
-    "streaming evenly": View(camera=straight(2), settings={"motion": "uniform"}, clock=0.9),
     "streaklets": View(camera=straight(4), settings=STREAKLETS),
     "streaklets, curved": View(torus, ASIDE, STREAKLETS),
     "streaklets, streaming": View(camera=straight(2), settings=STREAKLETS | MOTION, clock=1.7),
@@ -149,7 +141,6 @@ VIEWS: dict[str, View] = {
     "streaklets, near a source": View(
         fountain, straight(16, (0.3, 0.25)), STREAKLETS | MOTION, clock=1.7
     ),
-    "streaklets, triangles": View(scattered_fountain, SOURCE, STREAKLETS),
     "streaklets, near triangles": View(scattered_fountain, straight(16, (0.3, 0.25)), STREAKLETS),
     "between two steps": View(swinging, MIDDLE, {"lines": "pathlines"}, time=0.55),
     "between two steps, moving": View(
@@ -162,16 +153,12 @@ VIEWS: dict[str, View] = {
     ),
     "half still": View(half_still),
     "half still, streaming": View(half_still, straight(2, (1.006, 0.5)), MOTION, clock=1.7),
-    "half still, triangles": View(partial(half_still, "triangles")),
     "half still, between two steps": View(partial(half_still, steps=3), time=0.55),
     "without a sign": View(lines, MIDDLE),
     "centre": View(camera=straight(64, (0.5, 0.5))),
     "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),
     "triangles": View(scattered_gyre),
-    "triangles, zoom 4096": View(scattered_gyre, straight(4096)),
     "triangles, grazing": View(scattered_gyre, GRAZING),
-    "triangles, by time": View(scattered_gyre, straight(4), {"parameter": "time"}),
-    "triangles, streaming": View(scattered_gyre, straight(2), MOTION, clock=1.7),
     "triangles, centre": View(scattered_gyre, straight(64, (0.5, 0.5))),
     "triangles, curved": View(rippled, ASIDE),
     "triangles, sharp edge": View(folded, ASIDE),
@@ -182,7 +169,6 @@ VIEWS: dict[str, View] = {
     "uncertain": View(uncertain_gyre),
     "uncertain, streaklets": View(uncertain_gyre, straight(2), STREAKLETS | MOTION, clock=1.7),
     "uncertain, centre": View(uncertain_gyre, straight(64, (0.5, 0.5))),
-    "uncertain, triangles": View(lambda: uncertain(scattered_gyre())),
     "uncertain, between two steps": View(
         lambda: uncertain(swinging()), MIDDLE, {"lines": "pathlines"}, time=0.55
     ),

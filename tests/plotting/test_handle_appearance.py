@@ -95,21 +95,6 @@ def test_what_does_not_fit_is_refused(plotter: Any) -> None:
         np.testing.assert_array_equal(shot(plotter), before)
 
 
-def test_the_bar_stays_in_its_subplot() -> None:
-    made: Any = pv.Plotter(off_screen=True, window_size=[300, 120], shape=(1, 2))
-    handle = made.flowtex.add(heights())
-    made.subplot(0, 1)
-    handle.scalars = "height"
-    assert list(made.scalar_bars.keys()) == ["height"]
-    bar = made.scalar_bars["height"]
-    assert [bool(r.HasViewProp(bar)) for r in made.renderers] == [True, False]
-    assert made.renderers.active_index == 1
-    velocity = gyre().velocity[0] + np.array([0.0, 0.0, 1.0])
-    made.flowtex.add(flowtex.FlowField.from_arrays(gyre().points, velocity))
-    assert list(made.scalar_bars.keys()) == ["height", "speed in the surface"]
-    made.close()
-
-
 def test_a_node_without_a_value_is_grey(plotter: Any) -> None:
     field = heights()
     values = np.where(field.points[..., 0] < 1, np.nan, field.points[..., 0])

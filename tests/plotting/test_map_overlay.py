@@ -86,19 +86,6 @@ def test_no_surface_hides_its_lines(name: str) -> None:
         assert rows[SIZE[1] // 4 : -SIZE[1] // 4].mean() > 0.97
 
 
-def test_what_is_behind_the_globe_is_hidden() -> None:
-    field = ocean("globe")
-    camera = Camera((2e7, 0, 0), (0, 0, 0), (0, 0, 1))
-    near = flowtex.render(field, size=SIZE, camera=camera).astype(float)
-    behind = flowtex.render(
-        field, size=SIZE, camera=Camera((-2e7, 0, 0), (0, 0, 0), (0, 0, 1))
-    ).astype(float)
-    # The far side of these data is the Pacific: calm land colour, and few lines in it.
-    middle = behind[80:120, 100:140].reshape(-1, 3)
-    assert np.median(np.ptp(middle, axis=0)) < 160
-    assert np.abs(near - behind).max() > 50
-
-
 def test_land_has_its_colour_or_none(plotter: Any) -> None:
     field = ocean("lambert")
     assert land_cells(field).any() and not land_cells(winds("robinson")).any()
@@ -199,15 +186,6 @@ def test_all_goes_with_the_flow(plotter: Any) -> None:
     handle.remove()
     assert plotter.renderer.GetActors().GetNumberOfItems() == 0
     np.testing.assert_array_equal(shot(plotter), empty)
-
-
-def test_lines_are_as_wide_on_a_fine_screen() -> None:
-    """Twice the density has lines of twice as many pixels, which supersampling averages again."""
-    field = winds("platecarree")
-    drawn: dict[str, Any] = {"size": SIZE, "scalars": False, "color": "white", "strength": 0}
-    drawn |= QUICK
-    once, twice = (flowtex.render(field, **drawn, supersampling=n).astype(float) for n in (1, 2))
-    assert once.mean() == pytest.approx(twice.mean(), rel=0.02)
 
 
 def test_a_line_along_nodes_is_not_torn() -> None:

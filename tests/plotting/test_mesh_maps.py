@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from earth_data import winds
-from mesh_data import Globe, globe, icon, ugrid
+from mesh_data import globe, ugrid
 
 import flowtex
 from flowtex import FlowField
@@ -18,16 +18,6 @@ pytestmark = [
     pytest.mark.usefixtures("opengl"),
     pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice"),
 ]
-
-
-def bay() -> Globe:
-    """A few kilometres of a small mesh, off the coast of Africa."""
-    lon, lat = (
-        c.ravel() for c in np.meshgrid(np.linspace(-20, -19.98, 9), np.linspace(5, 5.02, 9))
-    )
-    n = np.arange(81).reshape(9, 9)
-    a, b, c, d = (m.ravel() for m in (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]))
-    return Globe(lon, lat, np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]))
 
 
 @pytest.mark.parametrize("view", [{"globe": True}, {"projection": "robinson"}])
@@ -59,17 +49,3 @@ def test_lines_and_land_of_a_part_of_the_earth() -> None:
     assert globe_radius(FlowField.from_xarray(ds, globe=True)) is None
     dry = part.assign(ucx=part.ucx.where(np.abs(lat[np.abs(lat) < 50]) < 20))
     assert 0.3 < land_cells(FlowField.from_xarray(dry, globe=True)).mean() < 0.7
-
-
-def test_a_small_mesh_far_from_all_coasts_is_drawn() -> None:
-    mesh = bay()
-    field = FlowField.from_xarray(ugrid(mesh))
-    lines = map_lines(field, has_globe=False)
-    assert not len(lines["coastlines"].points)
-    picture = flowtex.render(field, size=(160, 120), coastlines=True, graticule=True)
-    assert picture.std() > 10
-
-
-def test_a_model_goes_where_a_dataset_does() -> None:
-    picture = flowtex.render(icon(globe(500)), level=1, globe=True, size=(160, 120))
-    assert picture.std() > 10

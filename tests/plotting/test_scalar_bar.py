@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-import flowtex
 from flowtex import FlowField
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -86,34 +85,6 @@ def test_a_bar_that_is_placed_by_hand_stays(options: dict[str, Any]) -> None:
     assert bar.GetWidth() == options.get("width", 0.08)
     assert bar.GetTitleTextProperty().GetFontSize() == options.get("title_font_size", 16)
     made.close()
-
-
-def test_one_title_has_one_bar() -> None:
-    made: Any = pv.Plotter(off_screen=True, window_size=[300, 200])
-    for number in range(2):
-        made.flowtex.add(sheet(0.1 * number), scalars="height")
-    made.screenshot(return_img=True)
-    assert list(made.scalar_bars.keys()) == ["height"]
-    made.close()
-    assert flowtex.render(sheet(), size=(64, 48), samples=1, show_scalar_bar=True).std() > 0
-
-
-def test_bar_is_as_tall_as_that_of_pyvista() -> None:
-    heights = []
-    for add in ("add_mesh", "flowtex.add"):
-        made: Any = pv.Plotter(off_screen=True, window_size=[640, 480])
-        mesh: Any = pv.Plane(i_resolution=9, j_resolution=9)
-        mesh["U"], mesh["p"] = np.tile([1.0, 0, 0], (mesh.n_points, 1)), mesh.points[:, 0]
-        look: Any = {"scalars": "p", "cmap": ["red", "red"], "opacity": 0.0}
-        if add == "add_mesh":
-            made.add_mesh(mesh, scalar_bar_args={"vertical": True}, **look)
-        else:
-            made.flowtex.add(mesh, **{**look, "cmap": np.array([[1.0, 0, 0]])}, strength=0.0)
-        shot = made.screenshot(return_img=True)
-        heights.append((shot == [255, 0, 0]).all(axis=-1).any(axis=1).sum())
-        made.close()
-    assert heights[0] > 150
-    assert heights[1] == pytest.approx(heights[0], rel=0.1)
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,6 @@ from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
-from flowtex.textures.tiles import structure
-from flowtex.trace.structure.critical_points import KINDS
 
 #: A picture of four units by two, one of which is this many pixels.
 UNIT = 300
@@ -48,10 +46,6 @@ def whole(field: FlowField, **options: Any) -> Bytes:
     camera = Camera.fit(field.surface, 2.0)
     picture = flowtex.render(field, camera=camera, **PICTURE, **options)
     return np.asarray(picture)
-
-
-def test_marks_have_all_kinds() -> None:
-    assert set(KIND_MARKS) == set(KINDS)
 
 
 def test_points_and_lines_stand_where_they_are() -> None:
@@ -83,13 +77,6 @@ def test_stable_and_unstable_orbits_have_their_colors() -> None:
         found = scale * seen(picture, LINE_COLORS[name], 50)
         away = np.linalg.norm(found[np.abs(found).max(axis=1) < 1.9], axis=1)
         assert np.abs(away - radius).max() < 0.05
-
-
-def test_without_them_a_picture_is_as_before() -> None:
-    field = grid(saddle_and_sink)
-    plain = whole(field)
-    assert (plain == whole(field, critical_points=False, separatrices=0)).all()
-    assert (plain != whole(field, critical_points=1)).any()
 
 
 def test_settings_and_time_are_followed() -> None:
@@ -157,16 +144,6 @@ def test_the_strongest_come_first_and_noise_last() -> None:
     strengths = [p.strength for p in points.strongest(len(points))]
     assert strengths == sorted(strengths, reverse=True)
     assert np.median(strengths) < 0.1 * strengths[0]
-
-
-def test_a_large_field_is_searched_on_fewer_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(structure, "SEARCHED_NODES", 1000)
-    field = grid(saddle_and_sink)
-    found = structure.Structure(field)
-    assert found._field.valid.size <= 1000 < field.valid.size
-    assert [p.kind for p in found.points(0)] == ["saddle", "sink"]
-    assert len(found.lines(0)) == 4
-    assert len({id(line.saddle) for line in found.lines(0, 1)}) == 1
 
 
 def test_a_nullcline_of_a_formula_is_exact_at_a_zoom_of_5000() -> None:

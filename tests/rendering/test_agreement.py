@@ -66,11 +66,11 @@ def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
 #: Views that give the shaders, which VTK and WebGL share, another number or camera of a kind that
 #: the other views have as well: WebGL alone draws them.
 SHARED = {
-    *("many samples", "zoom 256", "levels", "one-sided", "by time", "grain, contrast, seed"),
-    *("streaming evenly", "streaklets, curved", "streaklets, near a source"),
+    *("many samples", "levels", "one-sided", "by time"),
+    *("streaklets, curved", "streaklets, near a source"),
     *("streaklets, near triangles", "between two steps, moving", "streamlines, near"),
     *("half still, streaming", "half still, between two steps", "centre, streaming"),
-    *("triangles, by time", "triangles, streaming", "triangles, centre", "triangles, holes"),
+    *("triangles, centre", "triangles, holes"),
     *("uncertain, centre", "uncertain, between two steps", "image, mixed"),
 }
 

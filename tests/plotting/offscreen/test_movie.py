@@ -225,7 +225,7 @@ def changed(drawn: list[Pixels]) -> NDArray[np.float64]:
     return np.asarray((np.abs(following - drawn).max(axis=-1) > 8).mean(axis=(1, 2)))
 
 
-@pytest.mark.parametrize(("seconds", "fps"), [(0.4, 20.0), (1.0, 20.0), (0.8, 5.0), (4.0, 8.0)])
+@pytest.mark.parametrize(("seconds", "fps"), [(0.4, 20.0), (0.8, 5.0), (4.0, 8.0)])
 def test_short_movies_move_without_a_seam(seconds: float, fps: float, opengl: object) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -233,15 +233,6 @@ def test_short_movies_move_without_a_seam(seconds: float, fps: float, opengl: ob
     shares = changed(drawn)
     assert len(drawn) == round(seconds * fps)
     assert shares.min() > 0.1 and shares[-1] == pytest.approx(shares[:-1].mean(), rel=0.25)
-
-
-def test_a_periodic_series_has_no_seam(opengl: object) -> None:
-    # The flow crosses the surface in no whole share of the period.
-    field = shear(steps=9, turn=2 * np.pi)
-    drawn = list(frames(field, size=SIZE, seconds=2, fps=20, samples=25, scalars=False))
-    still = np.zeros(SIZE[::-1])
-    near = [carried(a, b, still, still, 1) for a, b in pairwise([*drawn, drawn[0]])]
-    assert near[-1] > 0.9 * np.median(near) > 0.5
 
 
 @pytest.mark.parametrize(
@@ -277,34 +268,19 @@ def test_a_field_without_a_sign_does_not_stream() -> None:
         frame_times(field, Settings(motion="speed"), fps=10)
 
 
-@pytest.mark.parametrize("kind", ["mp4", "gif", "webp"])
-def test_cancelling_leaves_no_file_and_no_process(kind: str, tmp_path: Path) -> None:
+#: The second number is while Pillow writes what it has kept.
+@pytest.mark.parametrize(("kind", "asked"), [("mp4", 4), ("gif", 4), ("gif", 12), ("webp", 12)])
+def test_cancelling_leaves_no_file_and_no_process(kind: str, asked: int, tmp_path: Path) -> None:
     pytest.importorskip("av")
     path = tmp_path / f"flow.{kind}"
     path.write_bytes(b"what was there before")
-    seen: list[int] = []
-
-    def cancelled() -> bool:
-        seen.append(len(list(tmp_path.iterdir())))
-        return len(seen) > 4
-
+    answers = iter([*[False] * asked, *[True] * 9])
     threads, processes = threading.active_count(), children()
     with pytest.raises(Stopped):
-        write_movie(path, smooth_pictures(50), 10.0, cancelled=cancelled)
-    assert len(seen) == 5 and max(seen) == 2
+        write_movie(path, smooth_pictures(10), 10.0, cancelled=lambda: next(answers))
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
     assert path.read_bytes() == b"what was there before"
     assert children() <= processes and threading.active_count() == threads
-
-
-@pytest.mark.parametrize("kind", ["gif", "webp"])
-def test_cancelling_while_pillow_writes_stops_as_well(kind: str, tmp_path: Path) -> None:
-    asked = iter([False] * 12 + [True] * 100)
-    with pytest.raises(Stopped):
-        write_movie(
-            tmp_path / f"a.{kind}", smooth_pictures(10), 10.0, cancelled=lambda: next(asked)
-        )
-    assert not list(tmp_path.iterdir())
 
 
 def test_an_error_leaves_nothing(tmp_path: Path) -> None:
@@ -342,20 +318,6 @@ def test_supersampling_shows_the_same_more_smoothly(opengl: object) -> None:
     # Grains of the same size at the same places.
     assert np.corrcoef(plain[inside].ravel(), fine[inside].ravel())[0, 1] > 0.95
     assert np.corrcoef(plain[inside].ravel(), aliased[inside].ravel())[0, 1] < 0.5
-
-
-def test_supersampling_keeps_the_size_of_images_too(
-    opengl: object, rng: np.random.Generator
-) -> None:
-    image = rng.random((64, 128))
-    plain, fine = (
-        flowtex.render(shear(), size=(160, 120), samples=9, image=image, supersampling=k).astype(
-            float
-        )
-        for k in (1, 2)
-    )
-    inside = (slice(20, 100), slice(20, 140))
-    assert np.corrcoef(plain[inside].ravel(), fine[inside].ravel())[0, 1] > 0.9
 
 
 @pytest.fixture(scope="module")
