@@ -240,10 +240,10 @@ def open_plotter(
             plotter.enable_anti_aliasing("msaa", multi_samples=outline_samples)
         else:
             plotter.disable_anti_aliasing()
-        component, handles = FlowtexComponent(plotter), []
+        handles = []
         for column, scene in enumerate(scenes):
             plotter.subplot(0, column)
-            handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
+            handles.append(plotter.flowtex.add_scene(scene, scalar_bar_args=scalar_bar_args))
             if labels and len(scenes) > 1:
                 text = difference_text(scene, view.beside or {})
                 label = plotter.add_text(text, font_size=9, color="black")

@@ -13,7 +13,7 @@ from flowtex._util.arguments import checked_number
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
 from flowtex.plotting.bars import FlowBar
-from flowtex.plotting.overlay import MapOverlay, StructureOverlay
+from flowtex.plotting.overlay import MapOverlay, Overlay, StructureOverlay
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.layer import weak_callback
@@ -80,37 +80,33 @@ class FlowHandle(AppearanceAttributes):
         scalar_bar_args: Mapping[str, Any] | None = None,
         **actor_options: Any,
     ) -> None:
-        self._plotter = plotter
-        self._forget = forget
-        self.scene = scene
-        mesh = surface_mesh(scene.textures)
-        actor_options = {"name": f"flowtex {next(_count)}", **actor_options}
-        self.actor = plotter.add_mesh(
+        mesh, renderer = surface_mesh(scene.textures), plotter.renderer
+        actor = plotter.add_mesh(
             mesh,
             color=scene.appearance.color,
             show_scalar_bar=False,
             reset_camera=False,
-            **actor_options,
+            **{"name": f"flowtex {next(_count)}", **actor_options},
         )
-        mapper = use_flow_mapper(self.actor, mesh)
-        self._renderer = plotter.renderer
-        self.bar = FlowBar(plotter, mapper, scalar_bar_args or {})
-        self._surface = FlowSurface(
-            self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
-        )
-        self._surface.set_moment(*scene.moment)
-        self._map = self._map_of(scene)
-        self._structure = StructureOverlay(self.actor, plotter.renderer, scene, self._surface)
+        bar = FlowBar(plotter, use_flow_mapper(actor, mesh), scalar_bar_args or {})
+        surface = FlowSurface(actor, renderer, scene.textures, scene.settings, scene.pyramid)
+        surface.set_moment(*scene.moment)
+        end = scene.observe(self._changed)
+        self.scene, self.actor, self.bar = scene, actor, bar
+        self._plotter, self._renderer, self._forget = plotter, renderer, forget
+        self._surface, self._shown_time, self._end = surface, scene.time, end
+        self._overlays: dict[type[Overlay], Overlay] = {}
+        #: Called in a thread when more can be drawn; ``None`` where drawing waits for all.
+        self._notify: Callable[[], None] | None = None
         self._shown: Appearance | None = None
-        self._show_appearance()
-        self._shown_time = scene.time
-        self._end = scene.observe(self._changed)
         #: What the flow was read from, and how, and the state in which that was.
         self._source: tuple[Any, FieldOptions] | None = None
         self._state: tuple[int, ...] = ()
+        self._show_overlays(MapOverlay, StructureOverlay)
+        self._show_appearance()
         drawn: list[tuple[Any, str, Callable[[], None], float]] = [
-            (plotter.renderer, "StartEvent", self._before_frame, FIRST),
-            (plotter.renderer.GetViewProps(), "ModifiedEvent", self._check_actor, 0.0),
+            (renderer, "StartEvent", self._before_frame, FIRST),
+            (renderer.GetViewProps(), "ModifiedEvent", self._check_actor, 0.0),
         ]
         self._observed = [
             (subject, subject.AddObserver(event, weak_callback(method), priority))
@@ -184,7 +180,9 @@ class FlowHandle(AppearanceAttributes):
         tiles that it needs.
         """
         self._surface.load_in_background(notify)
-        self._structure.load_in_background(notify)
+        self._notify = notify
+        for overlay in self._overlays.values():
+            overlay.notify = notify
 
     @property
     def mesh(self) -> pv.PolyData:
@@ -203,7 +201,7 @@ class FlowHandle(AppearanceAttributes):
     @property
     def busy(self) -> bool:
         """Whether tiles or the structure of the last picture are still being computed."""
-        return self._surface.busy or self._structure.busy
+        return self._surface.busy or any(each.busy for each in self._overlays.values())
 
     def set_surface(self, mesh: Any, **options: Any) -> None:
         """Draw the flow on another surface, such as a cutting plane that has moved.
@@ -255,10 +253,7 @@ class FlowHandle(AppearanceAttributes):
         self._end()
         self._surface.show(textures, scene.pyramid, scene.moment)
         self._surface.set_moment(*scene.moment)
-        if self._map is not None:
-            self._map.close()
-        self._map = self._map_of(scene)
-        self._structure.show(scene)
+        self._show_overlays(MapOverlay, StructureOverlay)
         self._show_appearance("lighting")
         self._show_colours()
         self._show_bar()
@@ -267,10 +262,14 @@ class FlowHandle(AppearanceAttributes):
         if render:
             self._draw()
 
-    def _map_of(self, scene: Scene) -> MapOverlay | None:
-        if scene.field.projection is None:
-            return None
-        return MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
+    def _show_overlays(self, *kinds: type[Overlay]) -> None:
+        """Draw what lies above and below the flow, where the scene has any."""
+        for kind in kinds:
+            if (overlay := self._overlays.get(kind)) is not None:
+                overlay.show(self.scene)
+            elif kind.is_needed(self.scene):
+                place = self.actor, self._renderer, self.scene, self._surface
+                self._overlays[kind] = kind(*place, self._notify)
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
@@ -288,9 +287,8 @@ class FlowHandle(AppearanceAttributes):
             subject.RemoveObserver(tag)
         self._end()
         self.scene.close()
-        if self._map is not None:
-            self._map.close()
-        self._structure.close()
+        for overlay in self._overlays.values():
+            overlay.close()
         self._surface.close()
         self.bar.remove()
         plotter.remove_actor(self.actor, render=False)
@@ -309,7 +307,7 @@ class FlowHandle(AppearanceAttributes):
             self.remove(render=False)
 
     def _changed(self, affects: Change) -> None:
-        self._structure.show(self.scene)
+        self._show_overlays(StructureOverlay)
         if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
             if not self.field.steady and self._shown_time != self.scene.time:
                 self._shown_time = self.scene.time
@@ -319,8 +317,7 @@ class FlowHandle(AppearanceAttributes):
             self._show_appearance()
         else:
             self._surface.set_textures(self.scene.textures, self.scene.pyramid)
-            if self._map is not None:
-                self._map.show(self.scene)
+            self._show_overlays(MapOverlay)
         self._draw()
 
     def _show_appearance(self, *anew: str) -> None:
@@ -343,9 +340,8 @@ class FlowHandle(AppearanceAttributes):
             theme_lighting = pv.global_theme.lighting_params
             for name, value in LIGHT.items():
                 setattr(prop, name, value if is_lit else getattr(theme_lighting, name))
-        on_map = ("coastlines", "graticule", "land", "lighting", "opacity")
-        if self._map is not None and differs(*on_map):
-            self._map.show(self.scene)
+        if old is not None and differs("coastlines", "graticule", "land", "lighting", "opacity"):
+            self._show_overlays(MapOverlay)
         if differs("color"):
             prop.color = new.color
         if differs("scalars", "cmap", "log_scale", "norm", *COLOURS):

@@ -37,6 +37,7 @@ from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.layer import insert_text, plain_actor, weak_callback
 from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
+from flowtex.textures.tiles.structure import STRUCTURE
 
 #: How much farther than the surface land is, as a share of the distance.
 LAND_FARTHER = 2e-4
@@ -77,15 +78,29 @@ class Overlay:
     The ``surface`` has the number of pixels for one of the settings.
     """
 
+    busy = False  #: Whether something is still to be found.
+
     def __init__(
-        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+        self,
+        actor: pv.Actor,
+        renderer: pv.Renderer,
+        scene: Scene,
+        surface: FlowSurface,
+        notify: Callable[[], None] | None = None,
     ) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
+        #: Called in a thread when something is found; without it drawing waits.
+        self.notify = notify
         self._parts: list[Part] = []
         callback = weak_callback(self._before_frame)
         self._observed = renderer.AddObserver("StartEvent", callback, LAST)
         self.show(scene)
+
+    @staticmethod
+    def is_needed(scene: Scene) -> bool:
+        """Return whether a scene has anything to draw."""
+        raise NotImplementedError
 
     def show(self, scene: Scene) -> None:
         """Follow the appearance, the settings and the time of a scene."""
@@ -194,12 +209,20 @@ class MapOverlay(Overlay):
     _field: Any = None  #: Of which the lines were made.
     _radius: float | None = None
 
+    @staticmethod
+    def is_needed(scene: Scene) -> bool:
+        """Return whether a field is on a map or the globe."""
+        return scene.field.projection is not None
+
     def show(self, scene: Scene) -> None:
         """Follow the appearance, and the coarsest level of a large field."""
         if self._field is not scene.whole:
             self._field = scene.whole
             self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._clear()
+        if not self.is_needed(scene):
+            self._radius = None
+            return
         self._scene, self._radius, appearance = scene, None, scene.appearance
         if appearance.land is not None:
             self._add_land(appearance.land)
@@ -285,16 +308,16 @@ class StructureOverlay(Overlay):
     """The structure of one flow, as the settings request it."""
 
     _shown: tuple[object, ...] = ()
-    _notify: Callable[[], None] | None = None
     _request: tuple[object, ...] = ()
     _found: Future[None] | None = None
 
-    def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Show the structure when it is found, and notify from a thread; else a change waits."""
-        self._notify = notify
+    @staticmethod
+    def is_needed(scene: Scene) -> bool:
+        """Return whether the settings request any of it."""
+        return any(getattr(scene.settings, name) for name in STRUCTURE)
 
     @property
-    def busy(self) -> bool:
+    def busy(self) -> bool:  # type: ignore[override]
         """Whether something is still to be found."""
         return self._found is not None and not self._found.done()
 
@@ -331,9 +354,9 @@ class StructureOverlay(Overlay):
         """Draw the requested structure, or find it in the background first."""
         scene, settings = self._scene, self._scene.settings
         request = (scene.step, settings.critical_points, settings.separatrices)
-        if any(request[1:]) and self._notify is not None and not scene.structure.has(*request):
+        if any(request[1:]) and self.notify is not None and not scene.structure.has(*request):
             if self._request != (scene.structure, request):
-                self._request, notify = (scene.structure, request), self._notify
+                self._request, notify = (scene.structure, request), self.notify
                 self._found = _pool.submit(scene.structure.find, *request)
                 self._found.add_done_callback(lambda _: notify())
             return

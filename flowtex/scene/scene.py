@@ -96,7 +96,7 @@ class Scene:
         self._textures: TextureSet | None = None
         self._version = 0  # of the textures
         self._changed = Signal()
-        self._time = float(field.times[0])
+        self._show_time(float(field.times[0]))
         self._end = self.settings.observe(self._setting_changed)
 
     @classmethod
@@ -278,13 +278,13 @@ class Scene:
             if value != self._time:
                 notify(f"time is {value!r}, but the field is steady: it is the same at all times")
             return
-        self._time = time_within(self.field.start, self.field.times, value)
+        self._show_time(time_within(self.field.start, self.field.times, value))
         self._changed.emit("uniform")
 
-    @property
-    def moment(self) -> tuple[int, int, float]:
-        """The two time steps around the time that is shown, and how far it is between them."""
-        return steps_around(self.field.times, self._time)
+    def _show_time(self, time: float) -> None:
+        self._time = time
+        #: The two time steps around the time that is shown, and how far it is between them.
+        self.moment = steps_around(self.field.times, time)
 
     @property
     def step(self) -> int:
@@ -387,7 +387,8 @@ class Scene:
         """Return an independent scene that shows the same, for a thread."""
         scene = Scene(self.field)
         scene.settings, scene._appearance = self.settings.copy(), self.appearance
-        scene.image, scene._noise, scene._time = self.image, self._noise, self._time
+        scene.image, scene._noise = self.image, self._noise
+        scene._show_time(self._time)
         scene._sliced, scene._pyramid, scene._kept = self._sliced, self._pyramid, self._kept
         scene._store, scene._textures = self.store, self.textures
         return scene
@@ -404,7 +405,8 @@ class Scene:
         limits = {"clim": (scale.low, scale.high)} if scale.norm is None else {"norm": scale.norm}
         scene._appearance = look if look.scalar_name is None else replace(look, **limits)
         scene.settings, scene.image = self.settings.copy(), self.image
-        scene._noise, scene._time = self._noise, self._time
+        scene._noise = self._noise
+        scene._show_time(self._time)
         parameter, lines = self.settings.parameter, self.lines
         compose = field.steady or lines == "streamlines"
         scene._store = _coarse_stores.get(
@@ -425,7 +427,7 @@ class Scene:
         if own is None:
             ranges = {(name, robust): ends for (name, robust, _), ends in self._ranges.items()}
             scene._kept = {**ranges, **self._kept}
-        scene._time = min(max(self._time, scene._time), float(field.times[-1]))
+        scene._show_time(min(max(self._time, scene._time), float(field.times[-1])))
         return scene
 
     def follow(self, before: Scene) -> None:

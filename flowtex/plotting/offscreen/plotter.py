@@ -142,8 +142,6 @@ class OffscreenPlotter:
 
     def close(self) -> None:
         """Free the graphics card."""
-        for handle in self.handles:
-            handle.remove(render=False)
         self._plotter.close()
 
 
