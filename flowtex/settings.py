@@ -43,8 +43,10 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
 }
 #: Labels that are not the name.
 LABELS = {"lod": "Level of detail"}
-#: Widest range of a slider, and steps of one, at most.
-SLIDER_RANGE, SLIDER_STEPS = 500, 400
+#: Widest range of a slider.
+SLIDER_RANGE = 500
+#: Most steps of a slider.
+SLIDER_STEPS = 400
 #: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
 LOGARITHMIC_RATIO = 60
 #: Words for the two values of a switch; the first two are used for output.

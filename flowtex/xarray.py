@@ -43,8 +43,10 @@ if TYPE_CHECKING:
 
 __all__ = ["FlowtexAccessor"]
 
-#: Height of a panel in inches, and its width over that.
-PANEL_SIZE, PANEL_ASPECT = 3.0, 1.6
+#: Height of a panel in inches.
+PANEL_SIZE = 3.0
+#: Width of a panel over its height.
+PANEL_ASPECT = 1.6
 
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]

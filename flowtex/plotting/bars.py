@@ -42,14 +42,24 @@ BY_HAND = (
 BEHIND = ("fill", "background_color", "color")
 #: Arguments of a bar that PyVista has made: it keeps its place and its labels.
 AS_IT_IS = {"position_x": None, "n_labels": None}
-#: Height of the text: a share of the view's, within limits in points; a title's is larger.
-TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 40, 10, 18, 1.15
-#: Height of a bar without its title, as a share of the view's, and at least this many lines.
-HEIGHT_SHARE, LEAST_LINES = 0.45, 5
-#: Lengths in heights of the text: the width of the colours, and the room around texts.
-THICKNESS, TEXT_PAD = 1.6, 0.4
-#: Colours by which maps are compared, and the difference of bytes up to which they are one.
-COMPARED, SAME_BYTES = 64, 4
+#: Height of the text as a share of the view's.
+TEXT_SHARE = 1 / 40
+#: Limits of the height of the text, in points.
+TEXT_POINTS = (10, 18)
+#: Height of a title over that of the text.
+TITLE_SHARE = 1.15
+#: Height of a bar without its title, as a share of the view's.
+HEIGHT_SHARE = 0.45
+#: Least height of a bar without its title, in lines of text.
+LEAST_LINES = 5
+#: Width of the colours, in heights of the text.
+THICKNESS = 1.6
+#: Room around texts, in heights of the text.
+TEXT_PAD = 0.4
+#: Number of colours by which maps are compared.
+COMPARED = 64
+#: Difference of bytes up to which two colours are one.
+SAME_BYTES = 4
 #: Points in an inch.
 POINTS = 72
 #: Bars that are drawn here, with the arguments of users, and renderers that have some.
@@ -209,7 +219,7 @@ def _arrange(renderer: Any) -> None:
         labels = _write_labels(bar, renderer.GetBackground(), options)
         if any(name in options for name in BY_HAND):
             continue
-        points = min(max(height * TEXT_SHARE * POINTS / dpi, LEAST_TEXT), MOST_TEXT)
+        points = float(np.clip(height * TEXT_SHARE * POINTS / dpi, *TEXT_POINTS))
         wide, high, title = _fit(bar, labels, points, (width, height), dpi)
         line = points * dpi / POINTS
         gap = TEXT_PAD * line

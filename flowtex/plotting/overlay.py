@@ -68,8 +68,10 @@ ABOVE_SHARE = 0.2
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
 LAST = -1.0
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
-#: Point arrays of a line's mesh, by the names of the shader's attributes.
-OTHER, SIDE = "flowtexOther", "flowtexSide"
+#: Point array of a line's mesh with the other end of the piece, as the shader names it.
+OTHER = "flowtexOther"
+#: Point array with the side of the line.
+SIDE = "flowtexSide"
 
 
 class Overlay:

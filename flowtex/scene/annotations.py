@@ -34,18 +34,32 @@ from flowtex.rendering.webgl.marks import (
 )
 from flowtex.scene.scene import Scene
 
-#: Height of the text: a share of the picture's height, or of a width that goes with it.
-TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
-#: Heights of the text in a small picture, and its share of that picture's height.
-SMALL_TEXT_PX, SMALL_TEXT_SHARE = (9, 11), 1 / 13
-#: Share of a small picture's height that plates take at most, and of their gaps and padding there.
-MOST_STRIPS, CLOSER = 0.55, 0.5
+#: Height of the text as a share of the picture's height.
+TEXT_SHARE = 1 / 30
+#: Ratio of width to height beyond which a lower picture does not have smaller text.
+WIDEST_ASPECT = 1.6
+#: Limits of the height of the text in a small picture.
+SMALL_TEXT_PX = (9, 11)
+#: Height of the text as a share of a small picture's height.
+SMALL_TEXT_SHARE = 1 / 13
+#: Share of a small picture's height that plates take at most.
+MOST_STRIPS = 0.55
+#: Factor of gaps and padding in a small picture.
+CLOSER = 0.5
 #: Share of the picture that a plate covers at most.
 MOST_COVER = 0.125
 #: Greatest share of the picture's width that a scale bar has.
 SCALE_BAR_WIDTH = 0.2
-#: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
-PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
+#: Room around the text, in heights of the text, as the lengths below.
+PADDING = 0.4
+#: Room between plates.
+GAP = 0.6
+#: Least width of the colours of a legend.
+RAMP_WIDTH = 9.0
+#: Height of the colours of a legend.
+RAMP_HEIGHT = 0.65
+#: Width of thin lines.
+LINE = 0.1
 #: How opaque a plate is.
 OPACITY = 0.8
 #: Length of ticks in pixels.
@@ -57,9 +71,12 @@ TIME_WIDTH = 0.4
 #: Widest legend with all of its values, as a share of the width of the picture.
 LEGEND_WIDTH = 0.6
 METRES_PER_KM = 1000
-#: Diameter of a dot in a legend and height of a line there, in lines of text, and how much larger
-#: they are drawn to be smooth.
-DOT_SHARE, LINE_SHARE, SMOOTH = 0.6, 0.3, 4
+#: Diameter of a dot in a legend, in lines of text.
+DOT_SHARE = 0.6
+#: Height of a line in a legend, in lines of text.
+LINE_SHARE = 0.3
+#: Factor by which they are drawn larger to be smooth.
+SMOOTH = 4
 
 
 @dataclass(frozen=True)

@@ -32,8 +32,10 @@ from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 DERIVED_FACTOR = 4
 #: Memory of fields and traces that are kept after a picture.
 KEPT_BYTES = 500_000_000
-#: Name of an array that is given as scalars, as in PyVista, and of the attribute that keeps it.
-DATA, ARRAY = "Data", "_array"
+#: Name of an array that is given as scalars, as in PyVista.
+DATA = "Data"
+#: Attribute of :class:`FieldOptions` that keeps it.
+ARRAY = "_array"
 
 _fields: WeakCache[FlowField] = WeakCache()
 #: Attributes that are compared as texts, or not at all.

@@ -57,8 +57,10 @@ AXES = ("ticks", "scale", "none")
 
 #: Values of ``n_colors``.
 COUNT = f"a whole number from 1 to {NORM_ENTRIES:,}"
-#: The scalar that every flow has, and the range of colours without outliers.
-SPEED, ROBUST = "speed", "robust"
+#: The scalar that every flow has.
+SPEED = "speed"
+#: The range of colours without outliers.
+ROBUST = "robust"
 #: Arguments that are true or false.
 SWITCHES = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
 #: Lines of the Earth that are drawn or not.

@@ -188,21 +188,6 @@ def test_all_goes_with_the_flow(plotter: Any) -> None:
     np.testing.assert_array_equal(shot(plotter), empty)
 
 
-def test_a_line_along_nodes_is_not_torn() -> None:
-    # Its points lie on corners of cells, exactly as far from their middles as they reach.
-    pytest.importorskip("pyproj")
-    lon, lat = np.meshgrid(np.linspace(-82, -46, 217), np.linspace(28, 46, 109))
-    projection = Projection("platecarree", (-64.0, 37.0))
-    east = np.ones(lon.shape)
-    field = flowtex.FlowField.from_arrays(
-        projection.positions(lon, lat),
-        projection.vectors(lon, lat, east, east),
-        projection=projection,
-    )
-    lines = map_lines(field, has_globe=False)["graticule"]
-    assert len(lines.starts) - 1 == 8  # four meridians and four parallels
-
-
 def test_the_globe_below_comes_through_nowhere() -> None:
     """However coarse the triangles are that a view takes of a fine mesh."""
     projection = Projection("globe")

@@ -219,15 +219,6 @@ def test_each_doubling_of_the_pixel_is_a_level() -> None:
     assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
 
 
-def test_a_fine_screen_shows_the_same() -> None:
-    view = view_of(wind(), samples=5)
-    one = probe(view, (20.3, 30.4), pixel=0.1)
-    fine = probe(view, (20.3, 30.4), pixel=0.05, density=2.0)
-    assert fine.pixel == pytest.approx(0.05)
-    for name in ("level", "grain", "step", "value"):
-        assert getattr(fine, name) == pytest.approx(getattr(one, name), abs=1e-6), name
-
-
 def test_an_image_is_looked_up_where_the_slices_lead() -> None:
     """Figure 2 of the paper: the slice at (i, j) gives (a, b), and the image there is met."""
     view = view_of(gyre(), **LAID, lod=False, samples=9)
@@ -257,13 +248,6 @@ def test_a_picture_is_met_in_its_colours() -> None:
     assert got.noise == pytest.approx(np.tile([1.0, 0.0, 0.0, 1.0], (len(got.lags), 1)))
     assert got.value == pytest.approx([1, 0, 0, 1])
     assert got.gain == pytest.approx(1)
-
-
-def test_streaming_moves_with_the_clock() -> None:
-    view = view_of(gyre(), motion="uniform", speed=200.0, period=2.0)
-    one, later, round_ = (probe(view, (14, 33), pixel=0.01, clock=c).value for c in (0, 0.3, 2.0))
-    assert later != pytest.approx(one, abs=1e-3)
-    assert round_ == pytest.approx(one)
 
 
 # --- ends, seams and faults -------------------------------------------------------------------

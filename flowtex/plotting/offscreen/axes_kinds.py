@@ -29,14 +29,20 @@ DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
 TICKS = (90, 60, *STEPS)
 #: Share of the ticks for which matplotlib sees room, where they are longitudes.
 WIDE = 0.85
-#: Places along a border of axes, and inwards from it, where longitude and latitude are looked up.
-ALONG, INWARDS = 241, 33
+#: Places along a border of axes where longitude and latitude are looked up.
+ALONG = 241
+#: Places inwards from the border, of which the first on the map counts.
+INWARDS = 33
 #: Share of the axes within which a place maps back to where it was looked up.
 NEAR = 1e-3
-#: Relative step of the derivative of a scale, and least step over the range of the axis.
-STEP, LEAST_STEP = 1e-6, 1e-12
-#: Scales that matplotlib clips: the logarithm of values that are not positive is -1000.
-CLIPPED, BEYOND = ("log", "logit"), 999.0
+#: Relative step of the derivative of a scale.
+STEP = 1e-6
+#: Least step of the derivative, over the range of the axis.
+LEAST_STEP = 1e-12
+#: Scales that matplotlib clips.
+CLIPPED = ("log", "logit")
+#: Scaled values that are clipped: the logarithm of values that are not positive is -1000.
+BEYOND = 999.0
 #: Steps in which y is stretched against x, in powers of two.
 STRETCH_STEP = 0.5
 

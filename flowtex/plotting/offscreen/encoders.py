@@ -36,14 +36,20 @@ DEFAULT_QUALITY = 80
 LONGEST_SIDE_PIXELS = 16_384
 #: Pixels of a picture at the highest level of H.264.
 MP4_MAX_PIXELS = 139_264 * 256
-#: Numbers of ITU-T H.273: matrix and primaries of BT.709, curve of sRGB, range from 16 to 235.
-BT709, SRGB_CURVE, LIMITED = 1, 13, 1
+#: Matrix and primaries of BT.709, a number of ITU-T H.273 as those below.
+BT709 = 1
+#: Curve of sRGB.
+SRGB_CURVE = 13
+#: Range from 16 to 235.
+LIMITED = 1
 #: Pixels of all the pictures of a movie by Pillow, at most.
 PILLOW_MAX_PIXELS = 1_000_000_000
 #: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
 GIF_MAX_FPS = 50.0
-#: Pictures of which a palette is made, and about how many pixels of each along a side.
-PALETTE_PICTURES, PALETTE_SIDE = 8, 256
+#: Pictures of which a palette is made.
+PALETTE_PICTURES = 8
+#: About how many pixels of each of them along a side.
+PALETTE_SIDE = 256
 
 
 class MovieError(FieldError):

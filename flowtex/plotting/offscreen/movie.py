@@ -37,12 +37,16 @@ from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
 from flowtex.settings import TABLE, Settings
 
-#: Seconds for one run through the times of a field: so many for each step, within limits.
-STEP_S, SHORTEST_RUN_S, LONGEST_RUN_S = 0.25, 5.0, 30.0
+#: Seconds for each step of a run through the times of a field.
+STEP_S = 0.25
+#: Limits of the seconds of a whole run.
+RUN_S = (5.0, 30.0)
 #: Fewest frames that show in which direction the flow goes.
 LEAST_FRAMES = 4
-#: Frames of a movie and frames in a second, at most.
-MAX_FRAMES, MAX_FPS = 36_000, 120.0
+#: Most frames of a movie.
+MAX_FRAMES = 36_000
+#: Most frames in a second.
+MAX_FPS = 120.0
 #: Velocities that differ by less than this share of the fastest are the same.
 SAME_SHARE = 1e-6
 
@@ -118,7 +122,7 @@ def frame_times(
 
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
     if seconds is None:
-        run = min(max(STEP_S * (len(field.times) - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
+        run = float(np.clip(STEP_S * (len(field.times) - 1), *RUN_S))
         return settings.period if field.steady else run
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf

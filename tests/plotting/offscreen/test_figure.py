@@ -50,7 +50,6 @@ def edge_of(line: Any, low: float, high: float, crossing: int = 0) -> float:
         ((0, 1), {"margin": 0, "size": (400, 200)}),
         ((0, 2), {"size": (333, 251)}),
         ((1, 2), {"zoom": 5.0, "focus": None, "size": (300, 300)}),
-        ((0, 1), {"margin": 0.2, "size": (200, 400)}),
     ],
 )
 def test_an_extent_puts_an_edge_where_it_is(axes: tuple[int, int], options: dict[str, Any]) -> None:
@@ -66,13 +65,6 @@ def test_an_extent_puts_an_edge_where_it_is(axes: tuple[int, int], options: dict
     pixel = (right - left) / width
     assert edge_of(picture[row], left, right) == pytest.approx(EDGE_X, abs=0.5 * pixel)
     assert edge_of(picture[:, column], top, bottom, -1) == pytest.approx(EDGE_Y, abs=0.5 * pixel)
-
-
-def test_without_a_margin_the_surface_fills_the_picture() -> None:
-    field = edge()
-    assert flowtex.extent(field, margin=0, size=(400, 200)) == pytest.approx((-1, 3, 10, 12))
-    picture = flowtex.render(field, margin=0, size=(400, 200), background="red", **PLAIN)
-    assert (picture[..., 0] == picture[..., 1]).all()
 
 
 # --- axes ---------------------------------------------------------------------------------------

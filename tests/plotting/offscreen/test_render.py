@@ -7,7 +7,6 @@ import importlib
 import os
 import warnings
 import weakref
-from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -82,26 +81,6 @@ def thinned(dataset: Any) -> Any:
     lines = ("longitude", "latitude", "lon", "lat")
     few = {"time": slice(2), **{name: slice(None, None, 6) for name in lines}}
     return dataset.isel(few, missing_dims="ignore")
-
-
-@pytest.mark.usefixtures("opengl")
-@pytest.mark.parametrize("make", [examples.weather, examples.ocean])
-def test_a_dataset_is_traced_once_until_its_values_change(
-    make: Callable[[], Any], traced: list[int]
-) -> None:
-    pytest.importorskip("xarray")
-    dataset = thinned(make())
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DatasetNotice)
-        first = flowtex.render(dataset, **SMALL)
-        count = len(traced)
-        gc.collect()
-        assert np.array_equal(first, flowtex.render(dataset.copy(), **SMALL))
-        assert len(traced) == count
-        for values in dataset.data_vars.values():
-            values.values *= np.linspace(-1, 1, values.shape[-1])  # in place
-        assert not np.array_equal(first, flowtex.render(dataset, **SMALL))
-    assert len(traced) > count
 
 
 @pytest.mark.usefixtures("opengl")
