@@ -7,8 +7,6 @@ background, not a border of a dozen pixels, and not where the flow nearly stands
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -18,10 +16,6 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 
 #: Standard deviation in pixels of the window in which streaks are told from noise.
 WINDOW = 4.0
-#: Pixels over which the picture's own shades are taken out before grains are measured.
-SHADES = 20.0
-#: Pixels within which grey values agree by half.
-FARTHEST = 60
 
 
 def grey(image: AnyArray) -> Floats:
@@ -45,50 +39,6 @@ def streaks(image: AnyArray, u: Floats, v: Floats, mask: Bools) -> dict[str, flo
         "angle": float(np.degrees(off[mask]).mean()),
         "coherence": float(coherence[mask].mean()),
     }
-
-
-def grain(image: AnyArray, u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
-    """Distance in pixels, along the flow and across it, at which grey values agree by half.
-
-    The way along the flow turns with it: on a straight line a bent streak would count as a shorter
-    one.
-    """
-    g = grey(image)
-    g = g - gaussian_filter(g, SHADES)
-    rows, columns = np.nonzero(mask)
-    pick = np.random.default_rng(0).integers(0, len(rows), 20_000)
-    start = np.stack([rows[pick], columns[pick]]).astype(float)
-    flow = np.stack([-v, u]) / np.maximum(np.hypot(u, v), 1e-12)
-    here = flow[:, rows[pick], columns[pick]]
-    across = np.stack([here[1], -here[0]])
-    return {
-        "along": _half(g, start, _streamlines(flow, start)),
-        "across": _half(g, start, (start + n * across for n in itertools.count(1))),
-    }
-
-
-def _streamlines(flow: Floats, at: Floats) -> Iterator[Floats]:
-    """Give positions (2, n) a pixel farther each time, by two steps of the midpoint rule."""
-
-    def direction(place: Floats) -> Floats:
-        return np.stack([map_coordinates(part, place, order=1, mode="nearest") for part in flow])
-
-    while True:
-        for _ in range(2):
-            at = at + direction(at + direction(at) / 4) / 2
-        yield at
-
-
-def _half(g: Floats, start: Floats, places: Iterator[Floats]) -> float:
-    here = map_coordinates(g, start, order=1)
-    before = 1.0
-    for distance, at in enumerate(itertools.islice(places, FARTHEST), start=1):
-        there = map_coordinates(g, at, order=1, mode="nearest")
-        now = float((here * there).mean() / (here * here).mean())
-        if now < 0.5:
-            return distance - (0.5 - now) / (before - now)
-        before = now
-    return float(FARTHEST)
 
 
 def carried(

@@ -48,7 +48,7 @@ _GZIP_WINDOW = 31
 
 
 @dataclass(frozen=True)
-class _Piece:
+class _Kept:
     buffer: Buffer | None
 
     @property
@@ -64,7 +64,7 @@ class Objects(WrapperStore[Store]):
 
     def __init__(self, store: Store) -> None:
         super().__init__(store)
-        self._kept: ByteCache[tuple[str, str], _Piece] = ByteCache(CACHE_BYTES)
+        self._kept: ByteCache[tuple[str, str], _Kept] = ByteCache(CACHE_BYTES)
         self._gates = weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock]()
         self._reads = asyncio.Semaphore(MOST_READS)
 
@@ -79,7 +79,7 @@ class Objects(WrapperStore[Store]):
         async with gate:
             piece = self._kept.peek(name)
             if piece is None:
-                piece = _Piece(await self._read(key, prototype, byte_range))
+                piece = _Kept(await self._read(key, prototype, byte_range))
                 self._kept.put(name, piece)
             return piece.buffer
 
