@@ -49,8 +49,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 Index = tuple[int | slice, ...]
-#: Metadata of an array that determine the meaning of its bytes.
-FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
 #: Seconds between checks whether the surrounding work was cancelled.
 LOOK_INTERVAL_S = 0.1
 #: Most characters of an error of another library that a message repeats.
@@ -97,23 +95,25 @@ class Levels:
             ) from None
         #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
-        self._arrays: dict[str, AsyncArray[ArrayV3Metadata]] = {}
-        self._expected: dict[str, dict[str, dict[str, Any]]] = {}
+        self._arrays: dict[str, dict[str, AsyncArray[ArrayV3Metadata]]] = {}
         self._lock = threading.Lock()
 
-    def _format(self, name: str) -> dict[str, Any]:
-        """Return the format that an array must have: that of one made for the same pyramid."""
+    def _array(self, name: str) -> AsyncArray[ArrayV3Metadata]:
+        """Return an array of Zarr's, with the metadata of one that is made for the same pyramid."""
+        from flowtex.pyramid.objects import bounded
+
         top = name.partition("/")[0]
         with self._lock:
-            if top not in self._expected:
+            if top not in self._arrays:
                 group = described(self.about, [] if top == SAMPLES else [int(top)])
                 if top == SAMPLES:
                     create_samples(group, self.about)
-                members = group.members(max_depth=None)
-                self._expected[top] = {n: _format_of(a) for n, a in members if hasattr(a, "dtype")}
-            if name not in self._expected[top]:
-                raise PyramidError(f"{self.place} has no {name}; build it again")
-            return self._expected[top][name]
+                self._arrays[top] = {
+                    path: bounded(array.metadata, self._objects, path)
+                    for path, array in group.members(max_depth=None)
+                    if hasattr(array, "dtype")
+                }
+            return self._arrays[top][name]
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
@@ -276,8 +276,8 @@ class Levels:
 
     def _read(self, *pieces: _Piece) -> list[AnyArray]:
         """Read parts of arrays, all at once."""
-        formats = [self._format(piece.array) for piece in pieces]
-        need, free = sum(map(_size, pieces, formats)), available_bytes()
+        arrays = [self._array(piece.array) for piece in pieces]
+        need, free = sum(map(_size, pieces, arrays)), available_bytes()
         if need > free:
             raise PyramidError(
                 f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
@@ -285,14 +285,13 @@ class Levels:
             )
 
         async def together() -> list[AnyArray]:
-            return await asyncio.gather(*map(self._values, pieces, formats))
+            return await asyncio.gather(*map(self._values, pieces, arrays))
 
         values: list[AnyArray] = _wait(together())
         return values
 
-    async def _values(self, piece: _Piece, expected: dict[str, Any]) -> AnyArray:
+    async def _values(self, piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> AnyArray:
         try:
-            array = await self._opened(piece.array, expected)
             if piece.lines is None:
                 return np.asarray(await array.getitem(piece.selection))
             lines = map(as_slice, piece.lines)
@@ -304,21 +303,6 @@ class Levels:
         except Exception as error:
             raise self._error(piece.name, error) from None
 
-    async def _opened(self, name: str, expected: dict[str, Any]) -> AsyncArray[ArrayV3Metadata]:
-        """Return an array of Zarr's; its format, the meaning of its bytes, must be the one here."""
-        if name not in self._arrays:
-            open_array = import_extra("zarr.api.asynchronous", "store").open_array
-            array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
-            if _format_of(array) != expected:
-                raise DamageError(
-                    f"{name} of {self.place} has changed since it was written; build the store "
-                    "again"
-                )
-            from flowtex.pyramid.objects import bounded
-
-            self._arrays[name] = bounded(array)
-        return self._arrays[name]
-
     def _error(self, name: str, error: Exception) -> PyramidError:
         unread = isinstance(error, MemoryError) or (
             isinstance(error, ReadFault) and not error.missing
@@ -327,9 +311,9 @@ class Levels:
         return kind(f"{name} of {self.place} cannot be read: {_error_text(error)}")
 
 
-def _size(piece: _Piece, expected: dict[str, Any]) -> int:
+def _size(piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> int:
     """Return the bytes that a piece of an array takes in memory."""
-    shape, selection = expected["shape"], piece.selection
+    shape, selection = array.shape, piece.selection
     if piece.lines is not None:
         shape = (*map(len, piece.lines), *shape[len(selection) + 2 :])
     else:
@@ -351,11 +335,6 @@ def _error_text(error: Exception) -> str:
         return "checksum mismatch: the object is corrupt"
     is_plain = isinstance(error, (ReadFault, PyramidError))
     return text if is_plain else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
-
-
-def _format_of(array: Any) -> dict[str, Any]:
-    metadata = array.metadata.to_dict()
-    return {name: metadata[name] for name in FORMAT_NAMES}
 
 
 def _wait(reading: Coroutine[Any, Any, T]) -> T:

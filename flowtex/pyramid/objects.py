@@ -24,7 +24,7 @@ from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
 from zarr.core.array_spec import ArraySpec
 from zarr.core.buffer import Buffer, BufferPrototype, default_buffer_prototype
 from zarr.core.metadata import ArrayV3Metadata
-from zarr.storage import WrapperStore
+from zarr.storage import StorePath, WrapperStore
 
 from flowtex._util.cache import ByteCache
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
@@ -184,7 +184,7 @@ class _BoundedBlosc(BloscCodec):
         return await super()._decode_single(chunk_bytes, chunk_spec)
 
 
-def bounded(array: AsyncArray[ArrayV3Metadata]) -> AsyncArray[ArrayV3Metadata]:
+def bounded(metadata: ArrayV3Metadata, store: Store, path: str) -> AsyncArray[ArrayV3Metadata]:
     """Return an array of Zarr's whose chunks take no more memory than the array declares."""
 
     def limited(codec: Codec) -> Codec:
@@ -194,5 +194,5 @@ def bounded(array: AsyncArray[ArrayV3Metadata]) -> AsyncArray[ArrayV3Metadata]:
             return _BoundedBlosc(**{name: getattr(codec, name) for name in BLOSC_NAMES})
         return _BoundedGzip(level=codec.level) if isinstance(codec, GzipCodec) else codec
 
-    metadata = replace(array.metadata, codecs=tuple(map(limited, array.metadata.codecs)))
-    return AsyncArray(metadata, array.store_path, array.config)
+    metadata = replace(metadata, codecs=tuple(map(limited, metadata.codecs)))
+    return AsyncArray(metadata, StorePath(store, path))
