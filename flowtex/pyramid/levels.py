@@ -108,9 +108,10 @@ class Levels:
                 group = described(self.about, [] if top == SAMPLES else [int(top)])
                 if top == SAMPLES:
                     create_samples(group, self.about)
+                members: Any = group.members(max_depth=None)
                 self._arrays[top] = {
                     path: bounded(array.metadata, self._objects, path)
-                    for path, array in group.members(max_depth=None)
+                    for path, array in members
                     if hasattr(array, "dtype")
                 }
             return self._arrays[top][name]
