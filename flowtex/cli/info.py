@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal import terminal
@@ -73,10 +74,14 @@ def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
     return table
 
 
-def _pairs(title: str = "") -> Table:
+def _pairs(rows: Mapping[str, str], title: str = "") -> Table:
+    """Return a table of labels and texts, without those that are empty."""
     table = _table("", "")
     table.title, table.title_justify, table.title_style = title or None, "left", "bold"
     table.show_header, table.columns[0].style = False, "dim"
+    for label, text in rows.items():
+        if text:
+            table.add_row(label, text)
     return table
 
 
@@ -84,52 +89,47 @@ def _store_table(place: Path) -> Table:
     from flowtex.pyramid.levels import Levels
 
     about = Levels(place).about
-    table = _pairs()
     rows, columns = about["nodes"]
-    table.add_row("pyramid", f"{columns} × {rows} nodes, {about['depth'] + 1} levels")
-    table.add_row("times", str(len(about["times"])))
-    table.add_row("lines", f"{about['lines']} by {about['parameter']}")
-    table.add_row("scalars", ", ".join(about["scalars"]) or "none")
-    table.add_row("built", "complete" if about.get("complete") else "incomplete; build it again")
-    return table
+    return _pairs(
+        {
+            "pyramid": f"{columns} × {rows} nodes, {about['depth'] + 1} levels",
+            "times": str(len(about["times"])),
+            "lines": f"{about['lines']} by {about['parameter']}",
+            "scalars": ", ".join(about["scalars"]) or "none",
+            "built": "complete" if about.get("complete") else "incomplete; build it again",
+        }
+    )
 
 
 def _recognised_table(paths: list[Path]) -> Table:
-    from flowtex.sources.datasets.read_datasets import recognised
+    from flowtex.sources.datasets.read import recognised
     from flowtex.sources.opening.dataset_files import open_datasets
     from flowtex.sources.reader_errors import errors_of_file
 
-    table = _pairs()
     with errors_of_file(paths[0]):
-        for row in recognised(open_datasets(paths)).items():
-            table.add_row(*row)
-    return table
+        return _pairs(recognised(open_datasets(paths)))
 
 
 def _file_table(summary: FileSummary) -> Table:
-    table = _pairs()
-    size = summary.size.replace(" x ", " × ")
-    table.add_row("grid", f"{summary.grid}{f', {size}' if size else ''}")
-    if summary.cells:
-        table.add_row("cells", ", ".join(f"{n:,} × {name}" for name, n in summary.cells.items()))
-    if summary.bounds:
-        spans = zip("xyz", summary.bounds, strict=True)
-        ends = "; ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, (low, high) in spans)
-        table.add_row("ends", ends)
-    if summary.volume:
-        low, high = summary.bounds[2]
-        table.add_row("cut by", f"--slice z={(low + high) / 2:.4g}, --contour NAME=VALUE")
-    if summary.blanked:
-        table.add_row("blanked", f"{summary.blanked:,} nodes")
-    if summary.blocks:
-        table.add_row("blocks", str(len(summary.blocks)))
-    if summary.times:
-        is_short = len(summary.times) <= MOST_TIMES
-        ends = f"{summary.times[0]:g} to {summary.times[-1]:g}"
-        listed = ", ".join(f"{time:g}" for time in summary.times) if is_short else ends
-        table.add_row("times", f"{len(summary.times)}: {listed}")
-    table.add_row("velocity", ", ".join(summary.candidates) or "none found")
-    return table
+    size, bounds, times = summary.size.replace(" x ", " × "), summary.bounds, summary.times
+    middle = sum(bounds[2]) / 2 if bounds else 0.0
+    ends = [
+        f"{axis} {low:.4g} to {high:.4g}" for axis, (low, high) in zip("xyz", bounds, strict=False)
+    ]
+    listed = ", ".join(f"{time:g}" for time in times)
+    span = f"{times[0]:g} to {times[-1]:g}" if len(times) > MOST_TIMES else listed
+    return _pairs(
+        {
+            "grid": f"{summary.grid}{f', {size}' if size else ''}",
+            "cells": ", ".join(f"{n:,} × {name}" for name, n in summary.cells.items()),
+            "ends": "; ".join(ends),
+            "cut by": f"--slice z={middle:.4g}, --contour NAME=VALUE" if summary.volume else "",
+            "blanked": f"{summary.blanked:,} nodes" if summary.blanked else "",
+            "blocks": str(len(summary.blocks) or ""),
+            "times": f"{len(times)}: {span}" if times else "",
+            "velocity": ", ".join(summary.candidates) or "none found",
+        }
+    )
 
 
 def _block_table(summary: FileSummary) -> Table:
@@ -162,36 +162,36 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.textures.tiles.shared import has_pyramid
     from flowtex.trace.store import changing_share, chosen_lines
 
-    table = _pairs(
-        "What would be drawn by default" if has_pyramid(field) else "What would be drawn"
-    )
-    if field.triangles is None:
-        rows, columns = field.shape
-        table.add_row("nodes", f"{columns} × {rows} (i × j)")
-    else:
-        table.add_row("nodes", f"{field.valid.size:,}")
-        table.add_row("triangles", f"{len(field.triangles):,}")
-    steady = "one, steady"
+    on_grid, (rows, columns) = field.triangles is None, field.shape
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
     if field.start is not None:
         ends = expected_times(field.start, field.times)
-    table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
-    if not field.steady:
-        share = f"{changing_share(field):.0%} of the nodes)"
-        text = f"{chosen_lines(field)} (within a streak, the flow changes by half at {share}"
-        table.add_row("lines", text)
-    if field.triangles is None:
-        closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
-        table.add_row("periodic", " and ".join(sorted(closed)) or "no")
-    table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
-    if field.sign_free:
-        table.add_row("signs", "none: v and -v mean the same")
-    table.add_row("scalars", ", ".join(dict.fromkeys(("speed", *field.scalars, *DERIVED))))
-    shape = "curved" if field.surface.frame is None else "flat"
-    table.add_row(
-        "surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip() + " across"
+    lines = (
+        ""
+        if field.steady
+        else (
+            f"{chosen_lines(field)} (within a streak, the flow changes by half at "
+            f"{changing_share(field):.0%} of the nodes)"
+        )
     )
-    table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
+    closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
+    shape = "curved" if field.surface.frame is None else "flat"
+    extent = f"{field.surface.extent:.4g} {field.length_unit}".rstrip()
+    table = _pairs(
+        {
+            "nodes": f"{columns} × {rows} (i × j)" if on_grid else f"{field.valid.size:,}",
+            "triangles": "" if field.triangles is None else f"{len(field.triangles):,}",
+            "times": "one, steady" if field.steady else f"{len(field.times)}, {ends}",
+            "lines": lines,
+            "periodic": (" and ".join(sorted(closed)) or "no") if on_grid else "",
+            "blanked": f"{int((~field.valid).sum()):,} nodes",
+            "signs": "none: v and -v mean the same" if field.sign_free else "",
+            "scalars": ", ".join(dict.fromkeys(("speed", *field.scalars, *DERIVED))),
+            "surface": f"{shape}, {extent} across",
+            "lost": f"{field.normal_share:.1%} of the flow is normal to the surface",
+        },
+        "What would be drawn by default" if has_pyramid(field) else "What would be drawn",
+    )
     for step in () if has_reading else field.reading:
         table.add_row(step.step, step.text)
     return table
