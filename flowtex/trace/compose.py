@@ -403,17 +403,9 @@ class _Doubling:
             ended = np.flatnonzero(ending)
             ended = ended[np.isinf(lookup.reach[_numbers(selection, ended)])]
             which = _numbers(selection, ended)
-            rest = np.broadcast_to(rest, ending.shape)[ended]
-            self._suspects.append(
-                (
-                    which,
-                    position[:, ended],
-                    piece.covered[ended],
-                    rest,
-                    self._left[which],
-                    self._step[which],
-                )
-            )
+            rest, left = np.broadcast_to(rest, ending.shape)[ended], self._left[which]
+            parts = which, position[:, ended], piece.covered[ended], rest, left, self._step[which]
+            self._suspects.append(parts)
 
     def _find_ends(self) -> None:
         """Find where the suspects end: they leave the domain, or come to rest as all around."""

@@ -161,20 +161,11 @@ def trace(
     composed = lags is None if compose is None else compose
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
+        options: dict[str, Any] = {"two_sided": two_sided, "compose": composed}
+        options |= {"tolerance": tolerance, "progress": progress}
         with _threads() as run:
-            return triangle_slices(
-                field,
-                step_numbers,
-                parameter,
-                lag_values,
-                units,
-                chosen,
-                two_sided=two_sided,
-                tolerance=tolerance,
-                compose=composed,
-                run=run,
-                progress=progress,
-            )
+            parts = step_numbers, parameter, lag_values, units, chosen
+            return triangle_slices(field, *parts, run=run, **options)
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
     whole = field.steady or step_numbers == list(range(len(field.times)))
@@ -227,29 +218,15 @@ def paths(
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
-    direction = 1.0 if forward else -1.0
+    lag_values, number = _checked_lags(lags), field.step_number(step)
+    options = {"direction": 1.0 if forward else -1.0, "tolerance": tolerance}
     if field.triangles is not None:
-        return triangle_paths(
-            field,
-            begin,
-            _checked_lags(lags),
-            step=field.step_number(step),
-            parameter=parameter,
-            direction=direction,
-            tolerance=tolerance,
-        )
-    sampler = _samplers(field, _step_numbers(field, [step]), parameter)[0]
+        return triangle_paths(field, begin, lag_values, step=number, parameter=parameter, **options)
+    sampler = _samplers(field, [number], parameter)[0]
     # Rest is judged by the motion in a unit, which is a cell and not a unit of the mesh.
     unit = float(lag_unit(field, parameter)[field.valid].max(initial=0.0)) or 1.0
-    result = integrate(
-        sampler,
-        begin,
-        _checked_lags(lags) / unit,
-        np.full(len(begin), unit),
-        direction=direction,
-        tolerance=tolerance,
-        within=within,
-    )
+    units = np.full(len(begin), unit)
+    result = integrate(sampler, begin, lag_values / unit, units, within=within, **options)
     return replace(result, reach=result.reach * unit)
 
 
@@ -361,18 +338,8 @@ class _Tracing:
             for direction, flat in sides.items():
                 side = sides[direction] = self._as_grids(flat, direction)
                 if landing is not None and direct < len(self.lags):
-                    compose(
-                        self.field,
-                        self.lags,
-                        self.unit,
-                        side,
-                        direct,
-                        landing,
-                        run,
-                        partial(self._piece, direction),
-                        direction,
-                        self.longest,
-                    )
+                    way = run, partial(self._piece, direction), direction, self.longest
+                    compose(self.field, self.lags, self.unit, side, direct, landing, *way)
         return sides
 
     def _direct_lags(self, landing: Indices) -> int:
@@ -426,15 +393,9 @@ class _Tracing:
         for number in np.unique(step) if len(self.samplers) > 1 else [0]:
             group = step == number if len(self.samplers) > 1 else slice(None)
             start, unit = position[:, group].T.astype(float), lag[group]
-            result = integrate(
-                self.samplers[number],
-                start,
-                np.ones(1),
-                unit,
-                direction=direction,
-                tolerance=self.tolerance,
-                within=within,
-            )
+            sampler, options = self.samplers[number], {"tolerance": self.tolerance}
+            options["direction"] = direction
+            result = integrate(sampler, start, np.ones(1), unit, within=within, **options)
             moved[:, group] = (result.positions[0] - start).T
             covered[group] = np.where(result.interrupted, result.reach, 1.0) * unit
             ends[group] = np.where(result.interrupted, np.inf, result.reach) * unit

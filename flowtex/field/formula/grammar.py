@@ -22,6 +22,11 @@ Tree = float | str | tuple[Any, ...]
 #: Numbers or arrays by name.
 Values = Mapping[str, Any]
 
+#: Functions of one argument that NumPy has under the same name.
+SAME_NAMES = (
+    *("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "log2"),
+    *("log10", "sqrt", "abs", "sign", "floor", "ceil"),
+)
 #: Operations, each with its number of arguments; ``None`` means two or more.
 OPERATIONS: dict[str, tuple[Any, int | None]] = {
     "+": (np.add, None),
@@ -33,26 +38,9 @@ OPERATIONS: dict[str, tuple[Any, int | None]] = {
     "<=": (lambda a, b: np.less_equal(a, b) * 1.0, 2),
     ">=": (lambda a, b: np.greater_equal(a, b) * 1.0, 2),
     "neg": (np.negative, 1),
-    "sin": (np.sin, 1),
-    "cos": (np.cos, 1),
-    "tan": (np.tan, 1),
-    "asin": (np.arcsin, 1),
-    "acos": (np.arccos, 1),
-    "atan": (np.arctan, 1),
-    "atan2": (np.arctan2, 2),
-    "sinh": (np.sinh, 1),
-    "cosh": (np.cosh, 1),
-    "tanh": (np.tanh, 1),
-    "exp": (np.exp, 1),
-    "log": (np.log, 1),
+    **{name: (getattr(np, name), 1) for name in SAME_NAMES},
     "ln": (np.log, 1),
-    "log2": (np.log2, 1),
-    "log10": (np.log10, 1),
-    "sqrt": (np.sqrt, 1),
-    "abs": (np.abs, 1),
-    "sign": (np.sign, 1),
-    "floor": (np.floor, 1),
-    "ceil": (np.ceil, 1),
+    "atan2": (np.arctan2, 2),
     "hypot": (np.hypot, 2),
     "mod": (lambda a, b: a - b * np.floor(np.divide(a, b)), 2),
     "min": (np.minimum, None),
