@@ -66,49 +66,49 @@ class TraitValueError(SettingsError, traitlets.TraitError):
     """A value is refused; traitlets restores the old one after its own errors alone."""
 
 
-class SettingTrait(traitlets.TraitType[Any, Any]):
-    """A setting, checked by its row of the table."""
+class CheckedTrait(traitlets.TraitType[Any, Any]):
+    """A value that ``check`` returns, given the present one and another, or refuses."""
 
-    def __init__(self, row: Setting) -> None:
-        self.row = row
-        super().__init__(row.default, help=row.text)
+    def __init__(
+        self, check: Callable[[Any, Any], Any], default: Any = None, text: str = ""
+    ) -> None:
+        self._check = check
+        super().__init__(default, help=text, allow_none=True)
+        self.tag(sync=True)
 
     def validate(self, obj: traitlets.HasTraits | None, value: Any) -> Any:
-        """Return the value in the setting's own type; raise SettingsError if it is invalid."""
-        return self.row.check(value)
+        """Return the value in its own type."""
+        return self._check(getattr(obj, "_trait_values", {}).get(self.name), value)
 
 
-class CameraTrait(traitlets.TraitType[CameraValues, Any]):
-    """A camera's attributes by name; missing ones keep their values."""
-
-    def validate(self, obj: traitlets.HasTraits | None, value: Any) -> CameraValues:
-        """Return the complete camera as plain numbers; raise CameraError if it is invalid."""
-        present = getattr(obj, "_trait_values", {}).get(self.name)
-        if isinstance(value, Camera):
-            return value.to_dict()
-        return Camera.from_dict(value, Camera(**present) if present else None).to_dict()
+def _camera(present: CameraValues | None, value: Any) -> CameraValues:
+    """Return the complete camera; missing attributes keep their values."""
+    if not isinstance(value, Camera):
+        value = Camera.from_dict(value, Camera(**present) if present else None)
+    values: CameraValues = value.to_dict()
+    return values
 
 
-class SizeTrait(traitlets.TraitType[list[int], Any]):
-    """Width and height in pixels of the page; a width of 0 fills the cell."""
-
-    def validate(self, obj: traitlets.HasTraits | None, value: Any) -> list[int]:
-        """Return both as a list."""
-        try:
-            width, height = (int(n) for n in value)
-        except (TypeError, ValueError):
-            width, height = -1, 0
-        if not (0 <= width <= 16384 and 1 <= height <= 16384):
-            raise FieldError(
-                f"size is {value!r}; expected (width, height) in pixels, or (0, height)"
-            )
-        return [width, height]
+def _size(_: Any, value: Any) -> list[int]:
+    """Return width and height in pixels of the page; a width of 0 fills the cell."""
+    try:
+        width, height = (int(n) for n in value)
+    except (TypeError, ValueError):
+        width, height = -1, 0
+    if not (0 <= width <= 16384 and 1 <= height <= 16384):
+        raise FieldError(f"size is {value!r}; expected (width, height) in pixels, or (0, height)")
+    return [width, height]
 
 
 class SettingTraits(traitlets.HasTraits):
     """One trait for each setting."""
 
-    locals().update({name: SettingTrait(row).tag(sync=True) for name, row in TABLE.items()})
+    locals().update(
+        {
+            name: CheckedTrait(lambda _, value, row=row: row.check(value), row.default, row.text)
+            for name, row in TABLE.items()
+        }
+    )
 
 
 #: Fields of the appearance that can be chosen in the browser.
@@ -203,14 +203,14 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     #: The text of each view's shaders: most of a header, and rarely changed.
     _shaders: Any = traitlets.List([{}, {}]).tag(sync=True)
     _key = traitlets.Unicode().tag(sync=True)
-    camera = CameraTrait().tag(sync=True, echo_update=False)
+    camera = CheckedTrait(_camera).tag(echo_update=False)
     time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     clock = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     playing = traitlets.Bool(default_value=False).tag(sync=True)
     point = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True, echo_update=False)
-    size = SizeTrait().tag(sync=True)
+    size = CheckedTrait(_size)
     bar = traitlets.Bool(default_value=True).tag(sync=True)
-    axes = traitlets.Unicode(allow_none=True, default_value=None).tag(sync=True)
+    axes = CheckedTrait(lambda _, value: ViewOptions(axes=value).axes)
 
     @accepts_options(FieldOptions, Appearance, ViewOptions)
     def __init__(
@@ -363,13 +363,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         if proposal["value"] == "image" and is_made and self.scene.image is None:
             raise TraitValueError(NO_IMAGE)
         return proposal["value"]
-
-    @traitlets.validate("axes")
-    def _check_axes(self, proposal: Any) -> str | None:
-        try:
-            return ViewOptions(axes=proposal["value"]).axes
-        except FieldError as error:
-            raise TraitValueError(str(error)) from error
 
     @traitlets.validate("time")
     def _check_time(self, proposal: Any) -> float:

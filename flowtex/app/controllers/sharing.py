@@ -3,7 +3,7 @@
 A job draws a copy of the viewport a tile at a time, and lets the event loop continue between two
 tiles. Tracing and writing files is done in a thread::
 
-    job = PictureJob(viewport, path, (8000, 6000))
+    job = Job(viewport, path, (8000, 6000))
     task = asyncio.create_task(job.run())  # job.progress, job.cancel()
     await task  # the path, or Stopped
 
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+from PIL import Image
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
@@ -37,12 +38,11 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.encoders import (
     DEFAULT_QUALITY,
-    MovieError,
     MovieWriter,
     check_movie,
     default_fps,
 )
-from flowtex.plotting.offscreen.movie import frame_times
+from flowtex.plotting.offscreen.movie import FrameTimes, frame_times
 from flowtex.scene.annotations import Layout, annotate
 from flowtex.settings import Settings, named_values
 
@@ -61,10 +61,16 @@ LABELS = {
     "out_fps": "the pictures per second",
 }
 
-#: Pixels of a picture, and of a movie, and its longest side, at most.
-MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
-#: Pixels that may be drawn, along a side, for one of the result, and how fine a picture may be.
-MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
+#: Pixels of a picture, at most.
+MOST_PIXELS = 100_000_000
+#: Pixels of a movie, at most.
+MOST_MOVIE_PIXELS = 9_000_000
+#: Longest side of either.
+LONGEST_SIDE_PX = 30_000
+#: Pixels that may be drawn, along a side, for one of the result.
+MOST_SUPERSAMPLING = 4
+#: How fine a picture may be.
+MOST_DENSITY = 8.0
 
 _log = logging.getLogger(__name__)
 
@@ -109,7 +115,7 @@ class Sharing(Controller):
             self.context.complain(error)
             return
         self._job = job
-        if isinstance(job, MovieJob) and job.notice:
+        if job.notice:
             self.context.complain(job.notice)
         self.state.set(out_progress=0.0, out_file=None)
         self._task = asyncio.create_task(self._run(job, self._task))
@@ -134,10 +140,9 @@ class Sharing(Controller):
                 "density": self._number("out_density"),
                 "annotations": bool(get("out_annotations")),
             }
-            if kind == "PNG":
-                return PictureJob(self.viewport, path, size, **options)
-            options |= {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
-            return MovieJob(self.viewport, path, size, **options)
+            if kind != "PNG":
+                options |= {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
+            return Job(self.viewport, path, size, **options)
         except BaseException:
             shutil.rmtree(path.parent, ignore_errors=True)
             raise
@@ -227,13 +232,15 @@ class ExportError(FieldError):
 
 
 class Job:
-    """Base of exports, which draw and write while a page continues, without changing its view.
+    """An export, which draws and writes while a page continues, without changing its view.
 
-    A picture of any size is drawn a tile at a time, through a window as large as a tile.
-    ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
-    and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
-    many pixels, for high-resolution screens and print. Raises an ExportError or a MovieError for
-    invalid arguments.
+    A picture of any size is drawn a tile at a time, through a window as large as a tile. The suffix
+    of the file is the format: a picture as PNG, or a movie, which is a seamless loop of a steady
+    flow, or all times of one that varies; an MP4 gets even sides. ``supersampling`` are the pixels
+    that are drawn, along each side, for one of the result, 1 to 4, and ``density`` those of the
+    result for one that the settings speak of: 2 has grains of twice as many pixels, for
+    high-resolution screens and print. Seconds, fps and quality are those of :func:`flowtex.movie`.
+    Raises an ExportError or a MovieError for invalid arguments.
     """
 
     def __init__(
@@ -245,14 +252,29 @@ class Job:
         supersampling: int = 1,
         density: float = 1.0,
         annotations: bool = False,
+        seconds: float | None = None,
+        fps: float | None = None,
+        quality: int = DEFAULT_QUALITY,
     ) -> None:
-        _check(size, supersampling, density)
         #: The file, how much is done, 0 to 1, and whether it has ended, in whatever way.
         self.path, self.progress, self.done = Path(path), 0.0, False
-        self._viewport, self._size = viewport, size
+        suffix = self.path.suffix.lower()
+        if suffix == ".mp4":
+            size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
+        _check(size, supersampling, density, is_movie=suffix != ".png")
+        self._viewport, self._size, self._quality = viewport, size, quality
         self._supersampling, self._density = supersampling, density
         self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
         self.cancelled = False  #: Whether it was cancelled before it was done.
+        self.notice = ""  #: Why a movie hardly moves; empty where it does.
+        self.frames: FrameTimes | None = None
+        if suffix != ".png":
+            fps = default_fps(path) if fps is None else fps
+            check_movie(path, size, fps, quality)
+            settings = _moving(viewport.handle.settings, viewport.field)
+            self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
+            pixel = viewport.handle.pixel * viewport.size[1] / size[1]
+            self.notice = self.frames.notice(settings, pixel * density)
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
     def cancel(self) -> None:
@@ -261,18 +283,56 @@ class Job:
 
     async def run(self) -> Path:
         """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
-        self._viewport = self._viewport.copy()
+        viewport = self._viewport = self._viewport.copy()
         try:
-            await self._make(self._viewport)
+            if self.frames is None:
+                await self._in_thread(viewport.trace)
+                self._prepare()
+                await self._in_thread(self._write, await self._draw(0.0, 0.9))
+            else:
+                await self._make_movie(viewport, self.frames)
         finally:
             self.done = True
-            self._viewport.close()
+            viewport.close()
             self._pool.shutdown(wait=False)
         self.progress = 1.0
         return self.path
 
-    async def _make(self, viewport: Viewport) -> None:
-        raise NotImplementedError
+    def _write(self, picture: Bytes) -> None:
+        with whole_file(self.path) as file:
+            Image.fromarray(picture).save(file, "PNG")
+            check()
+
+    async def _make_movie(self, viewport: Viewport, frames: FrameTimes) -> None:
+        viewport.set_still(still=False)
+        if viewport.field.steady:
+            motion = _moving(viewport.handle.settings, viewport.field).motion
+            for pane in viewport.panes:
+                pane.settings.update(motion=motion, period=frames.seconds, speed=frames.speed)
+        self._prepare()
+        writer = MovieWriter(self.path, self._size, frames.fps, self._quality)
+        try:
+            writing: asyncio.Future[None] | None = None
+            for n in range(len(frames)):
+                if viewport.field.steady:
+                    viewport.clock = frames.clocks[n]
+                else:
+                    await self._in_thread(viewport.trace, frames.times[n])
+                    viewport.set_time(frames.times[n])
+                picture = await self._draw(0.95 * n / len(frames), 0.95 / len(frames))
+                if writing is not None:
+                    await writing
+                # The next frame is drawn while this one is writing.
+                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
+                # Its error is read even if an error ends the drawing.
+                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
+            if writing is not None:
+                await writing
+            await self._in_thread(writer.finish, lambda: self.cancelled)
+        finally:
+            # In the thread, after its present work.
+            self.done = True
+            await asyncio.wrap_future(self._pool.submit(writer.abandon))
 
     def _prepare(self) -> None:
         """Set the window and the density of the copy, and leave room for annotations."""
@@ -334,94 +394,6 @@ class Job:
         return await asyncio.get_running_loop().run_in_executor(self._pool, stopping)
 
 
-class PictureJob(Job):
-    """A picture as PNG, of any size: :class:`Job` has the parameters."""
-
-    async def _make(self, viewport: Viewport) -> None:
-        await self._in_thread(viewport.trace)
-        self._prepare()
-        picture = await self._draw(0.0, 0.9)
-        await self._in_thread(self._write, picture)
-
-    def _write(self, picture: Bytes) -> None:
-        from PIL import Image
-
-        with whole_file(self.path) as file:
-            Image.fromarray(picture).save(file, "PNG")
-            check()
-
-
-class MovieJob(Job):
-    """A movie: a seamless loop of a steady flow, or all times of one that varies.
-
-    The suffix of the file is the format; an MP4 gets even sides. Seconds, fps and quality are those
-    of :func:`flowtex.movie`, further options those of :class:`Job`.
-    """
-
-    def __init__(
-        self,
-        viewport: Viewport,
-        path: Path,
-        size: tuple[int, int],
-        *,
-        seconds: float | None = None,
-        fps: float | None = None,
-        quality: int = DEFAULT_QUALITY,
-        **options: Any,
-    ) -> None:
-        if Path(path).suffix.lower() == ".mp4":
-            size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
-        super().__init__(viewport, path, size, **options)
-        if size[0] * size[1] > MOST_MOVIE_PIXELS:
-            label = f"the movie would be {size[0]} x {size[1]}"
-            raise MovieError(
-                f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
-            )
-        fps = default_fps(path) if fps is None else fps
-        check_movie(path, size, fps, quality)
-        self._quality = quality
-        settings = _moving(viewport.handle.settings, viewport.field)
-        self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
-        #: Why the movie hardly moves; empty where it does.
-        pixel = viewport.handle.pixel * viewport.size[1] / size[1]
-        self.notice = self.frames.notice(settings, pixel * self._density)
-
-    async def _make(self, viewport: Viewport) -> None:
-        viewport.set_still(still=False)
-        if viewport.field.steady:
-            motion = _moving(viewport.handle.settings, viewport.field).motion
-            for pane in viewport.panes:
-                pane.settings.update(
-                    motion=motion, period=self.frames.seconds, speed=self.frames.speed
-                )
-        self._prepare()
-        count = len(self.frames)
-        writer = MovieWriter(self.path, self._size, self.frames.fps, self._quality)
-        try:
-            writing: asyncio.Future[None] | None = None
-            for n in range(count):
-                if viewport.field.steady:
-                    viewport.clock = self.frames.clocks[n]
-                else:
-                    time = self.frames.times[n]
-                    await self._in_thread(viewport.trace, time)
-                    viewport.set_time(time)
-                picture = await self._draw(0.95 * n / count, 0.95 / count)
-                if writing is not None:
-                    await writing
-                # The next frame is drawn while this one is writing.
-                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
-                # Its error is read even if an error ends the drawing.
-                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
-            if writing is not None:
-                await writing
-            await self._in_thread(writer.finish, lambda: self.cancelled)
-        finally:
-            # In the thread, after its present work.
-            self.done = True
-            await asyncio.wrap_future(self._pool.submit(writer.abandon))
-
-
 def _moving(settings: Settings, field: FlowField) -> Settings:
     """Return settings with which a steady flow streams."""
     moving = settings.copy()
@@ -430,18 +402,16 @@ def _moving(settings: Settings, field: FlowField) -> Settings:
     return moving
 
 
-def _check(size: tuple[int, int], supersampling: int, density: float) -> None:
+def _check(size: tuple[int, int], supersampling: int, density: float, *, is_movie: bool) -> None:
     width, height = size
-    label = f"the picture would be {width} x {height}"
-    msg = ""
+    label = f"the {'movie' if is_movie else 'picture'} would be {width} x {height}"
+    most = MOST_MOVIE_PIXELS if is_movie else MOST_PIXELS
     if not (1 <= width <= LONGEST_SIDE_PX and 1 <= height <= LONGEST_SIDE_PX):
-        msg = f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side"
-    elif width * height > MOST_PIXELS:
-        msg = f"{label}; expected at most {MOST_PIXELS:,} pixels: choose a smaller size"
-    elif supersampling not in range(1, MOST_SUPERSAMPLING + 1):
-        msg = f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}"
-    elif not 1 / MOST_DENSITY <= density <= MOST_DENSITY:
+        raise ExportError(f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side")
+    if width * height > most:
+        raise ExportError(f"{label}; expected at most {most:,} pixels: choose a smaller size")
+    if supersampling not in range(1, MOST_SUPERSAMPLING + 1):
+        raise ExportError(f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}")
+    if not 1 / MOST_DENSITY <= density <= MOST_DENSITY:
         span = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
-        msg = f"density is {density!r}; expected {span}"
-    if msg:
-        raise ExportError(msg)
+        raise ExportError(f"density is {density!r}; expected {span}")
