@@ -99,40 +99,6 @@ def test_a_formula_is_sharp_at_a_zoom_of_100_000(browser: Browser, tmp_path: Pat
     assert found.angle < 3 and found.coherence > 0.93
 
 
-@pytest.mark.parametrize("more", [{}, {"a": (1, 0, 2), "c": (0.3, -1, 1)}], ids=["1", "3"])
-def test_no_slider_is_hidden_by_a_legend(
-    browser: Browser, tmp_path: Path, more: dict[str, Any]
-) -> None:
-    rate = "c - a*sin(x) - b*y" if more else "-sin(x) - b*y"
-    field = flowtex.formula("y", rate, **ENDS, **more)
-    look: dict[str, Any] = {"samples": 3, "critical_points": True, "nullclines": True}
-    path = flowtex.export(field, tmp_path / "page.html", **look).path
-    found = """() => {
-      const { shadowRoot } = document.querySelector(".flowtex");
-      const isFound = (slider) => {
-        const { left, top, width, height } = slider.getBoundingClientRect();
-        return shadowRoot.elementFromPoint(left + width / 2, top + height / 2) === slider;
-      };
-      return [...shadowRoot.querySelectorAll(".parameters input")].map(isFound);
-    }"""
-    stage = """() => {
-      const { shadowRoot } = document.querySelector(".flowtex");
-      return JSON.stringify(shadowRoot.querySelector(".stage").getBoundingClientRect());
-    }"""
-    with opened_page(browser, 360, 400) as page:
-        opened(page, path)
-        for width in (360, 560, 800, 1200):
-            page.set_viewport_size({"width": width, "height": 400})
-            assert page.evaluate(found) == [True] * (1 + len(more)), width
-            # What is said of the point under the pointer moves nothing.
-            page.mouse.move(1, 1)
-            page.locator(".readout:empty").wait_for(state="attached")
-            before = page.evaluate(stage)
-            page.mouse.move(width / 2, 240)
-            page.locator(".readout b").first.wait_for(state="attached")
-            assert page.evaluate(stage) == before
-
-
 DRAWN = """() => {
   const viewer = document.querySelector("flowtex-view").first;
   return viewer.card.drawn.path.path;

@@ -48,23 +48,6 @@ def middle(client: ClientPage, nth: int = 0) -> tuple[float, float]:
     return found["x"] + found["width"] / 2, found["y"] + found["height"] / 2
 
 
-def test_the_button_stays_when_playing_begins(client: ClientPage) -> None:
-    client.mount(scene(), (640, 300), smooth=False, hear=["onPlaying"])
-    client.sharp()
-    button = client.page.locator("[data-name=play]")
-    at = [button.bounding_box()]
-    button.click()
-    at.append(button.bounding_box())
-    client.page.wait_for_function("() => viewers[0].player.clock > 0.05")
-    at.append(button.bounding_box())
-    assert at[0] == at[1] == at[2] is not None
-    assert number(client, "viewers[0].settings.motion") == "speed"
-    client.page.evaluate("() => viewers[0].root.focus()")
-    client.page.keyboard.press(" ")
-    assert not number(client, "viewers[0].playing")
-    assert number(client, "events") == [["onPlaying", True], ["onPlaying", False]]
-
-
 # --- fingers ----------------------------------------------------------------------------------
 
 

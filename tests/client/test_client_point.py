@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -187,23 +186,6 @@ def test_the_card_follows_the_time_that_plays(client: ClientPage) -> None:
     client.page.wait_for_function(f"(first) => {shown} !== first", arg=first)
     assert client.page.evaluate("viewers[0].playing")
     client.page.evaluate("viewers[0].pause()")
-
-
-def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
-    mount(client, leaving(), controls=True)
-    client.page.mouse.click(300, 150)
-    client.page.locator(".card").wait_for()
-    got = card(client.page)
-    assert got["speed in the surface"] == "1.25 m/s"
-    # Velocities travel with an error of 2^-10 of the speed at most.
-    velocity = re.fullmatch(r"\((\S+), (\S+)\) m/s", got["velocity in the surface"])
-    assert velocity is not None
-    assert [float(part) for part in velocity.groups()] == pytest.approx([1, 0.75], abs=0.0013)
-    assert client.page.inner_text(".legend .name") == "speed in the surface (m/s)"
-    client.page.mouse.move(310, 150)
-    client.page.mouse.move(320, 150)
-    client.page.locator(".readout b").wait_for()
-    assert client.page.inner_text(".readout b") == "speed in the surface 1.25 m/s"
 
 
 def test_both_of_two_views_show_the_path(client: ClientPage) -> None:

@@ -304,26 +304,6 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
     assert tiles_of(server)
 
 
-@pytest.mark.parametrize("lacking", ["flow/c/0/", "values/c/0/0/0/1/"])
-def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
-    shown: Shown, server: RangeServer, lacking: str
-) -> None:
-    place = "series.zarr/0/"
-    page = linked(server, "series", **{**NEAR, "focus": (1.2, 0.7), "scalars": "heat"})
-    server.fault = lambda path: 404 if path.startswith(place + lacking) else None
-    shown.open(page.as_uri())
-    assert "is not in the store" in shown.told()
-    shown.wait()
-    # Of a scalar that does not vary there is the first step alone.
-    others = place + ("values/c/3/" if lacking.startswith("flow") else "values/c/0/0/0/2/")
-    assert not [path for path in server.paths if path.startswith(others)]
-    if lacking.startswith("flow"):
-        shown.seek("1")
-    else:
-        shown.choose("Colour by", "depth")
-    assert [path for path in server.paths if path.startswith(others)]
-
-
 def test_a_page_of_two_views_beside_its_store(
     shown: Shown, server: RangeServer, stores: Path
 ) -> None:

@@ -437,14 +437,6 @@ def test_data_around_the_earth_are_shown_across_their_ends(shown: Shown, project
         assert correlation(one, other) > 0.95
 
 
-def test_colours_are_those_of_pictures_that_come_later(shown: Shown) -> None:
-    shown.replace("around.json")
-    shown.page.evaluate("() => flow.setColours({ cmap: 'gray' })")
-    for lng in (178.0, 0.0):
-        shown.go(center=[lng, 10.0], zoom=3)
-        assert np.ptp(shown.pixels(), axis=-1).max() < 4
-
-
 def test_a_page_with_a_map_is_written_whole(
     browser: Browser, server: RangeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
