@@ -100,15 +100,14 @@ def _size(_: Any, value: Any) -> list[int]:
     return [width, height]
 
 
+def _trait_of(row: Setting) -> CheckedTrait:
+    return CheckedTrait(lambda _, value: row.check(value), row.default, row.text)
+
+
 class SettingTraits(traitlets.HasTraits):
     """One trait for each setting."""
 
-    locals().update(
-        {
-            name: CheckedTrait(lambda _, value, row=row: row.check(value), row.default, row.text)
-            for name, row in TABLE.items()
-        }
-    )
+    locals().update({name: _trait_of(row) for name, row in TABLE.items()})
 
 
 #: Fields of the appearance that can be chosen in the browser.

@@ -92,7 +92,8 @@ def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, k
     run(job)
     pictures = shown(path)
     wide, high = (120, 80) if kind == "mp4" else (121, 81)
-    assert pictures.shape == (10, high, wide, 3) and job.frames.closed
+    assert pictures.shape == (10, high, wide, 3)
+    assert job.frames is not None and job.frames.closed
     steps = [difference(pictures[n - 1], pictures[n]) for n in range(10)]
     # The step from the last to the first picture, which is steps[0], is like the others.
     assert min(steps) > 1 and max(steps) < 2 * min(steps)
@@ -122,7 +123,8 @@ def test_a_movie_of_a_series_shows_all_times(series: Viewport, tmp_path: Path) -
     job = Job(series, tmp_path / "all.gif", (120, 80), seconds=1.0, fps=4)
     run(job)
     pictures = shown(job.path)
-    assert len(pictures) == 4 and job.frames.times == pytest.approx((0, 1, 2, 3))
+    assert len(pictures) == 4
+    assert job.frames is not None and job.frames.times == pytest.approx((0, 1, 2, 3))
     assert series.handle.time == 1.0
     series.set_still(still=False)
     for n in (0, 3):
