@@ -102,7 +102,7 @@ def _store_table(place: Path) -> Table:
 
 
 def _recognised_table(paths: list[Path]) -> Table:
-    from flowtex.sources.datasets.read import recognised
+    from flowtex.sources.datasets.read_datasets import recognised
     from flowtex.sources.opening.dataset_files import open_datasets
     from flowtex.sources.reader_errors import errors_of_file
 
