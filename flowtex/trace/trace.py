@@ -30,7 +30,7 @@ from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.sampler import Sampler
 from flowtex.trace.slices import TraceSlices, choose_lags, lag_unit
-from flowtex.trace.triangles.trace import triangle_paths, triangle_slices
+from flowtex.trace.triangles.triangle_slices import triangle_paths, triangle_slices
 
 A = TypeVar("A")
 B = TypeVar("B")

@@ -1,9 +1,8 @@
 """Motion of particles inside the triangles of a surface, and across edges.
 
-A particle is in a triangle, at shares of its corners. The velocity of each corner is turned out of
-the tangent plane of the node into that of the triangle, by the smallest rotation, which keeps its
-length; the surface is thereby unfolded at its edges, however sharp they are. In between the
-velocity is linear, so the shares change by a linear law too, whatever the shape of the triangle.
+The velocity of each corner is turned out of the tangent plane of the node into the plane of the
+triangle, by the smallest rotation; so the surface is unfolded at its edges. In between it is
+linear, so the shares of the corners, at which a particle is, change by a linear law too.
 """
 
 from __future__ import annotations
@@ -26,8 +25,9 @@ BLOCK_TRIANGLES = 65536
 #: Columns of the table of a steady motion.
 COLUMNS = 14
 #: Ratio of the rates at which particles approach a line in a triangle and move along it, from which
-#: on they count as on the line, and their greatest distance from it then, in sizes of the triangle.
-STIFF, OFF_LINE = 4.0, 1e-3
+#: on they count as on the line.
+STIFF = 4.0
+OFF_LINE = 1e-3  #: Their greatest distance from it then, in sizes of the triangle.
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,6 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.slices import TraceSlices, small_cell
-from flowtex.trace.triangles.integrate import TrianglePaths, all_shares, begin, integrate
 from flowtex.trace.triangles.motion import (
     BEHIND,
     ChangingMotion,
@@ -24,11 +23,12 @@ from flowtex.trace.triangles.motion import (
     TriangleMesh,
     speed_floor,
 )
+from flowtex.trace.triangles.triangle_paths import TrianglePaths, all_shares, begin, integrate
 
 #: Particles followed together.
 BLOCK = 65536
-#: Length in small cells up to which paths are integrated, and least number of such slices.
-DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
+DIRECT_CELLS = 8.0  #: Length in small cells up to which paths are integrated.
+LEAST_DIRECT = 2  #: Least number of such slices.
 #: Rounds of steps for these, twice those that meshes need; more are circles about a node.
 DIRECT_STEPS = 75
 #: Paths that are continued together.
@@ -194,14 +194,10 @@ class Composition:
     """Long paths of one direction through N nodes, put together from short ones.
 
     It is done as in :mod:`flowtex.trace.compose`. A path in a triangle continues as the mean of the
-    paths of its three corners, weighted by its shares. That leads to a point in space, outside the
-    surface where it is curved; its triangle is found by walking over edges from the one in which
-    the path of a corner ends.
-
-    Where paths of neighbours part, second differences of a slice across edges are large for its
-    length, and paths are continued in shorter pieces. Where the paths of only some corners have
-    ended, pieces are half as long as those that were integrated, so that it is known how soon the
-    others end.
+    paths of its three corners, to a point in space, perhaps outside the surface; its triangle is
+    found by walking over edges from the one in which the path of a corner ends. Where paths of
+    neighbours part, second differences of a slice across edges are large for its length, and paths
+    are continued in shorter pieces; so they are where the paths of only some corners have ended.
 
     Lags (M,) are those of the motion. Displacements ``moved`` (M, N, 3) of the first ``direct`` are
     filled, and the others are completed in place.

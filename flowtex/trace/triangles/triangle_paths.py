@@ -1,15 +1,12 @@
 """Paths of many particles on a surface of triangles, one step of each within one triangle a round.
 
 A step follows the Taylor polynomial of second order of the particle's shares of the corners, whose
-third-order term limits its length, so that no step is rejected; it ends at an edge at the latest,
-at the root of a quadratic. The same polynomial gives the positions at the lags, and the length of
-path as far as lags are lengths, so lags do not shorten steps.
+third-order term limits its length; it ends at an edge at the latest. The same polynomial gives the
+positions at the lags, and the length of path as far as lags are lengths.
 
-Where the velocities of two triangles point at each other across their edge, which happens beside
-edges that are not flat, a particle slides along the edge.
-
-A path that leaves the surface, enters a triangle without data or stops is ended there. That lag is
-its reach, and beyond it the path goes straight on in space.
+Where the velocities of two triangles point at each other across their edge, a particle slides along
+it. A path that leaves the surface, enters a triangle without data or stops is ended there. That lag
+is its reach, and beyond it the path goes straight on in space.
 """
 
 from __future__ import annotations
@@ -30,9 +27,10 @@ from flowtex.trace.triangles.motion import (
     dot,
 )
 
-#: Rounds of steps after which paths are ended, for each row of a square of as many nodes, and at
-#: least: a few that turn in one place must not delay all others.
-STEPS_PER_ROW, LEAST_STEPS = 30, 3_000
+#: Rounds of steps after which paths are ended, for each row of a square of as many nodes: a few
+#: that turn in one place must not delay all others.
+STEPS_PER_ROW = 30
+LEAST_STEPS = 3_000  #: Least number of rounds.
 #: Rounds in one triangle, or from one to the next without a move, after which a path is ended: it
 #: spirals, or crosses a triangle so flat that it is practically stuck. No more triangles meet in a
 #: node.
@@ -92,9 +90,8 @@ def integrate(
     at rest; by default that is the last of ``lags``. Paths are ended after ``most_steps``, which by
     default grow with the number of nodes.
     """
-    run = _Run(
-        motion, points, triangle, shares, lags, lags[-1] if last is None else last, tolerance
-    )
+    last = lags[-1] if last is None else last
+    run = _Run(motion, points, triangle, shares, lags, last, tolerance)
     # Values too large or too small to represent end a path.
     with np.errstate(all="ignore"):
         usual = STEPS_PER_ROW * int(np.sqrt(len(points)))
