@@ -184,35 +184,6 @@ def test_a_slider_changes_the_data_and_the_view_stays(notebook: Lab) -> None:
     assert lab.said(f"(exec({refused!r}), w.field.shape)[1]") == "(40, 60)"
 
 
-MANY = """import flowtex
-mesh = flowtex.examples.double_gyre_field(shape=(30, 60))
-ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(8)]"""
-#: Objects of WebGL that all widgets of the page hold together.
-HELD = """() => globalThis[Symbol.for("flowtex.gl/3")].objects"""
-COUNT = """() => {
-  window.contexts = 0;
-  const get = HTMLCanvasElement.prototype.getContext;
-  HTMLCanvasElement.prototype.getContext = function (kind, ...given) {
-    if (kind === "webgl2") window.contexts += 1;
-    return get.call(this, kind, ...given);
-  };
-}"""
-
-
-def test_many_widgets_share_one_context_and_leave_nothing(notebook: Lab) -> None:
-    lab, page = notebook, notebook.page
-    page.set_viewport_size({"width": 700, "height": 900})
-    page.evaluate(COUNT)
-    lab.run(MANY)
-    page.wait_for_function(DRAWN, arg=8)
-    assert page.evaluate("window.contexts") <= 1  # there may be one already
-    assert variation(picture(page)) > 3
-    assert page.evaluate(HELD) > 0
-    assert lab.said("[w.close() for w in ws][0]") == "None"
-    page.wait_for_function("() => !document.querySelector('.flowtex')")
-    assert page.evaluate(HELD) == 0
-
-
 BOXES = """import flowtex
 from ipywidgets import HBox, VBox, Button
 mesh = flowtex.examples.double_gyre()

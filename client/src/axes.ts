@@ -1,13 +1,12 @@
 // Ticks at the left and lower border of the picture, or a bar of a round length.
 
 import { pointInPlane, type Camera } from "./camera.ts";
-import { withUnit } from "./dom.ts";
+import { shape, withUnit } from "./dom.ts";
 import { lonLatOf } from "./lonlat.ts";
 import type { AxesKind, Earth, Header, Part } from "./protocol.ts";
 import { degreeTicks, offsetOf, ticksOf, type Tick } from "./ticks.ts";
 import { clamp, length, subtract, type Vector } from "./vectors.ts";
 
-const SVG = "http://www.w3.org/2000/svg";
 /** Parts of a border; values between their ends are interpolated linearly. */
 const PARTS = 48;
 /** Least share of the distance along a border that its coordinate accounts for; an oblique view has less. */
@@ -73,13 +72,11 @@ export function hasTicks({ geometry, earth }: Header): boolean {
 }
 
 export class Axes {
-  readonly element = document.createElementNS(SVG, "svg");
+  readonly element = shape("svg", { class: "axes", "aria-hidden": "true" });
   private readonly host: AxesHost;
 
   constructor(host: AxesHost) {
     this.host = host;
-    this.element.setAttribute("class", "axes");
-    this.element.setAttribute("aria-hidden", "true");
   }
 
   draw(kind: AxesKind): void {
@@ -154,20 +151,13 @@ export class Axes {
   }
 
   private line(x1: number, y1: number, x2: number, y2: number): void {
-    const line = document.createElementNS(SVG, "line");
-    for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) {
-      line.setAttribute(name, value.toFixed(1));
-    }
-    this.element.append(line);
+    const ends = Object.entries({ x1, y1, x2, y2 }).map(([name, value]) => [name, value.toFixed(1)]);
+    this.element.append(shape("line", Object.fromEntries(ends)));
   }
 
   private text(x: number, y: number, words: string, kind: string): void {
-    const text = document.createElementNS(SVG, "text");
-    text.setAttribute("x", x.toFixed(1));
-    text.setAttribute("y", y.toFixed(1));
-    text.setAttribute("class", kind);
-    text.textContent = words;
-    this.element.append(text);
+    const place = { x: x.toFixed(1), y: y.toFixed(1), class: kind };
+    this.element.append(shape("text", place, [document.createTextNode(words)]));
   }
 }
 

@@ -1,17 +1,20 @@
-// A picture of a scene and nothing around it, for a host that shows it in its own way and moves the camera.
+// What every view of a scene does, and the one with nothing around it, for a host that shows it in its own way and
+// moves the camera.
 
 import { recoloured, type ColourChoice } from "./colours.ts";
 import { Camera, type CameraState } from "./camera.ts";
 import { sharedGraphics, type Graphics, type User } from "./context.ts";
 import { HeldParts } from "./heldparts.ts";
 import { Lifetime } from "./lifetime.ts";
-import type { View } from "./painter.ts";
+import type { Painter } from "./painter.ts";
 import type { Found } from "./picking.ts";
 import { Player } from "./player.ts";
 import { tilePart, type Header, type NamedPart, type Settings } from "./protocol.ts";
+import type { Scene } from "./scene.ts";
 import { Requests, type Source, type Taker } from "./sources/source.ts";
+import type { Tiles } from "./tiles.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
-import { viewState } from "./viewstate.ts";
+import { viewState, type View } from "./viewstate.ts";
 import { WebGL2Painter } from "./webgl2painter.ts";
 
 /** Who shows the picture. */
@@ -35,30 +38,129 @@ interface Shared {
   isComing(): boolean;
 }
 
-export class BareView implements View, User, Taker {
+/** Holds the parts of a scene, and has a painter draw them in turn with the other views of the page. */
+export abstract class SceneView implements View, User, Taker {
   readonly canvas = document.createElement("canvas");
   readonly root = document.createElement("div");
   readonly graphics: Graphics = sharedGraphics();
   readonly lifetime = new Lifetime();
-  readonly player: Player;
   readonly held = new HeldParts(this.graphics);
   readonly parts = this.held.all;
-  readonly isClear = true;
+  abstract readonly player: Player;
+  abstract readonly panel: View["panel"];
+  abstract readonly requests: Requests;
+  abstract readonly options: View["options"];
+  abstract readonly header: Header | null;
+  abstract readonly settings: Settings;
+  abstract readonly painter: Painter;
+  abstract readonly isHeld: boolean;
+  abstract readonly ratio: number;
+  /** Height of the picture in pixels of the page. */
+  protected abstract readonly rows: number;
+  camera: Camera | null = null;
+  /** Whether the full picture is shown. */
+  sharp = false;
   isVisible = true;
+
+  abstract place(): void;
+  abstract advance(now: number): void;
+  abstract change(cameraOnly?: boolean): void;
+  abstract refine(): void;
+  abstract painted(isComplete: boolean): void;
+  /** Go on without what could not be had, and say why. */
+  protected abstract tell(reason: string): void;
+  /** A picture could not be drawn. */
+  protected abstract fail(error: unknown): void;
+
+  dispose(): void {
+    this.lifetime.end();
+    this.requests.stop();
+    this.painter.dispose?.();
+    this.held.clear();
+    this.graphics.leave(this);
+  }
+
+  /** What is on the graphics card, where the browser draws. */
+  get scene(): Scene | null {
+    return this.painter.scene ?? null;
+  }
+
+  get tiles(): Tiles | null {
+    return this.painter.tiles ?? null;
+  }
+
+  /** Take a part; returns whether it is another one than before. */
+  setPart(part: NamedPart): boolean {
+    const tile = tilePart(part.name);
+    if (tile) this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
+    if (tile || !this.held.set(part)) return false;
+    this.scene?.forget(part.name);
+    this.trim();
+    if (part.name === "cmap") this.tiles?.recolour();
+    this.change();
+    return true;
+  }
+
+  /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
+  lack(reason: string, tile?: string, steps: number[] = []): void {
+    if (tile !== undefined) this.tiles?.fail(tile, steps);
+    this.tell(reason);
+  }
+
+  /** Hold no more time steps than are needed. */
+  trim(): void {
+    this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
+  }
+
+  /** Have `frame` called. */
+  request(): void {
+    if (!this.lifetime.isOver && this.isVisible) this.graphics.request(this);
+  }
+
+  frame(now: number, until: number): void {
+    if (this.lifetime.isOver) return;
+    try {
+      this.painter.frame(now, until);
+    } catch (error) {
+      this.fail(error);
+    }
+  }
+
+  /** Buffers and textures are lost with the context. */
+  lost(): void {
+    if (this.header) this.painter.open?.(this.header);
+    this.sharp = false;
+  }
+
+  /** Where from and when a moment is seen, with so many pixels along one of the page. */
+  view(shown: Moment, density: number): ViewState {
+    const { header, camera, player, rows } = this;
+    if (!header || !camera) throw new Error("no scene is shown yet");
+    return viewState({ header, camera, anchor: this.scene?.anchor ?? [0, 0, 0], player, rows }, shown, density);
+  }
+
+  /** What is at (x, y), from -1 to 1, right and up, and where in what is drawn. */
+  find(x: number, y: number): Found | null {
+    return this.painter.canPick ? (this.painter.find?.(x, y) ?? null) : null;
+  }
+}
+
+export class BareView extends SceneView {
+  readonly player: Player;
+  readonly isClear = true;
   readonly panel: View["panel"];
   readonly requests: Requests;
   readonly options: View["options"];
   readonly header: Header;
   readonly settings: Settings;
   readonly painter: WebGL2Painter;
-  camera: Camera | null = null;
-  sharp = false;
   ratio = 1;
   private readonly host: BareHost;
   /** Whether nothing has been drawn yet of the picture that is wanted. */
   private isNew = true;
 
   constructor(host: BareHost, { header, settings, player, source, isComing }: Shared) {
+    super();
     this.host = host;
     this.header = header;
     this.settings = settings;
@@ -77,40 +179,8 @@ export class BareView implements View, User, Taker {
     this.painter.open(header);
   }
 
-  dispose(): void {
-    if (this.lifetime.isOver) return;
-    this.lifetime.end();
-    this.requests.stop();
-    this.painter.dispose();
-    this.held.clear();
-    this.graphics.leave(this);
-  }
-
-  get tiles() {
-    return this.painter.tiles;
-  }
-
   get isHeld(): boolean {
     return this.host.isHeld();
-  }
-
-  setPart(part: NamedPart): void {
-    const tile = tilePart(part.name);
-    if (tile) return void this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
-    if (!this.held.set(part)) return;
-    this.painter.scene?.forget(part.name);
-    this.trim();
-    if (part.name === "cmap") this.tiles?.recolour();
-    this.change();
-  }
-
-  lack(reason: string, tile?: string, steps: number[] = []): void {
-    if (tile !== undefined) this.tiles?.fail(tile, steps);
-    this.host.failed(reason, "");
-  }
-
-  trim(): void {
-    this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
   }
 
   chooseColours(choice: ColourChoice): void {
@@ -132,6 +202,15 @@ export class BareView implements View, User, Taker {
     this.change(true);
   }
 
+  protected tell(reason: string): void {
+    this.host.failed(reason, "");
+  }
+
+  protected fail(error: unknown): void {
+    this.player.playing = false;
+    this.host.failed("The flow cannot be drawn.", String(error));
+  }
+
   place(): void {
     // The host says from where.
   }
@@ -141,10 +220,6 @@ export class BareView implements View, User, Taker {
     if (!player.playing || !player.advance(now, (steps) => painter.make(steps, now))) return;
     this.host.advanced();
     this.change();
-  }
-
-  request(): void {
-    if (!this.lifetime.isOver) this.graphics.request(this);
   }
 
   change(cameraOnly = false): void {
@@ -166,35 +241,8 @@ export class BareView implements View, User, Taker {
     if (!this.sharp) this.request();
   }
 
-  lost(): void {
-    this.painter.open(this.header);
-    this.sharp = false;
-  }
-
-  frame(now: number, until: number): void {
-    if (this.lifetime.isOver) return;
-    try {
-      this.painter.frame(now, until);
-    } catch (error) {
-      this.player.playing = false;
-      this.host.failed("The flow cannot be drawn.", String(error));
-    }
-  }
-
-  view(shown: Moment, density: number): ViewState {
-    const { header, camera, player, rows } = this;
-    if (!camera) throw new Error("no camera is set yet");
-    const anchor = this.painter.scene?.anchor ?? [0, 0, 0];
-    return viewState({ header, camera, anchor, player, rows }, shown, density);
-  }
-
-  /** Height of the picture in pixels of the page. */
   get rows(): number {
     return this.canvas.height / this.ratio;
   }
 
-  /** What is at (x, y), from -1 to 1, right and up. */
-  find(x: number, y: number): Found | null {
-    return this.painter.canPick ? this.painter.find(x, y) : null;
-  }
 }

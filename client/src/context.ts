@@ -35,6 +35,11 @@ export interface User {
   change(): void;
 }
 
+/** Have textures of half precision drawn into, which their mip levels are made with as well, if that can be. */
+export function drawsFloats(gl: WebGL2RenderingContext): boolean {
+  return ["EXT_color_buffer_float", "EXT_color_buffer_half_float"].some((name) => gl.getExtension(name) !== null);
+}
+
 export class Graphics {
   readonly canvas = document.createElement("canvas");
   readonly gl: WebGL2RenderingContext | null;
@@ -48,22 +53,21 @@ export class Graphics {
   readonly tracings = new Map<string, Tracing>();
   objects = 0;
   isLost = false;
-  /** Whether half-precision textures are drawn into, which their mip levels are made with. */
-  floats = false;
   private scheduled = 0;
   private picker: Target | null = null;
   private smooth: (Target & { width: number; height: number }) | null = null;
 
   constructor() {
     this.canvas.width = this.canvas.height = 16;
-    this.gl = this.canvas.getContext("webgl2", {
+    const gl = this.canvas.getContext("webgl2", {
       // Multisampled pictures are copied in, which takes the same format on both sides.
       alpha: true,
       antialias: false,
       powerPreference: "high-performance",
     });
+    this.gl = gl && drawsFloats(gl) ? gl : null;
     this.programs = new Programs(this);
-    this.findFeatures();
+    if (this.gl) this.programs.findFeatures();
     this.canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       this.isLost = true;
@@ -76,17 +80,10 @@ export class Graphics {
     });
     this.canvas.addEventListener("webglcontextrestored", () => {
       this.isLost = false;
-      this.findFeatures();
+      if (gl) drawsFloats(gl);
+      this.programs.findFeatures();
       for (const user of this.users) user.change();
     });
-  }
-
-  private findFeatures(): void {
-    const { gl } = this;
-    if (!gl) return;
-    const extensions = ["EXT_color_buffer_float", "EXT_color_buffer_half_float"];
-    this.floats = extensions.some((name) => gl.getExtension(name) !== null);
-    this.programs.findFeatures();
   }
 
   get context(): WebGL2RenderingContext {

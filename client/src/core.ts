@@ -5,7 +5,7 @@
 import { showLiveViews } from "./live.ts";
 
 export { FlowtexView, mountPage } from "./element.ts";
-export { openPage } from "./openpage.ts";
+export { openPage } from "./packed.ts";
 export { packedModule } from "./packed.ts";
 export { decoded, partsOfFile } from "./protocol.ts";
 export { Viewer } from "./viewer.ts";

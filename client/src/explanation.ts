@@ -1,14 +1,13 @@
 // How the texture at a point is computed, below a live view: sliders of what enters, the samples
 // that are met along the path with their weights, and their sum. Its looks are the page's.
 
-import { dom, numberText } from "./dom.ts";
+import { dom, numberText, shape } from "./dom.ts";
 import type { FlowtexView } from "./element.ts";
 import type { Options } from "./options.ts";
 import { pixelSum, type PixelSum, type Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
 
-const SVG = "http://www.w3.org/2000/svg";
 /** Where a point is chosen at first, in the view from -1 to 1. */
 const FIRST_POINT = [-0.4, 0.5] as const;
 /** Doublings of the zoom. */
@@ -27,19 +26,12 @@ const ROW = 40;
 
 /** A row of marks, one for each sample, as wide as the page lets it be. */
 function row(name: string, count: number, marks: Mark[]): HTMLElement {
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("viewBox", `0 0 ${count} ${ROW}`);
-  svg.setAttribute("preserveAspectRatio", "none");
-  svg.setAttribute("aria-hidden", "true");
-  for (const { at, y, height, fill, title } of marks) {
-    const rect = document.createElementNS(SVG, "rect");
-    const shape = { x: at + 0.04, y, width: 0.92, height: Math.max(height, 0.4), fill };
-    for (const [key, value] of Object.entries(shape)) rect.setAttribute(key, `${value}`);
-    const words = document.createElementNS(SVG, "title");
-    words.textContent = title;
-    rect.append(words);
-    svg.append(rect);
-  }
+  const bars = marks.map(({ at, y, height, fill, title }) => {
+    const words = shape("title", {}, [document.createTextNode(title)]);
+    return shape("rect", { x: at + 0.04, y, width: 0.92, height: Math.max(height, 0.4), fill }, [words]);
+  });
+  const box = { viewBox: `0 0 ${count} ${ROW}`, preserveAspectRatio: "none", "aria-hidden": "true" };
+  const svg = shape("svg", box, bars);
   return dom("div", { class: "explained-row" }, [dom("span", {}, [name]), svg]);
 }
 

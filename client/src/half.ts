@@ -1,4 +1,4 @@
-// Numbers in half precision, and mip levels of them where the graphics card makes none.
+// Numbers in half precision, and textures of several layers of them.
 
 export function fromHalf(bits: number): number {
   const exponent = (bits >> 10) & 31;
@@ -26,31 +26,36 @@ export function toHalf(x: number): number {
   return sign | ((size - 0x37fff000) >>> 13);
 }
 
-/** The next mip level of an image in half precision, filtered linearly, its width and height. */
-export function halved(
-  texels: Uint16Array,
-  width: number,
-  height: number,
-  channels: number,
-): [Uint16Array, number, number] {
-  const [w, h] = [Math.max(width >> 1, 1), Math.max(height >> 1, 1)];
-  const result = new Uint16Array(w * h * channels);
-  const between = (n: number, few: number, many: number): [number, number, number] => {
-    const x = (n + 0.5) * (many / few) - 0.5;
-    const base = Math.floor(x);
-    return [base, Math.min(base + 1, many - 1), x - base];
-  };
-  for (let j = 0, n = 0; j < h; j += 1) {
-    const [low, high, v] = between(j, h, height);
-    for (let i = 0; i < w; i += 1) {
-      const [left, right, u] = between(i, w, width);
-      for (let c = 0; c < channels; c += 1) {
-        const at = (y: number, x: number) => fromHalf(texels[(y * width + x) * channels + c]);
-        const below = at(low, left) * (1 - u) + at(low, right) * u;
-        const above = at(high, left) * (1 - u) + at(high, right) * u;
-        result[n++] = toHalf(below * (1 - v) + above * v);
-      }
-    }
+export interface LayersSize {
+  width: number;
+  height: number;
+  layers: number;
+  channels: number;
+  /** Mip levels beside the finest. */
+  levels: number;
+}
+
+/** Raise an error where a graphics card does not support the size of a texture. */
+export function checkSize(gl: WebGL2RenderingContext, width: number, height: number, layers = 1): void {
+  const most = gl.getParameter(gl.MAX_TEXTURE_SIZE) as number;
+  const mostLayers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number;
+  if (Math.max(width, height) > most || layers > mostLayers) {
+    throw new Error(
+      `a texture of ${width} x ${height} texels in ${layers} layers is needed, but this graphics ` +
+        `card supports at most ${most} x ${most} in ${mostLayers}; show fewer nodes`,
+    );
   }
-  return [result, w, h];
+}
+
+/** Give a texture its size, which is bound then. */
+export function makeLayers(gl: WebGL2RenderingContext, texture: WebGLTexture, size: LayersSize): void {
+  const { width, height, layers, channels, levels } = size;
+  checkSize(gl, width, height, layers);
+  const target = gl.TEXTURE_2D_ARRAY;
+  gl.bindTexture(target, texture);
+  gl.texStorage3D(target, levels + 1, channels === 1 ? gl.R16F : gl.RGBA16F, width, height, layers);
+  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+  gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+  gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
 }

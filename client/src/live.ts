@@ -17,11 +17,7 @@ interface Packed {
   parts: [view: number, info: PartInfo, text: string | null][];
 }
 
-/**
-                                                             * Distances, in heights of the window,
-                                                             * within which a view is loaded, and
-                                                             * beyond which it is unloaded.
-                                                             */
+/** Distances, in heights of the window, within which a view is loaded, and beyond which it is unloaded. */
 const LOADED_HEIGHTS = 0.5;
 const KEPT_HEIGHTS = 2;
 
@@ -39,10 +35,7 @@ declare global {
   }
 }
 
-/**
-                 * Run a script, which passes its content. A script, as pages that lie in a folder
-                 * may not fetch files.
-                 */
+/** Run a script, which passes its content: pages that lie in a folder may not fetch files. */
 function handedOver<T>(address: string, takers: Map<string, (what: T) => void>): Promise<T> {
   const name = address.replace(/^.*\//, "").replace(/\.js$/, "");
   const begun = underway.get(address) as Promise<T> | undefined;

@@ -1,6 +1,6 @@
-// The nodes of a surface as the arrays of a draw call, and values between nodes.
+// The nodes of a surface as the arrays of a draw call, places in its triangles, and values between nodes.
 
-import { shareOf, type Data, type Geometry, type Header } from "./protocol.ts";
+import { type Data, type Geometry, type Header, shareOf } from "./protocol.ts";
 import { clamp, type Vector } from "./vectors.ts";
 
 /** What a node without a value has, far below every colour map, and the farthest share that others have. */
@@ -69,4 +69,27 @@ export function cornersAt([rows, columns]: [number, number], [i, j]: readonly nu
 /** A nodal value between nodes. */
 export function interpolated(corners: Corners, value: (node: number) => number): number {
   return corners.reduce((sum, [node, share]) => sum + share * value(node), 0);
+}
+
+/** Greatest coordinate of a second corner, just below the next triangle's number. */
+const MOST_SHARE = 1 - 1e-7;
+
+/** Nodes of each triangle, and a bit for each block in which it lies. */
+export function cornersAndBlocks(triangles: Data, blocks: Data): Uint32Array {
+  return Uint32Array.from({ length: 4 * blocks.length }, (_, n) => (n % 4 < 3 ? triangles[3 * (n >> 2) + (n % 4)] : blocks[n >> 2]));
+}
+
+/**
+ * A place of the surface as two numbers (i, j): j is the number of a triangle and the share of its second
+ * corner, i that of its third.
+ */
+export function placeIn(triangle: number, second: number, third: number): [number, number] {
+  return [third, triangle + Math.min(Math.max(second, 0), MOST_SHARE)];
+}
+
+/** Corners of the triangle in which a place lies. */
+export function cornersOf(triangles: Data, [i, j]: readonly number[]): Corners {
+  const number = Math.floor(j);
+  const [second, third] = [j - number, i];
+  return [1 - second - third, second, third].map((share, k) => [triangles[3 * number + k], share]);
 }

@@ -2,13 +2,14 @@
 
 import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
-import type { Painter, View } from "./painter.ts";
+import type { Painter } from "./painter.ts";
 import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { PointPath } from "./pointpath.ts";
 import type { AxesKind, Value } from "./protocol.ts";
 import type { PathSample } from "./samples.ts";
 import type { Source } from "./sources/source.ts";
+import type { View } from "./viewstate.ts";
 
 /** A view that has the bar for another one as well. */
 interface Leader {

@@ -1,58 +1,11 @@
 // What draws the picture of a view: WebGL2, pictures that a host sends, or a painter of one's own.
 
-import type { Camera } from "./camera.ts";
-import type { Graphics } from "./context.ts";
-import type { Lifetime } from "./lifetime.ts";
 import type { Found } from "./picking.ts";
-import type { Player } from "./player.ts";
-import type { Header, Part, Settings, StructureHeader } from "./protocol.ts";
+import type { Header } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
-import type { Requests, Source } from "./sources/source.ts";
 import type { Tiles } from "./tiles.ts";
-import type { Moment, ViewState } from "./uniforms.ts";
-
-/** The view that a painter draws, and what it may ask of it. */
-export interface View {
-  readonly canvas: HTMLCanvasElement;
-  readonly root: HTMLElement;
-  readonly header: Header | null;
-  readonly settings: Settings;
-  readonly parts: Map<string, Part>;
-  readonly camera: Camera | null;
-  readonly player: Player;
-  readonly options: { smooth?: boolean; source?: Source; isComing?: () => boolean };
-  readonly requests: Requests;
-  readonly panel: {
-    wait(missing: string[], isMade: boolean, isCoarse: boolean, isFinding?: boolean): void;
-    showKinds(kinds: StructureHeader["kinds"]): void;
-    fail(problem: string, detail: string): void;
-  };
-  readonly graphics: Graphics;
-  readonly lifetime: Lifetime;
-  /** Whether the full picture is shown, and whether the view is on the screen. */
-  readonly sharp: boolean;
-  readonly isVisible: boolean;
-  /** Whether the user is moving the view or a control. */
-  readonly isHeld: boolean;
-  /** Pixels of the canvas along one of the page. */
-  readonly ratio: number;
-  /** Where from and when a moment is seen, with so many pixels along one of the page. */
-  view(shown: Moment, density: number): ViewState;
-  /** Look from where the scene says, once the parts are there that this takes. */
-  place(): void;
-  /** Go on with the time or the clock, as they play. */
-  advance(now: number): void;
-  /** Have `frame` called. */
-  request(): void;
-  /** Begin another picture. */
-  change(): void;
-  /** Draw the same picture once more, as more of the surface is there. */
-  refine(): void;
-  /** The picture has gone on, and may be complete. */
-  painted(isComplete: boolean): void;
-  /** Hold no more time steps than are needed. */
-  trim(): void;
-}
+import type { Moment } from "./uniforms.ts";
+import type { View } from "./viewstate.ts";
 
 export interface Painter {
   /** Go on with the picture until a time, and call `painted`. */
@@ -80,4 +33,45 @@ export interface Painter {
   readonly scene?: Scene | null;
   readonly tiles?: Tiles | null;
   readonly shown?: Moment | null;
+}
+
+export class StreamedPainter implements Painter {
+  private readonly view: View;
+  /** Whether the host has drawn the last request. */
+  private isPainted = true;
+
+  constructor(view: View) {
+    this.view = view;
+  }
+
+  /** Change the size; what is on show stays, stretched, until there is something better. */
+  resize(width: number, height: number): void {
+    const { canvas } = this.view;
+    const before = new OffscreenCanvas(Math.max(canvas.width, 1), Math.max(canvas.height, 1));
+    before.getContext("2d")?.drawImage(canvas, 0, 0);
+    [canvas.width, canvas.height] = [width, height];
+    this.pen?.drawImage(before, 0, 0, width, height);
+  }
+
+  private get pen() {
+    return this.view.canvas.getContext("2d", { alpha: false });
+  }
+
+  /** Have a place, and go on with time once the picture before is there. */
+  frame(now: number): void {
+    const { view } = this;
+    if (!view.camera) view.place();
+    if (!view.player.playing || !this.isPainted) return;
+    this.isPainted = false;
+    view.advance(now);
+  }
+
+  show(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void {
+    const { view } = this;
+    const { canvas, panel } = view;
+    this.pen?.drawImage(picture, left, 0, width, picture.height, 0, 0, canvas.width, canvas.height);
+    this.isPainted = true;
+    panel.wait([], true, !isSharp);
+    view.painted(isSharp);
+  }
 }

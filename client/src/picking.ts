@@ -1,14 +1,13 @@
 // The point of the surface at a place of the view, from the triangle that its pixel shows.
 
 import type { Camera } from "./camera.ts";
-import { interpolated } from "./mesh.ts";
+import { interpolated, placeIn } from "./mesh.ts";
 import { placeOnEarth, cornersOn } from "./onearth.ts";
 import type { Layer, PlaceAt } from "./places.ts";
 import { nodeAt } from "./pointpath.ts";
 import type { Geometry, Header, Padding } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { fullIndex } from "./tilechoice.ts";
-import { placeIn } from "./trianglemesh.ts";
 import type { Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, subtract, type Vector } from "./vectors.ts";
 

@@ -1,24 +1,23 @@
 // What a click shows: the path through the point, over the picture, and a card of its numbers.
 
 import type { Camera } from "./camera.ts";
-import { dom, numberText, withUnit } from "./dom.ts";
+import { dom, numberText, shape, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
 import { velocityOnEarth } from "./onearth.ts";
 import type { Options, Reading } from "./options.ts";
-import { pathShapes, type Dot, type Line, type Place } from "./pathlines.ts";
+import { type Dot, type Line, pathShapes, type Place, samplesOf } from "./samples.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
 import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part, Settings } from "./protocol.ts";
-import { samplesOf } from "./samples.ts";
 import type { Requests } from "./sources/source.ts";
 import type { Layer } from "./places.ts";
 import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
 
 const TITLE = "Path through this point";
-const SVG = "http://www.w3.org/2000/svg";
+
 /** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
 const FEWEST_DIGITS = 4;
 const MOST_DIGITS = 14;
@@ -88,7 +87,7 @@ export interface CardHost {
 
 export class PointCard {
   readonly element = dom("div", { class: "card glass", role: "region", hidden: "" });
-  readonly overlay = document.createElementNS(SVG, "svg");
+  readonly overlay = shape("svg", {});
   private readonly host: CardHost;
   private readonly list = dom("dl");
   private readonly samples = dom("div");
@@ -265,12 +264,6 @@ export class PointCard {
     });
     const lines = { path: linesOf(path), sampled: dots.length ? [] : linesOf(sampled) };
     const shapes = pathShapes({ ...lines, dots, point, directed });
-    this.overlay.replaceChildren(
-      ...shapes.map(([tag, attributes]) => {
-        const shape = document.createElementNS(SVG, tag);
-        for (const [name, value] of Object.entries(attributes)) shape.setAttribute(name, `${value}`);
-        return shape;
-      }),
-    );
+    this.overlay.replaceChildren(...shapes.map(([tag, attributes]) => shape(tag, attributes)));
   }
 }

@@ -2,10 +2,9 @@
 // It is what shaders/common/path.glsl does at the finest level, in double precision.
 
 import type { Camera } from "./camera.ts";
-import { interpolated, type Corners } from "./mesh.ts";
+import { type Corners, interpolated, placeIn } from "./mesh.ts";
 import { isSignFree, type Settings } from "./protocol.ts";
 import type { Four, Scene } from "./scene.ts";
-import { placeIn } from "./trianglemesh.ts";
 import { isMoving, type Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
 

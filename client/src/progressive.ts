@@ -1,16 +1,17 @@
 // Progressive drawing: a draft in the time that there is, then the full picture strip by strip.
 
+import type { mat2d as Mat2d } from "gl-matrix";
+import * as mat2d from "gl-matrix/esm/mat2d.js";
 import { Camera, projection, rays } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
 import type { Layer, PlaceAt, Places } from "./places.ts";
 import type { Program } from "./programs.ts";
-import type { Settings } from "./protocol.ts";
 import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
-import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
-import { hasArrows, isNear, uniforms, type Moment, type ViewState } from "./uniforms.ts";
+import { hasArrows, isNear, type Moment, uniforms, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
+import type { View } from "./viewstate.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
 const MOVING_LEAST_MS = 14;
@@ -28,22 +29,6 @@ function replace(pen: Pen, picture: HTMLCanvasElement): void {
 
 const penOf = (canvas: HTMLCanvasElement, alpha: boolean): Pen => canvas.getContext("2d", { alpha });
 
-/** The view that is drawn. */
-export interface DrawContext {
-  readonly graphics: Graphics;
-  readonly canvas: HTMLCanvasElement;
-  readonly settings: Settings;
-  readonly camera: Camera | null;
-  /** Whether the picture is clear beside the surface. */
-  readonly isClear?: boolean;
-  readonly player: { varies: boolean; playing: boolean };
-  /** Whether the user is moving the view or a control. */
-  readonly isHeld: boolean;
-  /** Pixels of the canvas along one of the page. */
-  readonly ratio: number;
-  view(shown: Moment, density: number): ViewState;
-}
-
 /** What is drawn of a surface. */
 interface Content {
   readonly scene: Scene | null;
@@ -57,7 +42,7 @@ interface Content {
 }
 
 export class ProgressiveRenderer {
-  private readonly viewer: DrawContext;
+  private readonly viewer: View;
   private readonly content: Content;
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
@@ -85,7 +70,7 @@ export class ProgressiveRenderer {
   /** Whether the picture on show has fewer pixels or samples than the full one. */
   private isCoarse = false;
 
-  constructor(viewer: DrawContext, content: Content) {
+  constructor(viewer: View, content: Content) {
     this.viewer = viewer;
     this.content = content;
     this.graphics = viewer.graphics;
@@ -427,4 +412,49 @@ export class ProgressiveRenderer {
     pen.clearRect(0, to, w, rows * scaled);
     pen.drawImage(canvas, 0, first, width, rows, 0, to, w, rows * scaled);
   }
+}
+
+/** Range of sizes, beside those it was drawn for, in which a picture's pixels serve. */
+const GREATEST_GROWTH = 4;
+const LEAST_GROWTH = 0.3;
+/** Tolerance of rounding, as a share of the picture. */
+const ROUNDING = 1e-6;
+
+/** An affine map of a plane, as a canvas takes it; numbers of an array are doubles. */
+type Affine = [number, number, number, number, number, number];
+
+export interface Reuse {
+  /** From the old picture's pixels to the new one's. */
+  matrix: Affine;
+  /** Whether nothing of the new picture is left out. */
+  covers: boolean;
+  /** Whether it is only moved, so that each pixel stays a pixel. */
+  shifts: boolean;
+}
+
+const product = (a: Mat2d, b: Mat2d) => mat2d.multiply([0, 0, 0, 0, 0, 0], a, b) as Affine;
+const inverse = (a: Mat2d) => mat2d.invert([0, 0, 0, 0, 0, 0], a) as Affine;
+
+/** How the picture of one projection of a plane lies in that of another, if it serves. */
+export function reused(
+  before: readonly number[],
+  now: readonly number[],
+  width: number,
+  height: number,
+): Reuse | null {
+  const [w, h] = [width / 2, height / 2];
+  const toPixels = (m: readonly number[]) =>
+    product([w, 0, 0, -h, w, h], [m[0], m[1], m[4], m[5], m[12], m[13]]);
+  const matrix = product(toPixels(now), inverse(toPixels(before)));
+  const area = Math.abs(mat2d.determinant(matrix));
+  if (!(area > LEAST_GROWTH ** 2 && area < GREATEST_GROWTH ** 2)) return null;
+  const [a, b, c, d, e, f] = inverse(matrix);
+  const isInside = ([x, y]: number[]) =>
+    Math.abs((a * x + c * y + e) / w - 1) < 1 + ROUNDING &&
+    Math.abs((b * x + d * y + f) / h - 1) < 1 + ROUNDING;
+  const covers = [[0, 0], [width, 0], [0, height], [width, height]].every(isInside);
+  const [xx, xy, yx, yy] = matrix;
+  const shifts = Math.abs(xx - 1) + Math.abs(yy - 1) + Math.abs(xy) + Math.abs(yx) < ROUNDING;
+  if (shifts) for (const n of [4, 5]) matrix[n] = Math.round(matrix[n]);
+  return { matrix, covers, shifts };
 }

@@ -6,14 +6,13 @@ import { texelsOf } from "./colours.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
 import { Marks } from "./marks.ts";
-import { checkSize, makeLayers, sendLayer, type LayersSize } from "./layers.ts";
-import { alongAxes, cornersAt, positions, shares, unitNormals, type Corners } from "./mesh.ts";
+import { checkSize, makeLayers, type LayersSize } from "./half.ts";
+import { alongAxes, type Corners, cornersAndBlocks, cornersAt, cornersOf, positions, shares, unitNormals } from "./mesh.ts";
 import { mostDoublings } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part, type Settings } from "./protocol.ts";
 import type { TileKey } from "./tilechoice.ts";
 import { flowsOf, normalOf, positionOf, programsOf, Tracing, type Made } from "./tracer.ts";
-import { cornersAndBlocks, cornersOf } from "./trianglemesh.ts";
 import type { Vector } from "./vectors.ts";
 
 /** Objects that are made of a part, by the part's name without its step. */
@@ -462,10 +461,15 @@ export class Scene {
 
   /** Send the layers of a texture, and make its mip levels. */
   private fill(texture: WebGLTexture, size: LayersSize, layer: (n: number) => Uint16Array): void {
-    const { context: gl, floats } = this.graphics;
+    const gl = this.graphics.context;
+    const { width, height, layers, channels, levels } = size;
     makeLayers(gl, texture, size);
-    for (let n = 0; n < size.layers; n += 1) sendLayer(gl, floats ? { ...size, levels: 0 } : size, n, layer(n));
-    if (floats && size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    const format = channels === 1 ? gl.RED : gl.RGBA;
+    for (let n = 0; n < layers; n += 1) {
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, n, width, height, 1, format, gl.HALF_FLOAT, layer(n));
+    }
+    if (levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
   }
 
   /** Drop the slices of steps that are neither shown nor next. */

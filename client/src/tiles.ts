@@ -13,7 +13,6 @@ import {
   type Header,
   type NamedPart,
   type Part,
-  type Settings,
   type TileHeader,
 } from "./protocol.ts";
 import { Scene } from "./scene.ts";
@@ -28,9 +27,10 @@ import {
   type Choices,
   type TileKey,
 } from "./tilechoice.ts";
-import { Failures, type Requests, type Source } from "./sources/source.ts";
+import { Failures } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
+import type { View } from "./viewstate.ts";
 
 /** Milliseconds from a change of what is wanted to the request. */
 const REQUEST_MS = 60;
@@ -53,19 +53,6 @@ interface Tile {
   used: number;
 }
 
-/** What is drawn for whom. */
-export interface TileHost {
-  readonly camera: Camera | null;
-  readonly settings: Settings;
-  readonly canvas: HTMLCanvasElement;
-  readonly ratio: number;
-  readonly options: { source?: Source };
-  readonly requests: Requests | null;
-  readonly lifetime: { later(call: () => void, delay: number): unknown };
-  /** Draw the picture once more, with what has come. */
-  refine(): void;
-}
-
 export class Tiles {
   /** What was drawn last. */
   layers: Layer[] = [];
@@ -74,7 +61,7 @@ export class Tiles {
   /** Number of the tiles that are wanted, and of those that cannot be drawn yet. */
   wanted = 0;
   pending = 0;
-  private readonly host: TileHost;
+  private readonly host: View;
   private readonly root: Scene;
   private readonly tiles = new Map<string, Tile>();
   private pyramid: Pyramid | null = null;
@@ -91,7 +78,7 @@ export class Tiles {
   /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Failures();
 
-  constructor(host: TileHost, root: Scene) {
+  constructor(host: View, root: Scene) {
     this.host = host;
     this.root = root;
   }
@@ -248,7 +235,7 @@ export class Tiles {
   /** Request what is missing, and nothing else, once the view has been still for a moment. */
   private ask(): void {
     const { requests, lifetime } = this.host;
-    if (!requests || this.isWaiting || !(this.missing.length || this.hasAsked)) return;
+    if (this.isWaiting || !(this.missing.length || this.hasAsked)) return;
     this.isWaiting = true;
     lifetime.later(() => {
       this.isWaiting = false;

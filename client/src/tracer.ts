@@ -2,8 +2,7 @@
 // drawn from. Python follows the paths alike, and lays out the texels alike:
 // flowtex/rendering/webgl/velocity.py has what comes here.
 
-import { HALVES } from "./half.ts";
-import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
+import { HALVES, makeLayers } from "./half.ts";
 import { Poles } from "./poles.ts";
 import type { Program, ProgramContext, Programs } from "./programs.ts";
 import type { Data, Header, Part, TraceHeader } from "./protocol.ts";
@@ -85,8 +84,6 @@ export function normalOf(padded: Part, trace: TraceHeader, shape: [number, numbe
 /** The context that paths are traced in. */
 interface TraceContext extends ProgramContext {
   readonly programs: Programs;
-  /** Whether textures of floats can be drawn into. */
-  readonly floats: boolean;
 }
 
 /** Parts by their names, of which some may be missing. */
@@ -137,7 +134,7 @@ export function stretches(
 }
 
 /** Programs that follow paths, put long ones together, and lay out texels; they may not be ready yet. */
-export function programsOf({ programs, floats }: TraceContext, header: Traced, trace: TraceHeader) {
+export function programsOf({ programs }: TraceContext, header: Traced, trace: TraceHeader) {
   const { fullVertex, trace: path = "", layers = "" } = header.shaders;
   const get = (fragment: string, ...variant: (string | boolean)[]) => {
     const names = variant.filter((name) => typeof name === "string");
@@ -145,13 +142,12 @@ export function programsOf({ programs, floats }: TraceContext, header: Traced, t
     if (program.error) throw new Error(`the tracer cannot be built: ${program.error}`);
     return program;
   };
-  const target = floats && "FLOWTEX_FLOATS";
   const polar = trace.poles !== undefined && "FLOWTEX_POLES";
   return {
     follow: get(path, polar, trace.pathlines && "FLOWTEX_PATHLINES"),
     compose: trace.pathlines ? null : get(path, polar, "FLOWTEX_COMPOSED"),
-    slopes: get(layers, "FLOWTEX_SLOPES", target),
-    tangents: get(layers, polar, target),
+    slopes: get(layers, "FLOWTEX_SLOPES"),
+    tangents: get(layers, polar),
   };
 }
 
@@ -341,50 +337,6 @@ export class Tracing {
     return Array.from({ length: count }, (_, n) => [at(n), at(n + 1)]);
   }
 
-  /** What layers are drawn into: the texture itself, or whole numbers that are read and sent there. */
-  private layerTarget(result: WebGLTexture, size: LayersSize) {
-    const gl = this.graphics.context;
-    const { width, height } = size;
-    if (this.graphics.floats) {
-      const frame = this.frame();
-      return {
-        begin: (n: number): [number, number] => {
-          gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-          gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, result, 0, n);
-          return [width, height];
-        },
-        end: () => undefined,
-        finish: () => {
-          gl.activeTexture(gl.TEXTURE0);
-          gl.bindTexture(gl.TEXTURE_2D_ARRAY, result);
-          if (size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
-        },
-      };
-    }
-    const pairs = Math.ceil(width / 2);
-    const [, frame] = this.target(pairs, height);
-    const read = new Uint32Array(pairs * height * 4);
-    const halves = new Uint16Array(read.buffer);
-    const texels = new Uint16Array(4 * width * height);
-    return {
-      begin: (): [number, number] => {
-        gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-        return [pairs, height];
-      },
-      end: (n: number) => {
-        gl.readPixels(0, 0, pairs, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, read);
-        for (let row = 0; row < height; row += 1) {
-          const first = 8 * pairs * row;
-          texels.set(halves.subarray(first, first + 4 * width), 4 * width * row);
-        }
-        gl.activeTexture(gl.TEXTURE0);
-        gl.bindTexture(gl.TEXTURE_2D_ARRAY, result);
-        sendLayer(gl, size, n, texels);
-      },
-      finish: () => undefined,
-    };
-  }
-
   /** Make one layer after the other. */
   private *slices(step: number): Generator<void, WebGLTexture> {
     const { graphics, trace, header } = this;
@@ -444,10 +396,11 @@ export class Tracing {
       graphics.programs.use(pass, { ...uniforms, ...values });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     };
-    const layers = this.layerTarget(result, size);
+    const frame = this.frame();
     const layer = (n: number, pass: Program, textures: WebGLTexture[], values: Record<string, Uniform>) => {
-      draw(layers.begin(n), [own, ...constant, ...textures], pass, values);
-      layers.end(n);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+      gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, result, 0, n);
+      draw([width, height], [own, ...constant, ...textures], pass, values);
     };
     const { follow, compose, slopes, tangents } = programsOf(graphics, header, trace);
     layer(0, tangents, [], { u_inCells: 0 });
@@ -490,7 +443,9 @@ export class Tracing {
       }
       layer(start, slopes, [first[0], now[0]], { u_fourth: REACH, u_lag: sign * lags[0] });
     }
-    layers.finish();
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D_ARRAY, result);
+    if (size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
     return result;
   }
 }

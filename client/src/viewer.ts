@@ -1,39 +1,27 @@
 // One scene in an element.
 //
 //   header, parts --> Viewer --> Painter --> canvas
-//                       |          by WebGL2 (webgl2painter.ts), or pictures of the host (streamedpainter.ts)
+//                       |          by WebGL2 (webgl2painter.ts), or pictures of the host (painter.ts)
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
+import { SceneView } from "./bareview.ts";
 import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
-import { copyOf, isSamePlace, type Camera, type CameraState } from "./camera.ts";
-import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
+import { copyOf, isSamePlace, type CameraState } from "./camera.ts";
+import { FRAME_MS } from "./context.ts";
+import { Ground } from "./dom.ts";
 import { groundAt } from "./earthlayer.ts";
-import { Ground } from "./ground.ts";
-import { HeldParts } from "./heldparts.ts";
-import { Lifetime } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
-import type { Painter, View } from "./painter.ts";
-import type { Found, Point } from "./picking.ts";
+import { StreamedPainter, type Painter } from "./painter.ts";
+import type { Point } from "./picking.ts";
 import { Player } from "./player.ts";
 import { PointCard } from "./pointcard.ts";
 import { Pointers } from "./pointers.ts";
-import {
-  EARTH_LINES,
-  FORMAT,
-  tilePart,
-  type Header,
-  type NamedPart,
-  type Settings,
-  type Value,
-} from "./protocol.ts";
-import type { Scene } from "./scene.ts";
+import { EARTH_LINES, FORMAT, type Header, type NamedPart, type Settings, type Value } from "./protocol.ts";
 import { Requests } from "./sources/source.ts";
-import { StreamedPainter } from "./streamedpainter.ts";
-import type { Tiles } from "./tiles.ts";
-import type { Moment, ViewState } from "./uniforms.ts";
+import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
-import { placedCamera, viewState } from "./viewstate.ts";
+import { placedCamera } from "./viewstate.ts";
 import { WebGL2Painter } from "./webgl2painter.ts";
 
 /** For which a view that was moved, or data that have changed, count as changing. */
@@ -41,28 +29,19 @@ const [STILL_MS, STEADY_MS] = [160, 400];
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
-export class Viewer implements User, View {
+export class Viewer extends SceneView {
   readonly options: Options;
   readonly requests: Requests;
-  readonly graphics: Graphics = sharedGraphics();
-  readonly lifetime = new Lifetime();
   readonly player = new Player();
-  readonly root = document.createElement("div");
   /** What the picture fills. */
   readonly stage = document.createElement("div");
-  readonly canvas = document.createElement("canvas");
   readonly card: PointCard = new PointCard(this);
   readonly panel: Panel;
   readonly pointers: Pointers;
-  readonly held = new HeldParts(this.graphics);
-  readonly parts = this.held.all;
   header: Header | null = null;
   settings: Settings = {};
-  camera: Camera | null = null;
-  /** Whether the full picture is shown, and number of full ones. */
-  sharp = false;
+  /** Number of full pictures. */
   frames = 0;
-  isVisible = true;
   /** The views that stand beside each other. */
   together: Viewer[] = [this];
   readonly painter: Painter;
@@ -77,6 +56,7 @@ export class Viewer implements User, View {
   private keptCamera: CameraState | null = null;
 
   constructor(element: HTMLElement, options: Options = {}) {
+    super();
     this.options = options;
     this.requests = new Requests(options.source ?? null, this);
     const { root } = this;
@@ -118,14 +98,10 @@ export class Viewer implements User, View {
     return { ...this.lifetime.stats(), objects, users: users.size, frames: this.frames };
   }
 
-  dispose(): void {
+  override dispose(): void {
     if (this.lifetime.isOver) return;
     this.player.playing = false;
-    this.lifetime.end();
-    this.requests.stop();
-    this.painter.dispose?.();
-    this.held.clear();
-    this.graphics.leave(this);
+    super.dispose();
     this.canvas.width = this.canvas.height = 0;
     this.root.remove();
   }
@@ -203,21 +179,10 @@ export class Viewer implements User, View {
     }
   }
 
-  setPart(part: NamedPart): void {
-    const { name } = part;
-    const tile = tilePart(name);
-    if (tile) return void this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
-    if (!this.held.set(part)) return;
-    this.scene?.forget(name);
-    this.trim();
-    if (name === "cmap") this.tiles?.recolour();
-    if (["cmap", "maps", ...EARTH_LINES].includes(name)) this.panel.showLegend();
-    this.change();
-  }
-
-  /** Hold no more time steps than are needed. */
-  trim(): void {
-    this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
+  override setPart(part: NamedPart): boolean {
+    const isOther = super.setPart(part);
+    if (isOther && ["cmap", "maps", ...EARTH_LINES].includes(part.name)) this.panel.showLegend();
+    return isOther;
   }
 
   setSettings(settings: Settings): void {
@@ -430,11 +395,6 @@ export class Viewer implements User, View {
     this.options.onFrame?.();
   }
 
-  /** Have `frame` called. */
-  request(): void {
-    if (!this.lifetime.isOver && this.isVisible) this.graphics.request(this);
-  }
-
   resize(): void {
     const ratio = Math.max(window.devicePixelRatio || 1, 0.1);
     const { clientWidth, clientHeight } = this.stage;
@@ -455,19 +415,9 @@ export class Viewer implements User, View {
     return this.canvas.height / Math.max(this.stage.clientHeight, 1);
   }
 
-  lost(): void {
-    // Buffers and textures are lost with the context.
-    if (this.header) this.painter.open?.(this.header);
-    this.setSharp(false);
-  }
-
-  /** What is on the graphics card, where the browser draws. */
-  get scene(): Scene | null {
-    return this.painter.scene ?? null;
-  }
-
-  get tiles(): Tiles | null {
-    return this.painter.tiles ?? null;
+  override lost(): void {
+    super.lost();
+    this.root.dataset.sharp = "false";
   }
 
   get shown(): Moment | null {
@@ -479,20 +429,13 @@ export class Viewer implements User, View {
     return this.painter.lacking ?? [];
   }
 
-  /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
-  lack(reason: string, tile?: string, steps: number[] = []): void {
-    if (tile !== undefined) this.tiles?.fail(tile, steps);
+  protected tell(reason: string): void {
     this.panel.tell(reason);
   }
 
-  frame(now: number, until: number): void {
-    if (this.lifetime.isOver) return;
-    try {
-      this.painter.frame(now, until);
-    } catch (error) {
-      this.pause();
-      this.panel.fail("The picture could not be drawn.", String(error));
-    }
+  protected fail(error: unknown): void {
+    this.pause();
+    this.panel.fail("The picture could not be drawn.", String(error));
   }
 
   /** Go on with the time or the clock, to steps that the painter can show. */
@@ -507,12 +450,8 @@ export class Viewer implements User, View {
     this.setSharp(false);
   }
 
-  /** Where from and when a moment is seen, with so many pixels along one of the page. */
-  view(shown: Moment, density: number): ViewState {
-    const { header, camera, scene, player } = this;
-    if (!header || !camera) throw new Error("no scene is shown yet");
-    const anchor = scene?.anchor ?? [0, 0, 0];
-    return viewState({ header, camera, anchor, player, rows: this.stage.clientHeight }, shown, density);
+  protected get rows(): number {
+    return this.stage.clientHeight;
   }
 
   /** Whether points can be found in the picture. */
@@ -529,10 +468,5 @@ export class Viewer implements User, View {
   ground(x: number, y: number): Vector | null {
     const { header, camera } = this;
     return header && camera && groundAt(header, camera, x, y);
-  }
-
-  /** The same as `point`, and where in what is drawn. */
-  find(x: number, y: number): Found | null {
-    return this.canPick ? (this.painter.find?.(x, y) ?? null) : null;
   }
 }

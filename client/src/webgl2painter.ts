@@ -3,7 +3,7 @@
 //   header, parts --> Scene (buffers, textures), Tiles --> ProgressiveRenderer --> canvas
 //                     Graphics (context, programs)           uniforms() of header, settings and view
 
-import type { Painter, View } from "./painter.ts";
+import type { Painter } from "./painter.ts";
 import { pickedPoint, type Found } from "./picking.ts";
 import { Places, type Layer } from "./places.ts";
 import { ProgressiveRenderer } from "./progressive.ts";
@@ -13,6 +13,7 @@ import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import { Tiles } from "./tiles.ts";
 import { isNear, variantOf, type Moment } from "./uniforms.ts";
+import type { View } from "./viewstate.ts";
 
 export class WebGL2Painter implements Painter {
   scene: Scene | null = null;
@@ -29,7 +30,7 @@ export class WebGL2Painter implements Painter {
     this.renderer = new ProgressiveRenderer(view, this);
     if (view.graphics.gl) return;
     view.panel.fail(
-      "This browser has no WebGL2, which is needed to draw the picture.",
+      "This browser has no WebGL2 with floating-point targets, which are needed to draw the picture.",
       "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.",
     );
   }

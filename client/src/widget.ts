@@ -7,7 +7,7 @@ import { pictureOf } from "./dom.ts";
 import { FlowtexView } from "./element.ts";
 import { throttled, type Timer } from "./lifetime.ts";
 import { decoded, type AxesKind, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
-import { Messages, type Loaded } from "./sources/messages.ts";
+import { Messages, type Loaded } from "./sources/source.ts";
 import type { Viewer } from "./viewer.ts";
 
 /** Milliseconds between two messages about the camera, and about the time. */

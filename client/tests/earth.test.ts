@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { dateText, eastNorth, lonLatOf, lonLatText } from "../src/lonlat.ts";
-import { BREAK, linePoints, linesOf, pieceGroups, thinned, visibleRuns } from "../src/maplines.ts";
+import { BREAK, linePoints, linesOf, pieceGroups, thinned, visibleRuns } from "../src/earthlayer.ts";
 import type { Earth } from "../src/protocol.ts";
 
 interface Map {

@@ -102,7 +102,7 @@ export const page = Object.assign(new EventTarget(), {
   },
 });
 export const root = new FakeElement();
-const context = { RENDERER: 1, getExtension: () => null, getParameter: () => server.card };
+const context = { RENDERER: 1, getExtension: (name: string) => (name.includes("float") ? {} : null), getParameter: () => server.card };
 const session = {
   call: (...values: unknown[]) => {
     server.called = values;

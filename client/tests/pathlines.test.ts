@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { arrowHeads, pathShapes, type Line } from "../src/pathlines.ts";
+import { arrowHeads, pathShapes, type Line } from "../src/samples.ts";
 
 const LINE: Line = [
   [0, 50],

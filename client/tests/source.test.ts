@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { NamedPart } from "../src/protocol.ts";
-import { Failures, Requests, type Source, type Taker } from "../src/sources/source.ts";
-import { Messages } from "../src/sources/messages.ts";
+import { Failures, Messages, Requests, type Source, type Taker } from "../src/sources/source.ts";
 import { nameOf, type TileKey } from "../src/tilechoice.ts";
 
 const settled = () => new Promise((resolve) => setImmediate(resolve));

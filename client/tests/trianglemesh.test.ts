@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { interpolated } from "../src/mesh.ts";
-import { cornersAndBlocks, cornersOf, placeIn } from "../src/trianglemesh.ts";
+import { cornersAndBlocks, cornersOf, interpolated, placeIn } from "../src/mesh.ts";
 
 /** Two triangles between four nodes. */
 const TRIANGLES = Uint32Array.of(0, 1, 2, 2, 1, 3);

@@ -8,7 +8,7 @@ import { throttled } from "../src/lifetime.ts";
 import { coordinates, cornersAt, interpolated, positions, shares } from "../src/mesh.ts";
 import { Player } from "../src/player.ts";
 import type { Geometry, Header, Row } from "../src/protocol.ts";
-import { reused } from "../src/reuse.ts";
+import { reused } from "../src/progressive.ts";
 
 test("nodes lie in the middles of texels", () => {
   const padding = { before: 1, size: 4 };

@@ -1,5 +1,4 @@
-// Texels of a layer of the slices, FLOWTEX_SLOPES or those without a lag: flowtex/textures/texture_set.py has what they are. Where floats cannot be
-// drawn, two in a fragment, in half precision.
+// Texels of a layer of the slices, FLOWTEX_SLOPES or those without a lag: flowtex/textures/texture_set.py has what they are.
 
 //#include common/constants.glsl
 //#include webgl2/nodes.glsl
@@ -23,11 +22,7 @@ uniform float u_planar;
 #ifdef FLOWTEX_POLES
 uniform vec3 u_planes[4]; // what the planes of the poles are spanned by
 #endif
-#ifdef FLOWTEX_FLOATS
 out vec4 flowtexOut;
-#else
-out uvec4 flowtexOut;
-#endif
 
 vec3 flowtexPadded(ivec2 node)
 {
@@ -120,14 +115,5 @@ vec4 flowtexTexel(vec2 texel)
 
 void main()
 {
-  vec2 texel = floor(gl_FragCoord.xy);
-#ifdef FLOWTEX_FLOATS
-  flowtexOut = flowtexTexel(texel);
-#else
-  texel.x *= 2.0;
-  vec4 one = flowtexTexel(texel);
-  vec4 two = flowtexTexel(texel + vec2(1.0, 0.0));
-  flowtexOut = uvec4(packHalf2x16(one.xy), packHalf2x16(one.zw), packHalf2x16(two.xy),
-                     packHalf2x16(two.zw));
-#endif
+  flowtexOut = flowtexTexel(floor(gl_FragCoord.xy));
 }

@@ -5,13 +5,14 @@
 // stream of trame-rca, whose events the view does not need, as it moves the camera by itself.
 
 import type { CameraState } from "../camera.ts";
+import { drawsFloats } from "../context.ts";
 import type * as Client from "../core.ts";
 import type { FlowtexView } from "../element.ts";
 import { forwardKeys } from "../keyboard.ts";
 import { throttled } from "../lifetime.ts";
 import type { Options, Reader, Reading } from "../options.ts";
 import type { Header, Settings } from "../protocol.ts";
-import { loadFiles } from "../sources/files.ts";
+import { loadFiles } from "../sources/source.ts";
 import type { Viewer } from "../viewer.ts";
 import { trame, vue, type Emit } from "./vue.ts";
 
@@ -73,7 +74,7 @@ const CHOICE = "flowtex painter";
 /** Who draws best: the browser, where it has WebGL2 and a graphics card. */
 export function bestPainter(): Painter {
   const gl = document.createElement("canvas").getContext("webgl2");
-  if (!gl) return "server";
+  if (!gl || !drawsFloats(gl)) return "server";
   const name = gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER;
   return SOFTWARE.test(String(gl.getParameter(name))) ? "server" : "browser";
 }

@@ -1,8 +1,8 @@
 // How parts travel to a view: its Source has them, and returns those of a tile, or of the whole
 // surface, at time steps. A view asks for what it shows by its Requests, the most needed first.
 //
-//   messages.ts   a kernel answers         embedded.ts   text in an exported page
-//   files.ts      a server makes them      stream.ts     objects of a Zarr store
+//   Messages    a kernel answers         embedded.ts   text in an exported page
+//   loadFiles   a server makes them      stream.ts     objects of a Zarr store
 //
 // flowtex/host/view.py is the other side of the first three.
 
@@ -233,4 +233,58 @@ export class Requests {
     this.wholes.stop();
     this.marks.stop();
   }
+}
+
+/** The end of a request, with what went wrong. */
+export interface Loaded {
+  kind: "loaded";
+  request: string;
+  error?: string;
+}
+
+export class Messages implements Source {
+  readonly hasSteps = true;
+  readonly hasMarks = true;
+  private readonly send: (content: object) => void;
+  private readonly requests = new Map<string, (error?: string) => void>();
+
+  constructor(send: (content: object) => void) {
+    this.send = send;
+  }
+
+  readonly load: LoadTile = (key, steps, signal, _has, mark) => {
+    const request = String(Math.random()); // no other view of the widget has it
+    this.send({ kind: "load", request, key, steps, ...(mark && { mark }) });
+    signal.addEventListener("abort", () => {
+      this.requests.delete(request);
+      this.send({ kind: "drop", request });
+    });
+    return new Promise<NamedPart[]>((resolve, reject) => {
+      this.requests.set(request, (error) => (error ? reject(new Error(error)) : resolve([])));
+    });
+  };
+
+  end({ request, error }: Loaded): void {
+    this.requests.get(request)?.(error);
+    this.requests.delete(request);
+  }
+}
+
+/**
+ * Gives parts from an address and a name, such as "whole", or some parts of it by another name, for what is the same at all times, "whole.3" for a
+ * time step, and "0,2,5.3.4" for a tile at two.
+ */
+export function loadFiles(address: () => string, partsOfFile: (file: ArrayBuffer) => NamedPart[]) {
+  return async (
+    key: TileKey | null,
+    steps: number[],
+    signal?: AbortSignal,
+    _has?: unknown,
+    whole = "whole",
+  ): Promise<NamedPart[]> => {
+    const name = address() + [String(key ?? whole), ...steps].join(".");
+    const answer = await fetch(name, { signal });
+    if (!answer.ok) throw new Error(`${name}: ${answer.status}`);
+    return partsOfFile(await answer.arrayBuffer());
+  };
 }

@@ -1,15 +1,22 @@
 // Built from client/src by client/build.js; change that instead.
-"use strict";(()=>{var CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===
+"use strict";(()=>{function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function drawsFloats(gl){return["EXT_color_buffer_float","EXT_color_buffer_half_float"].some(name=>gl.getExtension(name)!==
+null)}var CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===
 document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
-next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function loadFiles(address,partsOfFile){return async(key,steps,signal,_has,whole="whole")=>{let name=address()+[String(key??
+next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}var FINER=1/16;function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
+bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);var OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>
+b),"<=":(a,b)=>+(a<=b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.
+min(a,b),max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 \
+sqrt abs sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function loadFiles(address,partsOfFile){return async(key,steps,signal,_has,whole="whole")=>{let name=address()+[String(key??
 whole),...steps].join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);
 return partsOfFile(await answer.arrayBuffer())}}var page=()=>window,vue=()=>page().Vue,trame=()=>page().trame;var DRAWN_MS=33,MESSAGE_MS=100,GAP_PX=2,STREAM="trame.rca.topic.stream",session=()=>trame().client.getConnection().getSession(),
 SOFTWARE=/swiftshader|llvmpipe|softpipe|software|basic render/i,CHOICE="flowtex painter";function bestPainter(){let gl=document.
-createElement("canvas").getContext("webgl2");if(!gl)return"server";let name=gl.getExtension("WEBGL_debug_renderer_info")?.
-UNMASKED_RENDERER_WEBGL??gl.RENDERER;return SOFTWARE.test(String(gl.getParameter(name)))?"server":"browser"}function chosen(painter){
-try{return painter&&sessionStorage.setItem(CHOICE,painter),sessionStorage.getItem(CHOICE)}catch{return painter??null}}var TrameView=class{props;emit;element;name=Math.
-random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="browser";scenes=[];loaded=[];area="";size="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(
-()=>this.resize());constructor(props,emit,element){this.props=props,this.emit=emit,this.element=element;let listener=event=>this.
+createElement("canvas").getContext("webgl2");if(!gl||!drawsFloats(gl))return"server";let name=gl.getExtension("WEBGL_deb\
+ug_renderer_info")?.UNMASKED_RENDERER_WEBGL??gl.RENDERER;return SOFTWARE.test(String(gl.getParameter(name)))?"server":"b\
+rowser"}function chosen(painter){try{return painter&&sessionStorage.setItem(CHOICE,painter),sessionStorage.getItem(CHOICE)}catch{
+return painter??null}}var TrameView=class{props;emit;element;name=Math.random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="\
+browser";scenes=[];loaded=[];area="";size="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(()=>this.
+resize());constructor(props,emit,element){this.props=props,this.emit=emit,this.element=element;let listener=event=>this.
 view&&forwardKeys(this.view.first.root,event);document.addEventListener("keydown",listener,{signal:this.ended.signal})}async paint(painter){
 this.painter=chosen(painter)??bestPainter();let start=await trame().trigger(this.props.begin,[this.painter]),early=this.
 early=[],address=new URL(start.client,document.baseURI).href;if(this.client??=await import(address),this.ended.signal.aborted)
@@ -46,7 +53,7 @@ picture.close()}dispose(){this.ended.abort(),this.watcher.disconnect(),this.subs
 this.view?.dispose()}},browser={name:"flowtex-client",props:["begin","read"],emits:["camera","time","clock","playing","s\
 etting","colours"],setup(props,{emit,expose}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(
 ()=>{place.value&&(view=new TrameView(props,emit,place.value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose(
-{take:changes=>{view?.take(changes)},paint:painter=>{view?.paint(painter)}}),()=>h("div",{ref:place})}};function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
+{take:changes=>{view?.take(changes)},paint:painter=>{view?.paint(painter)}}),()=>h("div",{ref:place})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
 middle=[at.left+(at.width-width)/2,at.top+(at.height-height)/2],below=[middle[0],at.bottom+GAP_PX2],above=[middle[0],at.
 top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.right+2*GAP_PX2,middle[1]],top:above},[left,
 top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
