@@ -105,8 +105,7 @@ def measure(case: str, name: str, nodes: int, size: tuple[int, int]) -> Row:
     from surfaces import GRIDS, TRIANGLES
 
     import flowtex.plotting.component  # noqa: F401 plotter.flowtex
-    from flowtex.plotting.vtk_camera import apply_camera
-    from flowtex.rendering.camera import read_camera
+    from flowtex.rendering.camera import apply_camera, read_camera
     from flowtex.rendering.diagnostics import prefer_headless
 
     prefer_headless()

@@ -127,7 +127,7 @@ class Stage:
         self, zoom: float = 1.0, focus: Any = None, roll: float = 0.0, **state: float
     ) -> NDArray[Any]:
         """Draw one frame; ``state`` sets the handle's ``time`` or ``clock``."""
-        from flowtex.plotting.vtk_camera import point_camera
+        from flowtex.plotting.component import point_camera
         from flowtex.scene.options import ViewOptions
 
         for name, value in state.items():

@@ -11,7 +11,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import point_camera
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.cpu.render import render
 from flowtex.scene.options import ViewOptions

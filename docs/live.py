@@ -40,8 +40,7 @@ from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.host.export import page_text
 from flowtex.host.view import WebView, asset, client_script, web_views
-from flowtex.plotting.component import open_plotter
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import open_plotter, point_camera
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes

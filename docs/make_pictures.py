@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 import flowtex
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import point_camera
 from flowtex.scene.options import ViewOptions
 
 #: Address of a page as it is announced.

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex import FlowField
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import point_camera
 
 
 def off_colours(picture: Any, mesh: Any, field: FlowField, **options: Any) -> float:

@@ -12,15 +12,14 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
-from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty
+from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty, vtkRenderer
 
 from flowtex._util.array_types import Bytes, Indices
 from flowtex.errors import FieldError, notify
-from flowtex.field import FlowField
+from flowtex.field import FlowField, Surface
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import point_camera
-from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, apply_camera, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.annotations import difference_text
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -29,6 +28,8 @@ from flowtex.textures.images import as_image
 
 #: Name of the colours among the arrays of a mesh.
 COLOURS = "flowtex colours"
+#: A view of the whole surface.
+WHOLE = ViewOptions()
 #: VTK's shape of labels without a plate.
 NO_PLATE = 0
 
@@ -208,6 +209,33 @@ class FlowtexComponent:
     def __plotter_close__(self) -> None:
         """Free the graphics card when the plotter closes."""
         self.clear(render=False)
+
+
+def point_camera(
+    plotter: Any, surface: Surface, view: ViewOptions = WHOLE, margin: float = CAMERA_LIMITS.margin
+) -> None:
+    """Point a plotter's camera at a surface as a view requests.
+
+    PyVista does not change a camera that is set, even if it clips objects that are added later; so
+    the clipping range follows the bounds of the objects, and otherwise stays. Raises a FieldError
+    when the view's camera, zoom or focus, or the margin, is invalid.
+    """
+    (width, height), renderer = plotter.window_size, plotter.renderer
+    left, bottom, right, top = renderer.GetViewport()
+    aspect = float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
+    apply_camera(view.first_camera(surface, aspect, margin), plotter.camera)
+    plotter.camera_set = True
+    bounds = renderer.ComputeVisiblePropBounds()
+
+    def follow_bounds(caller: vtkRenderer, _: str) -> None:
+        nonlocal bounds
+        new_bounds = caller.ComputeVisiblePropBounds()
+        if new_bounds != bounds:
+            caller.ResetCameraClippingRange()
+        bounds = new_bounds
+
+    renderer.reset_camera_clipping_range()
+    renderer.AddObserver("StartEvent", follow_bounds)
 
 
 def open_plotter(

@@ -449,3 +449,15 @@ def read_camera(vtk_camera: Any) -> Camera:
         parallel_scale=vtk_camera.GetParallelScale(),
         view_angle=vtk_camera.GetViewAngle(),
     )
+
+
+def apply_camera(camera: Camera, vtk_camera: Any) -> None:
+    """Give a VTK camera the attributes of another camera."""
+    vtk_camera.SetPosition(*camera.position)
+    vtk_camera.SetFocalPoint(*camera.focal_point)
+    vtk_camera.SetViewUp(*camera.up)
+    vtk_camera.SetParallelProjection(camera.parallel)
+    if hasattr(vtk_camera, "parallel_projection"):  # PyVista's camera has its own flag
+        vtk_camera.parallel_projection = camera.parallel
+    vtk_camera.SetParallelScale(camera.parallel_scale)
+    vtk_camera.SetViewAngle(camera.view_angle)

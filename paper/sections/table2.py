@@ -52,8 +52,8 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
         return {}
     import pyvista as pv
 
+    from flowtex.plotting.component import point_camera
     from flowtex.plotting.handle import FlowHandle
-    from flowtex.plotting.vtk_camera import point_camera
     from flowtex.scene.options import Appearance
     from flowtex.scene.scene import Scene
 

@@ -18,8 +18,7 @@ import flowtex
 from flowtex._util.array_types import Bytes
 from flowtex.host.export import export, page_text
 from flowtex.host.view import WebView, web_views
-from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, apply_camera
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
 from flowtex.textures.tiles.pyramid import TileKey

@@ -79,3 +79,16 @@ def test_size_may_be_given_as_that_of_a_window() -> None:
     assert flowtex.extent(plane(), window_size=(160, 80)) == flowtex.extent(plane(), size=(160, 80))
     with pytest.raises(FieldError, match=r"size is \(160, 120\) and window_size is \(9, 9\); omit"):
         flowtex.render(plane(), window_size=(9, 9), **QUICK)
+
+
+def test_what_is_added_later_is_seen(plotter: Any) -> None:
+    plotter.flowtex.add(flowtex.examples.double_gyre_field(), samples=9, show_scalar_bar=False)
+    plotter.render()
+    # Nearer than the clipping range of the flat surface alone.
+    plotter.add_mesh(pv.Sphere(radius=0.2, center=(1.0, 0.5, 0.5)), color="red", lighting=False)
+    plotter.render()
+    assert (plotter.screenshot()[120, 160] == [255, 0, 0]).all()
+    # A range that somebody has set stays.
+    plotter.camera.clipping_range = near, far = 0.01, 77.0
+    plotter.render()
+    np.testing.assert_allclose(plotter.camera.clipping_range, (near, far))

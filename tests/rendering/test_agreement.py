@@ -10,7 +10,7 @@ from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SMALL, VIEWS, View, differ
 from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
-from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.camera import apply_camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.scene import Scene

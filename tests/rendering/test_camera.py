@@ -22,7 +22,7 @@ STRAIGHT = Camera((1.0, 0.5, 5.0), (1.0, 0.5, 0.0), (0.0, 1.0, 0.0), True, 0.6)
 def vtk_camera(camera: Camera) -> Any:
     from vtkmodules.vtkRenderingCore import vtkCamera
 
-    from flowtex.plotting.vtk_camera import apply_camera
+    from flowtex.rendering.camera import apply_camera
 
     result = vtkCamera()
     apply_camera(camera, result)

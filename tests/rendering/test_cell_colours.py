@@ -19,8 +19,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bools, Bytes
 from flowtex.host.still import _colour
 from flowtex.host.view import web_views
-from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, apply_camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene.options import Options

@@ -15,8 +15,7 @@ from triangle_meshes import cube, random_plane, soup, surface_of
 
 import flowtex
 from flowtex import FlowField
-from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, apply_camera
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 

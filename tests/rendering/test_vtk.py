@@ -17,7 +17,7 @@ from plain_pyvista import off_colours
 from scipy.ndimage import binary_erosion
 
 import flowtex
-from flowtex.plotting.vtk_camera import point_camera
+from flowtex.plotting.component import point_camera
 from flowtex.rendering import mesh_levels
 from flowtex.scene.options import ViewOptions
 

@@ -25,8 +25,7 @@ from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, apply_camera
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene, follow, make_scenes
 from flowtex.settings import Settings

@@ -13,8 +13,7 @@ from flowtex._util.arguments import checked_size, sized
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
-from flowtex.plotting.component import open_plotter
-from flowtex.plotting.vtk_camera import WHOLE, point_camera
+from flowtex.plotting.component import WHOLE, open_plotter, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
 from flowtex.scene.annotations import Layout, annotate_views
