@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +41,8 @@ from flowtex.field.validation import ALL_AT_REST, prepared
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
+#: Attribute of a coarsest level with the function that opens the field again.
+OPENED = "_opened"
 
 #: Attributes that a field takes from its source as they are.
 KEPT = ("section", "reading", "volume_values")
@@ -143,6 +145,10 @@ class FlowField(FieldConstructors, FieldQuantities):
     on_cells: tuple[str, ...] = ()
     vectors: str = ""
     parts: Mapping[str, Steps] = field(default_factory=dict)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
+        opened = vars(self).get(OPENED)
+        return super().__reduce_ex__(protocol) if opened is None else (opened, ())
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the data; what is computed from them is computed again."""

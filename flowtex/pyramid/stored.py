@@ -15,7 +15,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, Notice, notify
 from flowtex.field import FlowField
-from flowtex.field.field import WHOLE_SHAPE
+from flowtex.field.field import OPENED, WHOLE_SHAPE
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.field.uncertainty import spread_name
@@ -90,10 +90,11 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     >>> flowtex.pyramid.open_store("gyre.zarr").shape
     (21, 41)
     """
+    opened = partial(open_store, store, uncertainty=uncertainty, **options)
     if not is_store(store):
         given = {**options, "uncertainty": uncertainty}
         others = levels_of_others(place_text(store), FieldOptions.of_dataset(given))
-        return others if isinstance(others, FlowField) else _field_of(others)
+        return others if isinstance(others, FlowField) else _field_of(others, opened)
     if options:
         raise FieldError(f"{', '.join(options)} applies to the source of a pyramid; omit it")
     levels = Levels(store)
@@ -109,10 +110,10 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
             f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}; "
             "set it when you build the store"
         )
-    return _field_of(levels)
+    return _field_of(levels, opened)
 
 
-def _field_of(levels: Levels | OtherLevels) -> FlowField:
+def _field_of(levels: Levels | OtherLevels, opened: Callable[[], FlowField]) -> FlowField:
     """Return the coarsest level as a field that has the others."""
     root = root_of(levels)
 
@@ -120,7 +121,7 @@ def _field_of(levels: Levels | OtherLevels) -> FlowField:
         return StoredPyramid(levels, field, parameter, lines)
 
     attach_pyramid(root, pyramid)
-    root.__dict__[WHOLE_SHAPE] = tuple(levels.about["nodes"])
+    root.__dict__.update({WHOLE_SHAPE: tuple(levels.about["nodes"]), OPENED: opened})
     return root
 
 

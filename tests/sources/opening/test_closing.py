@@ -119,3 +119,14 @@ def test_a_field_of_a_file_is_pickled_and_copied(tmp_path: Path, options: Any) -
         for name, steps in field.scalars.items():
             np.testing.assert_array_equal(other.scalars[name], steps)
     assert not is_open(tmp_path / "run.nc")
+
+
+def test_a_field_of_a_store_is_opened_again(tmp_path: Path) -> None:
+    from flowtex.pyramid import build, open_store
+    from flowtex.textures.tiles.shared import has_pyramid
+
+    build(data(), tmp_path / "run.zarr", progress=False, globe=True)
+    field = open_store(tmp_path / "run.zarr")
+    for other in (pickle.loads(pickle.dumps(field)), copy.deepcopy(field)):
+        assert has_pyramid(other)
+        np.testing.assert_array_equal(other.velocity, field.velocity)
