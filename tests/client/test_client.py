@@ -364,30 +364,6 @@ def test_a_lost_context_comes_back_with_the_same_picture(client: ClientPage) -> 
     np.testing.assert_array_equal(client.picture(), before)
 
 
-def test_many_viewers_draw_and_leave_nothing(client: ClientPage) -> None:
-    given = scene(samples=5)
-    before = number(client, "document.querySelectorAll('*').length")
-    for _ in range(9):
-        client.mount(given, (90, 60), smooth=False)
-    client.page.wait_for_function("() => viewers.every((v) => v.sharp)")
-    assert number(client, "new Set(viewers.map((v) => v.graphics.gl)).size") == 1
-    pictures = number(client, "new Set(viewers.map((v) => v.canvas.toDataURL())).size")
-    assert pictures == 1
-    first = client.picture()
-    assert np.std(first[20:40, 20:70].astype(float)) > 15
-    number(client, "viewers.forEach(({ root: { parentElement: e } }) => (e.dispose(), e.remove()))")
-    left = number(client, "viewers[7].stats()")
-    assert {k: left[k] for k in ("objects", "users", "listeners", "observers", "timers")} == {
-        "objects": 0,
-        "users": 0,
-        "listeners": 0,
-        "observers": 0,
-        "timers": 0,
-    }
-    assert number(client, "document.querySelectorAll('*').length") == before + 9
-    assert number(client, "viewers.every((v) => !v.parts.size && !v.root.isConnected)")
-
-
 def test_nothing_is_drawn_out_of_sight_or_at_rest(client: ClientPage) -> None:
     client.mount(scene(), SIZE, **PLAIN)
     client.sharp()

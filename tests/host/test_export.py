@@ -79,31 +79,6 @@ def test_fewer_steps_make_a_smaller_page(tmp_path: Path) -> None:
         export(gyre(3), tmp_path / "none.html", steps=0)
 
 
-def test_a_file_is_there_whole_or_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "page.html"
-    path.write_text("before")
-
-    def fail(self: Any, step: int) -> Any:
-        msg = "disk full"
-        raise OSError(msg)
-
-    with monkeypatch.context() as patch:
-        patch.setattr("flowtex.rendering.webgl.client_data.ClientData.step", fail)
-        patch.setattr("flowtex.host.still.preview_png", lambda *a, **k: b"")
-        with pytest.raises(OSError, match="disk full"):
-            export(gyre(), path)
-    assert path.read_text() == "before"
-    assert [p.name for p in tmp_path.iterdir()] == ["page.html"]
-    export(gyre(), path)
-    assert path.stat().st_size > 50_000
-    assert path.stat().st_mode & 0o777 == (tmp_path / "page.html").stat().st_mode & 0o777
-    plain = tmp_path / "plain"
-    plain.touch()
-    assert path.stat().st_mode == plain.stat().st_mode
-
-
 @pytest.fixture
 def offline(browser: Browser, quick_export: None) -> Iterator[tuple[Page, list[str], list[str]]]:
     """Yield a page without a network, the addresses that it asks for, and what it complains of."""
