@@ -81,10 +81,10 @@ def kernel(opengl: Any) -> Iterator[Any]:
 def smaller(code: str) -> str:
     """Return code whose pictures, not arrays, have a quarter of the width and of the height.
 
-    Movies have three tenths of a second.
+    Movies have eight tenths of a second.
     """
     code = re.sub(r"dpi=\d+", "dpi=40", code).replace("resolution=4096", "resolution=512")
-    code = re.sub(r"\bseconds=\d+(?![.\d])", "seconds=0.3", code)
+    code = re.sub(r"\bseconds=\d+(?![.\d])", "seconds=0.8", code)
     return re.sub(
         r"""((?<= )size=|"size": )([(\[])(\d{3,}), (\d{3,})""",
         lambda m: f"{m[1]}{m[2]}{int(m[3]) // 4}, {int(m[4]) // 4}",
