@@ -6,17 +6,11 @@ from collections.abc import Iterator
 from contextlib import closing
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import pyvista as pv
-from page_reader import Reader
 from scipy.spatial import KDTree
 
-import flowtex
-from flowtex._util.colours import colour_table
-from flowtex.host.export import page_text
-from flowtex.host.view import WebView
 from flowtex.scene.scene import Scene
 
 pytestmark = [
@@ -161,25 +155,6 @@ def test_surfaces_without_a_volume_keep_the_range_of_the_first(window: Any) -> N
     assert handle.scene.beyond == (False, True)
     handle.clim = None
     assert handle.actor.mapper.scalar_range == pytest.approx(cuts[1].get_data_range("p"))
-
-
-def test_front_ends_have_one_range() -> None:
-    mesh, options = volume(), dict[str, Any](slice="z=0.9", scalars="p")
-    low, high = mesh.get_data_range("p")
-    view = WebView(Scene.of(mesh, **options))
-    page: Any = Reader(page_text([view])).header()
-    widget = flowtex.FlowWidget(mesh, **options)
-    for header in (page, widget._header):
-        colours: Any = header["scalars"]
-        assert (colours["low"], colours["high"]) == pytest.approx((low, high))
-    widget.close()
-    figure, ax = plt.subplots()
-    norm = flowtex.axes(ax, mesh, **options).norm
-    assert (norm.vmin, norm.vmax) == pytest.approx((low, high))
-    plt.close(figure)
-    image = flowtex.render(mesh, size=(64, 64), **options, **PLAIN)
-    middle = read_back(image[31:33, 31:33].astype(float), colour_table("viridis"), (low, high))
-    assert middle == pytest.approx(0.81, abs=0.02 * high)
 
 
 def pair() -> tuple[Any, Any]:
