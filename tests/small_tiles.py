@@ -19,7 +19,7 @@ def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
     from flowtex.textures.tiles.pyramid import block_places
 
     with suppress(ModuleNotFoundError):  # without VTK nothing is drawn by it
-        from flowtex.rendering.vtk import surface as surface
+        from flowtex.rendering.vtk import flow_surface as flow_surface
 
     del build, stored  # what is not there could not be changed
     change(block_places, "__defaults__", (BLOCK_CELLS,))

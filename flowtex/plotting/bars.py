@@ -17,7 +17,7 @@ from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import ZERO_SHARE, is_light, rounded_ends
-from flowtex.rendering.vtk.mesh import Ends, FlowMapper, NormTable
+from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
 from flowtex.scene.annotations import OPACITY, round_values
 
 #: A bar at the left border of the window, as tall as those of PyVista.

@@ -16,8 +16,8 @@ from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, Overlay, StructureOverlay
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk.flow_mapper import Ends
 from flowtex.rendering.vtk.layer import weak_callback
-from flowtex.rendering.vtk.mesh import Ends
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import Appearance, AppearanceAttributes
 from flowtex.scene.scene import Change, Scene

@@ -26,10 +26,12 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05
-#: Weight of an error of the outline, a quarter of a pixel across it. Pixels are placed between all
-#: nodes, so it may be four pixels along the surface, and half of one across it, which the outline
-#: of a curved one is off by at most.
-OUTLINE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.0125, 0.1
+#: Weight of an error of the outline: a quarter of a pixel across it.
+OUTLINE_SHARE = 0.2
+#: Weight along the surface: pixels are placed between all nodes, so four of them.
+PLACED_SHARE = 0.0125
+#: Weight across the surface, by which the outline of a curved one is off: half a pixel.
+HEIGHT_SHARE = 0.1
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
 #: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.

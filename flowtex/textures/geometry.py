@@ -132,8 +132,10 @@ class NodeDisplacements:
         return first + (1 - share) * (p * along_i + q * along_j), inside
 
 
-#: Most mip levels of a texture besides its finest one, and those of a tile.
-DEEPEST, TILE_LEVELS = 5, 3
+#: Most mip levels of a texture besides its finest one.
+DEEPEST = 5
+#: Mip levels of a tile besides its finest one.
+TILE_LEVELS = 3
 
 
 @dataclass(frozen=True)

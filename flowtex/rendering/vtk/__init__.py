@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flowtex.rendering.vtk.mesh import lookup_table, surface_mesh, use_flow_mapper
-from flowtex.rendering.vtk.surface import FlowSurface
+from flowtex.rendering.vtk.flow_mapper import lookup_table, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk.flow_surface import FlowSurface
 
 __all__ = ["FlowSurface", "lookup_table", "surface_mesh", "use_flow_mapper"]

@@ -39,7 +39,7 @@ from flowtex.rendering.uniforms import (
     uniforms,
     variants,
 )
-from flowtex.rendering.vtk.mesh import (
+from flowtex.rendering.vtk.flow_mapper import (
     COORDINATE,
     CORNERS,
     IMAGE,
@@ -54,8 +54,10 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry, image_size
 
-#: OpenGL's numbers of internal formats by channels, in half precision and in single.
-FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815, 4: 0x8814}
+#: OpenGL's numbers of internal formats in half precision by channels.
+FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
+#: The same in single precision.
+SINGLE = {2: 0x8230, 3: 0x8815, 4: 0x8814}
 #: OpenGL's number of the type of half precision.
 HALF_FLOAT = 0x140B
 

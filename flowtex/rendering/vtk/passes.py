@@ -29,19 +29,25 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 
 from flowtex._util.array_types import Floats, Floats32, Ints
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
-from flowtex.rendering.vtk.mesh import (
+from flowtex.rendering.vtk.flow_mapper import (
     COORDINATE,
     CORNERS,
     FlowMapper,
     map_attributes,
     set_triangles,
 )
+from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
 
-#: OpenGL's numbers of what it can do,
-BLEND, SCISSOR, DEPTH_TEST = 0x0BE2, 0x0C11, 0x0B71
-#: and of comparisons.
-EQUAL, ALWAYS = 0x0202, 0x0207
+#: OpenGL's number of blending.
+BLEND = 0x0BE2
+#: OpenGL's number of the scissor test.
+SCISSOR = 0x0C11
+#: OpenGL's number of the depth test.
+DEPTH_TEST = 0x0B71
+#: OpenGL's number of the comparison of equal depths.
+EQUAL = 0x0202
+#: OpenGL's number of a comparison that holds always.
+ALWAYS = 0x0207
 #: Most layers, a power of two: their numbers are depths.
 MOST_LAYERS = 4096
 #: VTK begins shaders with what it writes for these.

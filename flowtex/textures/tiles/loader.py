@@ -26,8 +26,10 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Memory of the tiles that are kept, in bytes.
 BUDGET_BYTES = 1_000_000_000
-#: Memory of a texel, four numbers of half precision, and of a node beside it.
-TEXEL_BYTES, NODE_BYTES = 8, 300
+#: Memory of a texel: four numbers of half precision.
+TEXEL_BYTES = 8
+#: Memory of a node beside its texels.
+NODE_BYTES = 300
 #: Memory of a triangle that has its own vertices.
 TRIANGLE_BYTES = 250
 #: Most tiles that are made at once for one view.

@@ -39,27 +39,34 @@ from flowtex.trace.trace import paths
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 100_000
-#: Cells along a side of a block, the smallest part of a tile that is drawn or left out by itself,
-#: and blocks along a side of a tile.
-BLOCK_CELLS, TILE_BLOCKS = 64, 4
+#: Cells along a side of a block, the smallest part of a tile that is drawn by itself.
+BLOCK_CELLS = 64
+#: Blocks along a side of a tile.
+TILE_BLOCKS = 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
 PATH_CELLS = 28
 #: First lag in cells where a finer level is drawn before cells cover more than a few pixels: the
 #: parabolas up to there are off by hundredths of a pixel.
 COARSE_FIRST_CELLS = 1.0
-#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; additional
-#: lines; and its greatest width.
-HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
+#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile.
+HALO_SHARE = 1.2
+#: Additional lines of a halo.
+HALO_SPARE = 3
+#: Greatest width of a halo in lines.
+MOST_HALO = 512
 #: Most nodes of a window; halos are narrower where there would be more.
 MOST_WINDOW = 600_000
 #: Most nodes of a window around a pole for composed paths: in a larger one all are traced.
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
 WIDENINGS = (1, 2, 4)
-#: Share of a path's length that must not be cut, and most cut paths as a share of those of a tile;
-#: every so many lines are sampled for that.
-NEEDED_SHARE, MOST_CUT_SHARE, SAMPLED_LINES = 0.75, 5e-3, 8
+#: Share of a path's length that must not be cut.
+NEEDED_SHARE = 0.75
+#: Most cut paths as a share of those of a tile.
+MOST_CUT_SHARE = 5e-3
+#: Every so many lines are sampled for cut paths.
+SAMPLED_LINES = 8
 #: Rows that are averaged together.
 ROWS = 256
 

@@ -22,8 +22,10 @@ T = TypeVar("T")
 SEARCHED_NODES = 1_000_000
 #: Settings of the structure; the first two are numbers of points, and of saddles with lines.
 STRUCTURE = ("critical_points", "separatrices", "nullclines")
-#: Most points of a step, and saddles whose lines are drawn.
-MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE[:2])
+#: Most points of a step.
+MOST_POINTS = int(TABLE["critical_points"].high or 0)
+#: Most saddles whose lines are drawn.
+MOST_SADDLES = int(TABLE["separatrices"].high or 0)
 #: Greatest length of a drawn line as a share of the surface's extent.
 DRAWN_EXTENTS = 2.0
 #: Most points of a drawn line, two to a cell.

@@ -31,8 +31,10 @@ from flowtex.trace.store import SliceStore
 ROOT_NODES = 25_000
 #: Most nodes from which boxes are computed.
 MOST_MEASURED = 100_000
-#: First lag of a tile's paths in cells, and most lags.
-FIRST_CELLS, MOST_LAGS = 0.25, 24
+#: First lag of a tile's paths in cells.
+FIRST_CELLS = 0.25
+#: Most lags of a tile's paths.
+MOST_LAGS = 24
 #: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
 #: are drawn no sooner, for a triangle costs as much as the pixels beside it.
 BIN_SHARE = 1 / 3

@@ -39,6 +39,7 @@ from flowtex.rendering.uniforms import (
     is_near,
     variants,
 )
+from flowtex.rendering.vtk.flow_mapper import FlowMapper, set_attributes, surface_mesh
 from flowtex.rendering.vtk.layer import (
     FlowLayer,
     insert_text,
@@ -47,7 +48,6 @@ from flowtex.rendering.vtk.layer import (
     weak_callback,
     write_uniform,
 )
-from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.rendering.vtk.passes import DeferredPasses
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry

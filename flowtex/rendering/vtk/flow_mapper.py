@@ -26,8 +26,12 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 #: Extents from the origin from which on VTK draws points relative to another one; nearer by it
 #: takes them to single precision as they are.
 FAR_EXTENTS = 1e3
-#: Point arrays of the mesh.
-POSITION, COORDINATE, IMAGE = "flowtex position", "flowtex coordinate", "flowtex image"
+#: Point array of positions in the frame of the surface.
+POSITION = "flowtex position"
+#: Point array of coordinates in the slices.
+COORDINATE = "flowtex coordinate"
+#: Point array of coordinates in an image.
+IMAGE = "flowtex image"
 CORNERS = "flowtex corners"
 NORMAL = "Normals"
 #: Greatest share of the range of a colour map.
