@@ -23,8 +23,8 @@ from flowtex._util.arrays import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import between_nodes
 from flowtex.rendering.cpu.fragments import Fragments, Varying
-from flowtex.rendering.cpu.image import covered_texels, mip_level
 from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.noise import covered_texels, mip_level
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums, shared
 from flowtex.textures.images import ImageTextures, coordinates, steps_of, texel_places
 from flowtex.trace.store import SliceStore

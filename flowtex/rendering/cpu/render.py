@@ -13,9 +13,8 @@ from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
-from flowtex.rendering.cpu.image import ImageLookup, ImageMips
 from flowtex.rendering.cpu.mipmaps import Mips
-from flowtex.rendering.cpu.noise import SpaceNoise
+from flowtex.rendering.cpu.noise import ImageLookup, ImageMips, SpaceNoise
 from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
