@@ -177,18 +177,6 @@ def rng() -> np.random.Generator:
 
 
 @pytest.fixture(scope="session")
-def data_dir() -> Path:
-    """Return the folder of the large public files; skip where ``FLOWTEX_DATA`` names none."""
-    named = os.environ.get("FLOWTEX_DATA", "")
-    if not named:
-        pytest.skip("FLOWTEX_DATA is not set: it names the folder of the large public data files")
-    folder = Path(named)
-    if not folder.is_dir():
-        pytest.fail(f"FLOWTEX_DATA names {named!r}, which is not a folder: correct or unset it")
-    return folder
-
-
-@pytest.fixture(scope="session")
 def opengl() -> diagnostics.OpenGLReport:
     """Return what VTK draws with; skip where it cannot, as it would end the test process."""
     found = diagnostics.opengl_report()

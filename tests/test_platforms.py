@@ -10,7 +10,6 @@ import sys
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
-import barred
 import pytest
 
 import flowtex
@@ -64,21 +63,6 @@ def test_the_core_needs_neither_vtk_nor_threads_nor_processes() -> None:
     assert done.returncode == 0, done.stdout
     passed = re.search(r"(\d+) passed", done.stdout)
     assert passed is not None and int(passed[1]) >= 60, done.stdout
-
-
-@pytest.mark.parametrize(
-    ("room", "asker"),
-    [("sources/meshes/plot3d.py", "plot3d.py"), ("trace/trace.py", ""), ("_util/colours.py", "")],
-)
-def test_what_must_do_without_fails_where_it_asks(room: str, asker: str) -> None:
-    code = "def ask(): raise Refused"
-    for refused in (barred.BarredThreadError, ModuleNotFoundError(name="vtkmodules")):
-        names: dict[str, Any] = {"Refused": refused}
-        exec(compile(code, str(PACKAGE / room), "exec"), names)
-        with pytest.raises((RuntimeError, ImportError)) as caught:
-            names["ask"]()
-        assert barred.asker_of(caught.value) == asker
-    assert barred.asker_of(KeyError()) == ""
 
 
 @pytest.mark.parametrize("missing", ["render", "movie", "axes"])

@@ -11,7 +11,6 @@ from paper import measures, quality
 
 Floats = NDArray[np.float64]
 SIZE = (160, 200)
-ONES = np.ones(SIZE)
 EVERYWHERE = np.pad(np.ones((128, 168), bool), 16)
 
 

@@ -31,14 +31,6 @@ def test_a_module_concerns_its_folder_and_who_imports_it(
     assert "tests/test_settings.py" in concerned_tests({"flowtex/settings.py"})
 
 
-def test_what_tests_share_concerns_those_that_import_it(
-    concerned_tests: Callable[[set[str]], list[str]],
-) -> None:
-    found = concerned_tests({"tests/strategies.py"})
-    assert "tests/trace/test_any_trace.py" in found
-    assert "tests/test_release.py" not in found
-
-
 def test_a_test_concerns_itself(concerned_tests: Callable[[set[str]], list[str]]) -> None:
     assert concerned_tests({"tests/test_settings.py"}) == ["tests/test_settings.py"]
     assert concerned_tests({"tests/test_gone.py", "CHANGELOG.md"}) == []
@@ -87,10 +79,6 @@ install.trusted-host='command.example'"""
         "UV_HTTP_TIMEOUT": "9",
         "UV_INSECURE_HOST": "command.example",
     }
-
-
-def test_nothing_is_set_for_a_plain_pip(uv_settings: Callable[[str], dict[str, str]]) -> None:
-    assert uv_settings("") == {}
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
