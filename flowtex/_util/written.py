@@ -78,7 +78,8 @@ def _read_switch(text: str) -> bool:
 
 
 _read_number = numbers(1, expected="a number")
-#: Texts as they are, numbers, and what is on or off.
-PLAIN = Form()
+PLAIN = Form()  #: Texts as they are.
+#: Numbers.
 NUMBER = Form(read=lambda text: _read_number(text)[0], write=lambda value: repr(float(value)))
+#: What is on or off.
 SWITCH = Form(read=_read_switch, write=lambda value: "on" if value else "off")

@@ -15,7 +15,7 @@ from flowtex.errors import FieldError, import_extra, notify
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-DAY_S = 86_400.0
+DAY_S = 86_400.0  #: Seconds of a day.
 #: Decimals of a time beyond which it is written with an exponent.
 MOST_DECIMALS = 6
 #: Times from which on they are written with an exponent.

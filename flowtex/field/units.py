@@ -10,10 +10,10 @@ from flowtex.errors import FieldError, import_extra
 
 #: Texts of data without a unit.
 NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")
-#: Dimensions by pint's names; images have pixels for lengths and frames for times.
-LENGTHS = ("[length]", "[printing_unit]")
-TIMES = ("[time]", "[frame]")
-PRESSURES = ("[mass] / [length] / [time] ** 2",)
+LENGTHS = ("[length]", "[printing_unit]")  #: Lengths by pint's names; images have pixels.
+TIMES = ("[time]", "[frame]")  #: Times by pint's names; images have frames.
+PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Pressures by pint's names.
+#: Velocities by pint's names.
 VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
 #: Spellings that pint reads otherwise: its px is a length of web pages.
 SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))

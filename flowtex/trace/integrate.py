@@ -151,7 +151,8 @@ class _Run:
         count = start.shape[1]
         self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
         self.charts, self.within = sampler.charts, within
-        self.span = sampler.span(direction)
+        #: Lag to the first or last time step, beyond which the flow is constant.
+        self.span = direction * (sampler.times[0 if direction < 0 else -1] - sampler.destination)
         self.lags = lags
         self.before = np.full(start.shape, np.inf)
         #: The lags and one that is never reached, for particles that have passed all.

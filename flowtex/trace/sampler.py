@@ -135,10 +135,6 @@ class Sampler:
             return MOST_ROOM_CELLS
         return np.maximum(self.grid.room[self.grid.corners(position).at], LEAST_ROOM_CELLS)
 
-    def span(self, direction: float) -> float:
-        """Return the lag to the first or last time step, beyond which the flow is constant."""
-        return float(direction * (self.times[0 if direction < 0 else -1] - self.destination))
-
     def since(self, destination: float) -> Sampler:
         """Return this sampler with lags counted from another destination time."""
         other = copy(self)

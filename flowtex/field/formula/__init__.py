@@ -26,7 +26,7 @@ from flowtex.field.formula.grammar import (
 
 __all__ = ["Formula", "FormulaError", "Parameter"]
 
-RANGE = (-5.0, 5.0)
+RANGE = (-5.0, 5.0)  #: Range of a coordinate by default.
 #: Greatest speed and length; values beyond are blanked.
 MOST = 1e30
 #: Step of the differences for tangents, as a share of a range.
@@ -46,7 +46,7 @@ SURFACES: Mapping[str, tuple[tuple[str, str, str], Mapping[str, tuple[float, flo
     ),
     "cylinder": (("cos(u)", "sin(u)", "v"), {"u": _TURN, "v": (-1.5, 1.5)}),
 }
-COMPONENTS = 3
+COMPONENTS = 3  #: Components of a velocity in space.
 #: Operations for classes of sympy with other names.
 _NAMES = {
     "Add": "+",
@@ -83,8 +83,8 @@ _RULES: Mapping[str, tuple[str, ...]] = {
     "hypot": ("a/hypot(a, b)", "b/hypot(a, b)"),
     "mod": ("1", "-floor(a/b)"),
 }
-#: Step of the differences for functions as a share of a range, and their weights.
-FUNCTION_SHARE = 1e-4
+FUNCTION_SHARE = 1e-4  #: Step of the differences for functions, as a share of a range.
+#: Steps and weights of these differences.
 WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 
 

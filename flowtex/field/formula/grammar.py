@@ -47,15 +47,16 @@ OPERATIONS: dict[str, tuple[Any, int | None]] = {
     "max": (np.maximum, None),
     "where": (lambda a, b, c: np.where(a, b, c), 3),
 }
+#: Names of functions in formulas.
 FUNCTIONS = tuple(name for name in OPERATIONS if name.isalnum() and name != "neg")
-CONSTANTS = {"pi": np.pi, "e": np.e}
+CONSTANTS = {"pi": np.pi, "e": np.e}  #: Numbers with a name.
 
-#: Binding powers of operators to their right; a sign binds less than a power.
+#: Binding powers of operators to their right.
 BINDING = {
     **dict.fromkeys(("<", ">", "<=", ">="), 1),
     **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
 }
-SIGN_BINDING = 4
+SIGN_BINDING = 4  #: That of a sign, less than that of a power.
 MOST_LETTERS = 2000  #: Most letters of a formula.
 MOST_DEPTH = 60  #: Most levels of nesting.
 _TOKEN = re.compile(

@@ -26,12 +26,10 @@ from flowtex.field.validation import finite_nodes
 
 #: Nodes closer than this share of the surface's extent lie at one point.
 SAME_POINT_SHARE = 1e-12
-#: Corners of the two triangles of a cell, as (j, i) from its first corner, and steps (j, i) to the
-#: cells across the edges opposite to them.
+#: Corners of the two triangles of a cell, as (j, i) from its first corner.
 CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
+#: Steps (j, i) to the cells across the edges opposite to them.
 ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
-#: Index of each corner of the cells in arrays over the nodes.
-CELL_CORNERS = tuple(product((slice(None, -1), slice(1, None)), repeat=2))
 #: Lines from a pole over which the size of the cells turns into their length.
 POLE_LINES = 8
 
@@ -44,7 +42,8 @@ class GridSurface(NodeSurface):
     whether it lies on a globe around the origin, with north at +z.
     """
 
-    cell_corners = CELL_CORNERS
+    #: Index of each corner of the cells in arrays over the nodes.
+    cell_corners = tuple(product((slice(None, -1), slice(1, None)), repeat=2))
 
     def __init__(
         self, points: Floats, valid: Bools, periodic: tuple[bool, bool], *, on_globe: bool = False

@@ -2,15 +2,15 @@
 
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
 ray from there. Where the flow returns to a ray one turn later shows the side of an orbit: from both
-sides it comes nearer, or moves away. :class:`Isolation` distinguishes an orbit from a centre. Those
+sides it comes nearer, or moves away. :func:`isolation` distinguishes an orbit from a centre. Those
 of a formula in the plane are then integrated from the formula.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, partial
 
 import numpy as np
 import scipy
@@ -155,7 +155,7 @@ class _Rays:
         rates: Rates | None,
     ) -> None:
         self._field, self._rates, surface = field, rates, field.surface
-        self._isolation = Isolation(field)
+        self._is_isolated = isolation(field)
         self._middle = np.array([point.position for point in around])
         nodes = [surface.node_near(point.index) for point in around]
         self._cell = np.array([float(surface.cell_size[node]) for node in nodes])
@@ -225,7 +225,7 @@ class _Rays:
         # Where lines jump from one side to the other there is no orbit.
         closed = np.abs(end - places) < CLOSED_CELLS * self._cell[ray[kept]]
         turns = [lines[n] for n in np.flatnonzero(closed)]
-        return [self._orbit(turn, stable=forward) for turn in turns if self._isolation.holds(turn)]
+        return [self._orbit(turn, stable=forward) for turn in turns if self._is_isolated(turn)]
 
     def _exact(self, rates: Rates, turn: Floats, *, forward: bool) -> ClosedOrbit | None:
         """Return the orbit of a formula near a turn, indices (N, 2)."""
@@ -308,31 +308,29 @@ class _Rays:
         return ClosedOrbit(ordered, stable, period, float(self._field.times[0]))
 
 
-class Isolation:
-    """Test of closed lines of a steady field: a limit cycle has no neighbours that close as well.
+def isolation(field: FlowField) -> Callable[[Floats], bool]:
+    """Return a test of closed lines of a steady field, indices (N, 2) as (i, j), for limit cycles.
 
     Over a turn, the distance of a line beside a closed one grows by the exponential of the
     divergence of the velocity, integrated over the time. So the integral must exceed its error by
     interpolation.
     """
 
-    def __init__(self, field: FlowField) -> None:
-        self._field = field
-
-    @cached_property
-    def _nodal(self) -> Floats:
+    @cache
+    def nodal() -> Floats:
         """Divergence, its error, and the velocity at the nodes, (J, I, 5)."""
-        first, error = gradient_and_error(self._field)
+        first, error = gradient_and_error(field)
         divergence = np.stack([first[0, 0] + first[1, 1], error], axis=-1)
-        return np.concatenate([divergence, self._field.velocity[0]], axis=-1)
+        return np.concatenate([divergence, field.velocity[0]], axis=-1)
 
-    def holds(self, turn: Floats) -> bool:
-        """Return whether a closed line, indices (N, 2) as (i, j), is isolated."""
-        surface = self._field.surface
-        places = surface.at(np.concatenate([turn, turn[:1]]))
-        rates = np.array([surface_point(surface, at[::-1]).interpolate(self._nodal) for at in turn])
+    def is_isolated(turn: Floats) -> bool:
+        places = field.surface.at(np.concatenate([turn, turn[:1]]))
+        points = (surface_point(field.surface, at[::-1]) for at in turn)
+        rates = np.array([point.interpolate(nodal()) for point in points])
         lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             times = 0.5 * (lengths + np.roll(lengths, 1)) / np.linalg.norm(rates[:, 2:], axis=1)
             growth, error = times @ rates[:, :2]
         return bool(abs(growth) > error)
+
+    return is_isolated

@@ -22,7 +22,7 @@ from flowtex.trace.structure.critical_points import (
     steady_parts,
 )
 from flowtex.trace.structure.formula_lines import follower, plane_rates
-from flowtex.trace.structure.orbits import Isolation
+from flowtex.trace.structure.orbits import isolation
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -217,7 +217,7 @@ def _lines(
     lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = scipy.spatial.KDTree([point.position for point in points])
-    isolation, result = Isolation(field), []
+    is_isolated, result = isolation(field), []
     for n, first in enumerate(begin):
         saddle, cell = starts[n][0], cells[n]
         shown = positions[: int(np.searchsorted(lags, reach[n])), n]
@@ -232,7 +232,7 @@ def _lines(
         end = int(arrived[0]) if len(arrived) else len(line)
         turned = _turned(line[:end], spacing, CLOSED_CELLS * cell)
         turn = None
-        if turned is not None and isolation.holds(index[slice(*turned)]):
+        if turned is not None and is_isolated(index[slice(*turned)]):
             turn, last = turned[0] + 1, turned[1] + 1
             line = line[:last]
         elif len(arrived):

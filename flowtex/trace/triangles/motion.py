@@ -136,10 +136,11 @@ def _across(surface: TriangleSurface) -> Indices:
 
 
 #: By the last three bits of :attr:`TriangleMesh.across`: the corner of the other triangle that is
-#: not on the edge, and which of its second and third shares, (2, 6), are of the next corner here,
-#: and of the one after it.
+#: not on the edge.
 BEHIND = np.array([3 - m - (m + step) % 3 for m in range(3) for step in (1, 2)], dtype=np.intp)
+#: Which of its second and third shares, (2, 6), are of the next corner here.
 NEXT = np.array([[m == k for m in range(3) for _ in (1, 2)] for k in (1, 2)], dtype=float)
+#: Which are of the corner after that.
 AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in (1, 2)], float)
 
 
