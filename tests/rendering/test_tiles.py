@@ -170,7 +170,7 @@ def view(rng: np.random.Generator) -> TileView:
 
 def test_root_is_traced_where_it_is_seen(_tiled: None) -> None:
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
-    handle = plotter.flowtex.add(flat(), scalars=False)
+    handle = plotter.flowtex.add(flat(290), scalars=False)
     plotter.camera_position = "xy"
     plotter.camera.zoom(4.0)
     near = plotter.screenshot(return_img=True)
