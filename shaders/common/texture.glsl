@@ -219,7 +219,7 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
-#ifdef FLOWTEX_MOVING
+#if defined(FLOWTEX_MOVING) && !defined(FLOWTEX_IMAGE)
   flowtexMove(speed, flowtexLayer(coordinate, 2, sliceLevel).w);
 #endif
   float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1);
