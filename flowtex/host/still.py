@@ -51,19 +51,28 @@ MakeCamera = Callable[[float], Camera]
 MOST_PIXELS = 160_000
 #: Room in pixels for ticks at the left, beside the last one at the right, and below.
 TICK_ROOM = (58, 16, 20)
-#: Steps of an arrow on each side of its seed, and its length over the distance of arrows.
-ARROW_STEPS, ARROW_LENGTH = 6, 1.05
-#: Length and half the width of a head over the length of the arrow, and width of the shaft and of
-#: what is light around it, in pixels.
-HEAD, HEAD_WIDTH, SHAFT_PX, HALO_PX = 0.32, 0.144, 2, 2
+#: Steps of an arrow on each side of its seed.
+ARROW_STEPS = 6
+#: Length of an arrow over the distance of arrows.
+ARROW_LENGTH = 1.05
+#: Length of a head over that of the arrow.
+HEAD = 0.32
+#: Half the width of a head over the length of the arrow.
+HEAD_WIDTH = 0.144
+#: Width of the shaft.
+SHAFT_PX = 2
+#: Width of what is light around an arrow.
+HALO_PX = 2
 #: Share of the surface in a pixel where arrows are.
 INSIDE = 0.9
 #: Pixels over which the directions of nodes are smoothed.
 SMOOTHING_PX = 2.0
 #: Distance of a seed from the surface in the picture, in heights of the view, that hides it.
 HIDDEN = 0.05
-#: Nodes and samples of a small picture; more make no visible difference.
-NODES, SAMPLES = 3_000, 17
+#: Nodes of a small picture; more make no visible difference.
+NODES = 3_000
+#: Samples of a small picture; more make no visible difference.
+SAMPLES = 17
 #: Greatest spacing of samples in grains. Pixels side by side share no sample of a greater one, and
 #: streaks become rows of dots.
 WIDEST_SPACING = 0.7

@@ -58,8 +58,14 @@ DEFAULTS: dict[str, Any] = {
     "background": BACKGROUNDS[0],
     "split": "nothing",
 }
-#: Characters and values of a link, and characters of a name and of a fault, at most.
-LINK_LENGTH, MOST_VALUES, NAME_LENGTH, FAULT_LENGTH = 8_000, 100, 400, 250
+#: Characters of a link, at most.
+LINK_LENGTH = 8_000
+#: Values of a link, at most.
+MOST_VALUES = 100
+#: Characters of a name, at most.
+NAME_LENGTH = 400
+#: Characters of a fault, at most.
+FAULT_LENGTH = 250
 #: Names in a link that are no part of the state.
 IGNORED = ("secret",)
 
@@ -69,10 +75,10 @@ LINE_LENGTH = 88
 FILE_ARGUMENTS = ("vectors", "plane", "block")
 #: Their names for data of the Earth.
 OF_DATASETS = {"block": "projection"}
-PLANE, CMAP = (
-    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII),
-    re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
-)
+#: Form of a plane in a link.
+PLANE = re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII)
+#: Form of the name of a colour map in a link.
+CMAP = re.compile(r"[A-Za-z]\w{0,59}", re.ASCII)
 
 
 def to_link(state: State) -> str:
