@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from flows import folded, rippled
+from flows import folded
 from measures import streaks
 from plain_pyvista import off_colours
 from triangle_meshes import cube, random_plane, soup, surface_of
@@ -16,7 +16,6 @@ from triangle_meshes import cube, random_plane, soup, surface_of
 import flowtex
 from flowtex import FlowField
 from flowtex.rendering.camera import Camera, apply_camera
-from flowtex.textures.triangle_geometry import TriangleGeometry
 
 
 def flow(x: Any, y: Any) -> tuple[Any, Any]:
@@ -98,32 +97,3 @@ def test_streaks_beside_a_sharp_edge_lie_in_the_surface(up: float, zoom: float) 
     found = streaks(picture, np.ones(mask.shape), np.full(mask.shape, 0.6), mask)
     assert found["angle"] < 3
     assert found["coherence"] > 0.9
-
-
-def test_a_tile_has_the_values_of_its_nodes() -> None:
-    whole = rippled()
-    surface = surface_of(whole)
-    nodes = np.flatnonzero(whole.points[0, :, 0] > 0.3)
-    members = np.flatnonzero(np.isin(surface.triangles, nodes).all(axis=1))
-    triangles = surface.triangles[members]
-    tile = TriangleGeometry.of_tile(whole, nodes, triangles, members, surface)
-    assert tile.shape == (1, len(nodes))
-    np.testing.assert_array_equal(
-        tile.at_vertices(tile.points), surface.points[0][triangles.ravel()]
-    )
-    np.testing.assert_allclose(tile.normal, surface.normals[:, nodes], atol=1e-6)
-    height, width = tile.size
-    assert (height - 1) * width < len(nodes) <= height * width
-    assert width & (width - 1) == 0
-    texels = np.empty((height, width, 2), np.float32)
-    tile.write_texels(tile.points[..., :2].astype(np.float32), texels)
-    at = len(nodes) - 1
-    np.testing.assert_allclose(texels[at // width, at % width], tile.points[0, at, :2], atol=1e-6)
-    values = tile.at_vertices(tile.points[..., 0])
-    image = tile.as_image(values, on_cells=False)
-    np.testing.assert_array_equal(image.ravel()[: len(nodes)], tile.points[0, :, 0])
-    cells = np.arange(len(surface.triangles), dtype=float)[None, None]
-    drawn = tile.drawn_values(cells, on_cells=True)
-    np.testing.assert_array_equal(drawn, members[None, None])
-    image = tile.as_image(tile.at_vertices(drawn[0], on_cells=True), on_cells=True)
-    np.testing.assert_array_equal(image.ravel()[: len(members)], members)

@@ -188,16 +188,6 @@ def test_a_uniform_flow_blurs_along_itself_alone(
     assert np.abs(found - seen(image, x, y))[clear].mean() > 10
 
 
-def test_stripes_along_the_flow_stay_and_stripes_across_go(opengl: Any) -> None:
-    rows = np.zeros((64, 128), np.uint8)
-    rows[::8] = rows[1::8] = rows[2::8] = rows[3::8] = 255
-    _, _, inside = places()
-    inner = inside & (np.abs(places()[0] - 1) < 0.6)
-    plain = draw(still(), image=rows)[inner].std()
-    assert draw(uniform(), image=rows)[inner].std() == pytest.approx(plain, rel=0.02)
-    assert draw(uniform(0.0, 1.0), image=rows)[inner].std() < 0.25 * plain
-
-
 @pytest.mark.parametrize("steps", [1, 2])
 def test_colours_survive_also_on_a_curved_surface_in_the_light(opengl: Any, steps: int) -> None:
     red = np.zeros((5, 9, 3))

@@ -150,16 +150,6 @@ def test_paths_go_on_across_the_seam() -> None:
         np.testing.assert_allclose(size, np.broadcast_to(size[:, 30:31], size.shape), atol=2e-3)
 
 
-def test_layers_fill_whole_blocks_of_the_coarsest_level() -> None:
-    made = textures(double_gyre_field(shape=(21, 41)))
-    block = 2**made.geometry.levels
-    height, width = made.layers(dtype=np.float32).shape[1:3]
-    assert height % block == width % block == 0
-    texel = made.geometry.coordinate * [width, height]
-    i, j = np.meshgrid(np.arange(41), np.arange(21))
-    np.testing.assert_allclose(texel, np.stack([i, j], axis=-1) + 0.5, atol=1e-3)
-
-
 def test_flat_surfaces_lie_in_their_own_plane(rng: np.random.Generator) -> None:
     turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
     flat = double_gyre_field(shape=(21, 41))

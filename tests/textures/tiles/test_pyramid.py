@@ -12,7 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import Pyramid, TileKey, block_places, is_cut
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey, is_cut
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
 
@@ -172,22 +172,6 @@ def test_a_tile_of_land_is_none() -> None:
     pyramid = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
     assert pyramid.textures(TileKey(0, 0, 0)) is None
     assert pyramid.textures(TileKey(0, 0, 1)) is not None
-
-
-@pytest.mark.parametrize("level", [0, 1, 2])
-def test_places_of_blocks_are_known_from_the_root(level: int) -> None:
-    field = waves(75, 125)
-    pyramid = Pyramid(field)
-    lines = [
-        np.minimum(np.arange(n) << level, full - 1)
-        for n, full in zip(pyramid.shape(level), field.shape, strict=True)
-    ]
-    exact = block_places(field.points[np.ix_(*lines)])
-    guess = pyramid.places(level)
-    assert guess.shape == exact.shape
-    apart = np.linalg.norm(guess[..., :3] - exact[..., :3], axis=-1)
-    assert (apart + exact[..., 3] < guess[..., 3] + 3 * exact[..., 4] * 8).all()
-    np.testing.assert_allclose(guess[..., 4], exact[..., 4], rtol=0.1)
 
 
 @pytest.mark.parametrize("speed", [1e-40, 1e40])

@@ -11,7 +11,6 @@ from triangle_meshes import cube, random_plane, sphere
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
-from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import levels_of
 from flowtex.textures.tiles.pyramid import TileKey
@@ -166,29 +165,6 @@ def test_nodes_without_data_are_in_no_mean(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(root.velocity[0, 0, used] - [1, 2, 0], 0, atol=1e-12)
     away = np.hypot(*(root.points[0, used, :2] - 0.5).T)
     assert away.min() > 0.2
-
-
-def test_a_view_is_covered_by_what_is_chosen(rng: np.random.Generator) -> None:
-    pyramid = TrianglePyramid(plane(rng))
-    planes = np.array([[1.0, 0, 0, -0.3], [-1.0, 0, 0, 0.5], [0, 1.0, 0, -0.4], [0, -1.0, 0, 0.6]])
-    chosen = choose_tiles(pyramid, TileView(None, 0.1, 400.0, planes))
-    shown = cover(chosen, lambda key: True)
-    finest = {key for key in shown if key is not None and key.level == 0}
-    assert finest
-    assert len(finest) < 4**pyramid.depth
-    for x, y in rng.uniform([0.3, 0.4], [0.5, 0.6], (50, 2)):
-        hits = 0
-        for key, finer in shown.items():
-            geometry = pyramid.root_geometry if key is None else drawn(pyramid, key)
-            own = np.ones(4, dtype=bool).reshape(2, 2)
-            for child in finer:
-                own[finer_part(pyramid, child, key)] = False
-            some = (geometry.blocks[:, None] & (1 << np.flatnonzero(own))).any(axis=1)
-            corners = geometry.points[0][geometry.triangles[some]][..., :2] - [x, y]
-            after = np.roll(corners, -1, axis=1)
-            turns = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
-            hits += int((turns >= 0).all(axis=1).sum() + (turns <= 0).all(axis=1).sum())
-        assert hits >= 1
 
 
 @pytest.mark.parametrize("zoom", [1.0, 6.0])
