@@ -31,6 +31,8 @@ from flowtex.trace.sampler import Corners, NodeGrid
 
 #: Most pieces of a path, after which the rest is looked up at once despite its error.
 MOST_PIECES = 64
+#: Pieces after which paths that are stuck at a pole are integrated past it together.
+TOGETHER = MOST_PIECES // 2
 #: Paths looked up together.
 BLOCK = 65536
 #: Cells beyond a border to which look-ups may displace a path that follows it.
@@ -321,11 +323,11 @@ class _Doubling:
             check()
             longest = self._before if number >= MOST_PIECES else None
             unfinished = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
-            if not len(unfinished) and self._stuck:
-                # All at once: they are few, and each call has an overhead.
+            if self._stuck and (not len(unfinished) or (number + 1) % TOGETHER == 0):
+                # Many at once: each call has an overhead.
                 stuck, self._stuck = np.concatenate(self._stuck), []
                 work = partial(self._pass, final=number >= MOST_PIECES)
-                unfinished = np.concatenate(list(run(work, _parts(stuck))))
+                unfinished = np.concatenate([unfinished, *run(work, _parts(stuck))])
             if not len(unfinished):
                 break
             blocks = _parts(unfinished)
