@@ -303,6 +303,19 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
+def connected_parts(beside: Indices) -> Indices:
+    """Return the least number of the triangles connected to each, (M,), from neighbours (M, 3)."""
+    part = np.arange(len(beside))
+    beside = np.where(beside < 0, part[:, None], beside)
+    while True:
+        least = np.minimum(part, part[beside].min(axis=1, initial=len(part)))
+        if (least == part).all():
+            return part
+        np.minimum.at(part, part.copy(), least)
+        while (part[part] != part).any():
+            part = part[part]
+
+
 def neighbours(points: Floats, triangles: Indices) -> Indices:
     """Return the triangle across each edge, (M, 3), -1 at a border; of several the straightest."""
     keys = _edge_keys(triangles)

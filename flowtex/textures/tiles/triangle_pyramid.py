@@ -2,7 +2,9 @@
 
 Level 0 has all nodes, each next one about a quarter of them: those of :class:`Clusters`, down to a
 field of moderate size that is traced whole, the root. Tiles are boxes of a k-d tree, so that each
-holds about as many nodes however these are spread. A tile draws the triangles that reach into its
+holds about as many nodes however these are spread; connected parts that lie one in another, such as
+nested isosurfaces, are divided from each other before space is, as the outer ones hide the inner
+ones. A tile draws the triangles that reach into its
 box: those of two levels overlap where they meet, and no crack shows between them. Its paths are
 traced in the triangles around it, as far as they are long.
 
@@ -20,7 +22,8 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
-from flowtex.field.triangles.triangle_nodes import corner_ends
+from flowtex.field.triangles.triangle_nodes import connected_parts, corner_ends
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import Clusters, levels_of
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
@@ -42,6 +45,8 @@ BIN_SHARE = 1 / 3
 MOST_SHARE = 0.95
 #: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
 MOST_AROUND = 2.0
+#: Mean extent of connected parts, as a share of that of all, from which they lie one in another.
+NESTED_SHARE = 0.55
 #: Greatest width of the window around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
 
@@ -93,10 +98,10 @@ class TrianglePyramid(Pyramid):
         """Return which blocks of level 0 have some of the places, as of structured surfaces."""
         geometry = self.root_geometry
         triangles = geometry.triangles[np.unique(places[:, 2].astype(np.intp))]
-        corners = geometry.points[0][triangles]
+        corners = self._points(self.depth)[triangles]
         points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
         seen = self._boxes.members(points, points, self._steps(0))
-        ends = corner_ends(geometry.points[0], geometry.triangles)
+        ends = corner_ends(self._points(self.depth), geometry.triangles)
         whole = self._boxes.members(*ends, self._steps(0))
         # Where the root has no triangles, finer levels may have some.
         parts = [len(part) > 0 or not len(all_) for part, all_ in zip(seen, whole, strict=True)]
@@ -153,7 +158,7 @@ class TrianglePyramid(Pyramid):
                 self._around(number, nodes, widening * longest * self._stretch(number, nodes))
             )
         around = np.unique(np.concatenate(near))
-        window, numbers = _part(level, around)
+        window, numbers = _window(level, around)
         followed, geometries = np.zeros(window.shape, dtype=bool), {}
         for key, (members, masks) in parts.items():
             triangles = level.triangles[members]
@@ -190,7 +195,9 @@ class TrianglePyramid(Pyramid):
             [self.places(number)[self.blocks_of(k)].reshape(-1, 5) for k in keys]
         )
         reach = places[:, 3:4] + self._longest(places)
-        low, high = places[:, :3] - reach, places[:, :3] + reach
+        ends = np.full((len(places), 1), np.inf)
+        low = np.hstack([places[:, :3] - reach, -ends])
+        high = np.hstack([places[:, :3] + reach, ends])
         near = self._boxes.members(low, high, self._steps(number))
         parts = self._members(number)
         return sum(len(part) for part, hit in zip(parts, near, strict=True) if len(hit)) // 2
@@ -203,14 +210,32 @@ class TrianglePyramid(Pyramid):
     def _boxes(self) -> Boxes:
         used = np.zeros(self.field.shape[1], dtype=bool)
         used[self._clusters[0].triangles] = True
-        points = self.field.points[0][used]
+        points = self._points(0)[used]
         return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
+
+    @cached_property
+    def _part(self) -> Indices:
+        """Number of the connected part of each node, (N,), in the order of their extents."""
+        surface, part = self.field.surface, np.zeros(self.field.shape[1], dtype=np.intp)
+        if self.depth and isinstance(surface, TriangleSurface):
+            of_triangle = np.unique(connected_parts(surface.neighbours), return_inverse=True)[1]
+            part[surface.triangles] = of_triangle[:, None]
+            part = np.argsort(np.argsort(_extents(self.field.points[0], part)))[part]
+        return part
+
+    def _points(self, level: int) -> Floats:
+        """Return positions of the nodes of a level, and their connected part, (N, 4)."""
+        clusters = self._clusters[level]
+        points = np.pad(clusters.field.points[0], ((0, 0), (0, 1)))
+        kept = clusters.number >= 0
+        points[clusters.number[kept], 3] = self._part[kept]
+        return points
 
     def _members(self, level: int) -> list[Indices]:
         with self._lock:
             if level not in self._parts:
                 clusters = self._clusters[level]
-                low, high = corner_ends(clusters.field.points[0], clusters.triangles)
+                low, high = corner_ends(self._points(level), clusters.triangles)
                 self._parts[level] = self._boxes.members(low, high, self._steps(level))
             return self._parts[level]
 
@@ -233,7 +258,7 @@ class TrianglePyramid(Pyramid):
         triangles = clusters.triangles[np.concatenate(parts)]
         first = np.cumsum([0, *(len(part) for part in parts)])[:-1][filled]
         low, high = self._boxes.bounds(self._steps(0))
-        inner = [np.full_like(low, np.inf), np.full_like(high, -np.inf)]
+        inner = [np.full((len(low), 3), np.inf), np.full((len(low), 3), -np.inf)]
         size = np.zeros(len(parts))
         if len(first):
             ends = corner_ends(clusters.field.points[0], triangles)
@@ -243,6 +268,7 @@ class TrianglePyramid(Pyramid):
             sides = np.split(longest, first[1:])
             # At the next level the size is twice as much, a share of the bins.
             size[filled] = [BIN_SHARE / 2 * _most(part) for part in sides]
+        low, high = low[:, :3], high[:, :3]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
     def _stretch(self, level: int, nodes: Indices) -> float:
@@ -257,8 +283,8 @@ class TrianglePyramid(Pyramid):
     def _around(self, level: int, nodes: Indices, width: float) -> Indices:
         """Return triangles of a level, among them all within ``width`` of some nodes."""
         clusters = self._clusters[level]
-        points = clusters.field.points[0]
-        low, high = points[nodes].min(axis=0) - width, points[nodes].max(axis=0) + width
+        points, reach = self._points(level), np.array([width, width, width, 0])
+        low, high = points[nodes].min(axis=0) - reach, points[nodes].max(axis=0) + reach
         near = self._boxes.members(low[None], high[None], self._steps(level))
         parts = self._members(level)
         nearby = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
@@ -281,7 +307,7 @@ def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
     return np.asarray(lags, dtype=float), np.full_like(size, unit)
 
 
-def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
+def _window(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
     """Return a field of some triangles, and the numbers of nodes in it, -1 for the others."""
     field, triangles = level.field, level.triangles[members]
     nodes, cells = np.unique(triangles), level.cells[members]
@@ -301,10 +327,11 @@ def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
 
 
 class Boxes:
-    """Boxes from ``steps`` divisions, each of one box into 2 x 2, at medians of points (N, 3).
+    """Boxes from ``steps`` divisions, each of one box into 2 x 2, at medians of points (N, 4).
 
-    A k-d tree divides space at medians, along the longest side of its content. Two cuts after
-    another make 2 x 2 boxes of one, in rows and columns, so that boxes of a depth are a square of
+    A k-d tree divides space at medians, along the longest side of its content, or the numbers of
+    connected parts, the fourth coordinate, where these lie one in another. Two cuts after another
+    make 2 x 2 boxes of one, in rows and columns, so that boxes of a depth are a square of
     blocks as those of a structured surface are. A box holds all of its space: its outer sides are
     open.
 
@@ -334,7 +361,7 @@ class Boxes:
         return np.asarray(row), np.asarray(column)
 
     def members(self, low: Floats, high: Floats, steps: int) -> list[Indices]:
-        """Return the numbers of the items from corners ``low`` to ``high``, (M, 3), in each box."""
+        """Return the numbers of the items from corners ``low`` to ``high``, (M, 4), in each box."""
         parts = [np.arange(len(low))]
         lows, highs = (np.ascontiguousarray(corner.T) for corner in (low, high))
         for axes, values in zip(self.axes[: 2 * steps], self.values, strict=False):
@@ -345,8 +372,8 @@ class Boxes:
         return parts
 
     def bounds(self, steps: int) -> tuple[Floats, Floats]:
-        """Return lower and upper corners of the boxes of a depth, (4^steps, 3) each."""
-        low, high = np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
+        """Return lower and upper corners of the boxes of a depth, (4^steps, 4) each."""
+        low, high = np.full((1, 4), -np.inf), np.full((1, 4), np.inf)
         for axes, values in zip(self.axes[: 2 * steps], self.values, strict=False):
             low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
             number = np.arange(len(axes))
@@ -360,9 +387,22 @@ def _cut(points: Floats) -> tuple[int, float]:
     if not len(points):
         return 0, 0.0
     low, high = points.min(axis=0), points.max(axis=0)
-    axis = int(np.argmax(high - low))
+    axis = int(np.argmax((high - low)[:3]))
+    if high[3] > low[3]:
+        part = np.unique(points[:, 3], return_inverse=True)[1]
+        if _extents(points[:, :3], part)[part].mean() > NESTED_SHARE * (high - low)[axis]:
+            axis = 3
     along = points[:, axis]
     middle = float(np.partition(along, len(along) // 2)[len(along) // 2])
     if middle <= low[axis] < high[axis]:
         middle = float(along[along > middle].min())
     return axis, middle
+
+
+def _extents(points: Floats, part: Indices) -> Floats:
+    """Return the longest side of each part of points (N, 3), numbered from 0."""
+    order = np.argsort(part, kind="stable")
+    first = np.flatnonzero(np.diff(part[order], prepend=-1))
+    ordered = points[order]
+    sides = np.maximum.reduceat(ordered, first) - np.minimum.reduceat(ordered, first)
+    return np.asarray(sides.max(axis=1))

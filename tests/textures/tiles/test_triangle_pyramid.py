@@ -46,6 +46,14 @@ def ball() -> FlowField:
     return flow_on(*sphere(4))
 
 
+def shells() -> FlowField:
+    """Four spheres, one in another, in which neither points nor triangles are in order."""
+    points, triangles = sphere(4)
+    numbers = np.concatenate([triangles + k * len(points) for k in range(4)])
+    nested = np.concatenate([points * radius for radius in (2, 4, 1, 3)])
+    return flow_on(nested, np.random.default_rng(0).permutation(numbers))
+
+
 def drawn(pyramid: TrianglePyramid, key: TileKey) -> TriangleGeometry:
     textures = pyramid.textures(key)
     assert textures is not None
@@ -103,7 +111,7 @@ def test_sides_of_a_thin_sheet_stay_apart(rng: np.random.Generator) -> None:
     assert (np.abs(level.field.points[0][near, 2]) > 0.9e-3).all()
 
 
-@pytest.mark.parametrize("make", [plane, graded, lambda rng: ball()])
+@pytest.mark.parametrize("make", [plane, graded, lambda rng: ball(), lambda rng: shells()])
 def test_every_point_is_covered_by_the_tiles_of_a_level(
     make: Any, rng: np.random.Generator
 ) -> None:
@@ -128,6 +136,14 @@ def test_every_point_is_covered_by_the_tiles_of_a_level(
         assert (found[order] >= 1).all()
         assert (found > 1).mean() < 0.5
         keys = [child for key in keys for child in pyramid.children(key)]
+
+
+def test_surfaces_in_one_another_are_in_tiles_of_their_own() -> None:
+    pyramid = TrianglePyramid(shells())
+    keys = pyramid.children(None)
+    radii = [np.linalg.norm(drawn(pyramid, key).points[0], axis=1) for key in keys]
+    assert sorted(round(float(np.median(radius))) for radius in radii) == [1, 2, 3, 4]
+    assert all(np.ptp(radius) < 0.3 for radius in radii)
 
 
 def test_a_small_field_is_its_root(rng: np.random.Generator) -> None:
