@@ -3,7 +3,8 @@
 Bins are cubes whose side is about twice the edges where they lie, and twice as long at each
 next level, so that a mesh of very different cells loses three nodes of four everywhere. Nodes on
 borders are binned apart from the others, which keeps outlines, and so are nodes of two sides of a
-thin sheet. Triangles remain where their corners lie in three bins.
+thin sheet, and of parts that are not connected. Triangles remain where their corners lie in three
+bins.
 """
 
 from __future__ import annotations
@@ -18,7 +19,12 @@ from flowtex._util.arrays import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
-from flowtex.field.triangles.triangle_nodes import known_means, sums_at, triangle_normals
+from flowtex.field.triangles.triangle_nodes import (
+    connected_parts,
+    known_means,
+    sums_at,
+    triangle_normals,
+)
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Side of the first bins in edges there.
@@ -46,6 +52,7 @@ class Clusters:
     sides: Floats
     border: Bools  #: Nodes on the border of the drawn triangles, (n,).
     normals: Floats  #: Unit normals, or sums of them, (n, 3).
+    part: Indices  #: Connected part of each node, (n,), numbered in the order of their extents.
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:
@@ -62,6 +69,11 @@ class Clusters:
         for k in range(3):
             for offset in (1, 2):
                 border[triangles[open_sides[:, k], (k + offset) % 3]] = True
+        part = np.zeros(field.shape[1], dtype=np.intp)
+        part[triangles] = np.unique(connected_parts(beside), return_inverse=True)[1][:, None]
+        if part.any():
+            part = np.unique(part, return_inverse=True)[1]
+            part = np.argsort(np.argsort(part_extents(field.points[0], part)))[part]
         crosses = surface.crosses
         if surface.flipped.any():
             triangles = triangles.copy()
@@ -82,6 +94,7 @@ class Clusters:
             _sides(norm(crosses), triangles, len(normals), surface.extent),
             border,
             normals,
+            part,
         )
 
     def coarser(self) -> Clusters:
@@ -95,8 +108,10 @@ class Clusters:
         number = np.where(self.number >= 0, cluster[self.number], -1)
         kept = cluster >= 0
         sides, border = np.zeros(count), np.zeros(count, dtype=bool)
+        part = np.zeros(count, dtype=np.intp)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
+        part[cluster[kept]] = self.part[kept]
         normals = sums_at(cluster[kept], self.normals[kept], count)
         field = _averaged(self.whole, number, corners)
         kept = _untangled(field.points[0], corners, normals, border)
@@ -105,7 +120,7 @@ class Clusters:
         flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
         field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
         drawn = np.arange(len(corners))
-        return Clusters(self.whole, field, corners, drawn, number, sides, border, normals)
+        return Clusters(self.whole, field, corners, drawn, number, sides, border, normals, part)
 
     def _bins(self) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""
@@ -118,6 +133,9 @@ class Clusters:
         key = 4 * size + 2 * drawn + self.border
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
+        if self.part.any():
+            bins = np.unique(key, return_inverse=True)[1]
+            key = bins * (int(self.part.max()) + 1) + self.part
         _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
         away = np.einsum("nc,nc->n", self.normals, self.normals[first][cluster]) < 0
         return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
@@ -249,3 +267,12 @@ def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
     """Return which triangles (M,) face away from the normals of their corners."""
     normal = np.asarray(sum(normals[triangles[:, k]] for k in range(3)))
     return np.asarray(dot(triangle_normals(points, triangles), normal) <= 0)
+
+
+def part_extents(points: Floats, part: Indices) -> Floats:
+    """Return the longest side of each part of points (N, 3), numbered from 0."""
+    order = np.argsort(part, kind="stable")
+    first = np.flatnonzero(np.diff(part[order], prepend=-1))
+    ordered = points[order]
+    sides = np.maximum.reduceat(ordered, first) - np.minimum.reduceat(ordered, first)
+    return np.asarray(sides.max(axis=1))

@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
-from flowtex.field.triangles.triangle_nodes import connected_parts, corner_ends
-from flowtex.field.triangles.triangle_surface import TriangleSurface
+from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.clusters import Clusters, levels_of
+from flowtex.textures.tiles.clusters import Clusters, levels_of, part_extents
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.store import SliceStore
@@ -100,7 +99,9 @@ class TrianglePyramid(Pyramid):
         triangles = geometry.triangles[np.unique(places[:, 2].astype(np.intp))]
         corners = self._points(self.depth)[triangles]
         points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
-        seen = self._boxes.members(points, points, self._steps(0))
+        # In the root the surface below may lie above the one that is seen.
+        beside = np.array([0.0, 0.0, 0.0, 1.0])
+        seen = self._boxes.members(points - beside, points + beside, self._steps(0))
         ends = corner_ends(self._points(self.depth), geometry.triangles)
         whole = self._boxes.members(*ends, self._steps(0))
         # Where the root has no triangles, finer levels may have some.
@@ -213,23 +214,10 @@ class TrianglePyramid(Pyramid):
         points = self._points(0)[used]
         return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
 
-    @cached_property
-    def _part(self) -> Indices:
-        """Number of the connected part of each node, (N,), in the order of their extents."""
-        surface, part = self.field.surface, np.zeros(self.field.shape[1], dtype=np.intp)
-        if self.depth and isinstance(surface, TriangleSurface):
-            of_triangle = np.unique(connected_parts(surface.neighbours), return_inverse=True)[1]
-            part[surface.triangles] = of_triangle[:, None]
-            part = np.argsort(np.argsort(_extents(self.field.points[0], part)))[part]
-        return part
-
     def _points(self, level: int) -> Floats:
         """Return positions of the nodes of a level, and their connected part, (N, 4)."""
         clusters = self._clusters[level]
-        points = np.pad(clusters.field.points[0], ((0, 0), (0, 1)))
-        kept = clusters.number >= 0
-        points[clusters.number[kept], 3] = self._part[kept]
-        return points
+        return np.column_stack([clusters.field.points[0], clusters.part])
 
     def _members(self, level: int) -> list[Indices]:
         with self._lock:
@@ -390,19 +378,10 @@ def _cut(points: Floats) -> tuple[int, float]:
     axis = int(np.argmax((high - low)[:3]))
     if high[3] > low[3]:
         part = np.unique(points[:, 3], return_inverse=True)[1]
-        if _extents(points[:, :3], part)[part].mean() > NESTED_SHARE * (high - low)[axis]:
+        if part_extents(points[:, :3], part)[part].mean() > NESTED_SHARE * (high - low)[axis]:
             axis = 3
     along = points[:, axis]
     middle = float(np.partition(along, len(along) // 2)[len(along) // 2])
     if middle <= low[axis] < high[axis]:
         middle = float(along[along > middle].min())
     return axis, middle
-
-
-def _extents(points: Floats, part: Indices) -> Floats:
-    """Return the longest side of each part of points (N, 3), numbered from 0."""
-    order = np.argsort(part, kind="stable")
-    first = np.flatnonzero(np.diff(part[order], prepend=-1))
-    ordered = points[order]
-    sides = np.maximum.reduceat(ordered, first) - np.minimum.reduceat(ordered, first)
-    return np.asarray(sides.max(axis=1))
