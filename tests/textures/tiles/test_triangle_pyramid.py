@@ -111,6 +111,19 @@ def test_sides_of_a_thin_sheet_stay_apart(rng: np.random.Generator) -> None:
     assert (np.abs(level.field.points[0][near, 2]) > 0.9e-3).all()
 
 
+def test_surfaces_close_to_one_another_stay_apart() -> None:
+    points, triangles = sphere(4)
+    both = np.concatenate([triangles, triangles + len(points)])
+    field = flow_on(np.concatenate([points, 1.01 * points]), both)
+    outer = np.arange(2 * len(points)) >= len(points)
+    for level in levels_of(field, 200)[1:]:
+        kept = level.number >= 0
+        count = np.bincount(level.number[kept])
+        of_outer = np.bincount(level.number[kept], outer[kept])
+        assert ((of_outer == 0) | (of_outer == count)).all()
+        assert level.field.shape[1] > 50
+
+
 @pytest.mark.parametrize("make", [plane, graded, lambda rng: ball(), lambda rng: shells()])
 def test_every_point_is_covered_by_the_tiles_of_a_level(
     make: Any, rng: np.random.Generator
