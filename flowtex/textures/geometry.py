@@ -88,9 +88,8 @@ class NodeDisplacements:
             apart = self._parted(along_i, along_j)
             straight, inside = self._straight(apart, along_i[apart], along_j[apart])
             # A bent path may lead around such nodes, but not as far away as the next part.
-            inside &= np.linalg.norm(result[:, apart], axis=0) <= FARTHER * np.linalg.norm(
-                straight, axis=0
-            )
+            bent, near = (norm(moved.T.astype(float)) for moved in (result[:, apart], straight))
+            inside &= bent <= FARTHER * near
             result[:, apart] = np.where(inside, result[:, apart], straight)
         return result.reshape(-1, rows, columns)
 

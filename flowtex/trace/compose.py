@@ -225,7 +225,7 @@ class _SliceLookup:
         It is by a whole slice, or a part of the first: between long slices errors are larger.
         """
         base = self._base(step)
-        unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)
+        unit = self._unit_in(corners)
         longest = self._longest[corners.at + base] if most is None else most
         lag: AnyArray = np.minimum(left / unit, longest)
         if lag.min() == lag.max():
@@ -256,7 +256,7 @@ class _SliceLookup:
         """Return displacements (n,) of paths from positions (2, n) at lags up to the last slice."""
         corners = self.grid.corners(position)
         base = self._base(step)
-        span: AnyArray = lag / (self.unit[:1] if self.even else self.grid.blend(self.unit, corners))
+        span: AnyArray = lag / self._unit_in(corners)
         m = self._below(span * (1 - 2 * LAG_ROUNDING))
         late = (span - self.knots[m]) / (self.knots[m + 1] - self.knots[m])
         before, after = (self._blend(corners, base, k) * self._inverse[k] for k in (m, m + 1))
@@ -267,6 +267,13 @@ class _SliceLookup:
     def clipped(self, step: Indices) -> Indices:
         """Return steps, those beyond the first or last one clipped: there the flow is constant."""
         return np.clip(step, 0, len(self._trust) - 1)
+
+    def _unit_in(self, corners: Corners) -> Floats32:
+        """Return the unit at positions in these cells, (n,), or (1,) if all are equal."""
+        if self.even:
+            return self.unit[:1]
+        # Between very different units rounding may give zero.
+        return np.asarray(np.maximum(self.grid.blend(self.unit, corners), self.unit.min()))
 
     def _base(self, step: Indices | int) -> Indices | int:
         """Return the number, among those of all steps, of the first node of a step."""

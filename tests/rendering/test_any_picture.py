@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from strategies import field_arguments, field_of, property_test, setting_values
 
 import flowtex
@@ -78,7 +78,18 @@ def fitting(values: dict[str, Any], field: FlowField) -> dict[str, Any]:
     return {k: v for k, v in values.items() if k not in absent}
 
 
+def far_node(size: float, step: float, far: int, lost: tuple[int, int]) -> dict[str, Any]:
+    """Arguments of a field with a node far from all others, and one without a position."""
+    x, y = np.meshgrid(-size + step * np.arange(5), -size + step * np.arange(2))
+    x[0, far], x[lost] = 0.0, np.nan
+    points = np.stack([x, y, np.full_like(x, -size)], axis=-1)
+    velocity = np.random.default_rng(0).standard_normal(points.shape)
+    return {"points": points, "velocity": velocity, "periodic": None, "sign_free": False}
+
+
 @property_test(15, fuzz=30)
+@example(far_node(1e6, 0.25, 0, (1, 1)), {"resolution": 16})
+@example(far_node(1e18, 5e11, 1, (0, 0)), {"resolution": 16})
 @given(field_arguments(), setting_values())
 def test_any_field_is_drawn_with_numpy_and_goes_to_a_browser(
     arguments: dict[str, Any], values: dict[str, Any]
