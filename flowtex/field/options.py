@@ -2,7 +2,7 @@
 
 :func:`accepts_options` puts the names, defaults and texts of the fields into signatures and
 docstrings. :class:`FieldOptions` has the arguments that select the flow in a mesh, a file or a
-dataset; those of pictures are in :mod:`flowtex.scene.options`.
+dataset. :mod:`flowtex.scene.options` has the arguments for drawing.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from flowtex.errors import FieldError
 
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
-#: Arguments for data of the Earth only, and for meshes only.
+#: Arguments for geospatial data only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
+#: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-
-#: Arguments for data of the Earth.
+#: Arguments for datasets.
 OF_DATASETS = ("vectors", *OF_EARTH, "uncertainty")
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -117,7 +117,7 @@ class FieldOptions:
 
     @classmethod
     def of_dataset(cls, given: Mapping[str, Any]) -> FieldOptions:
-        """Return the options of a dataset; other names are those of axes to select along."""
+        """Return the options of a dataset; other names select along axes."""
         known = {name: value for name, value in given.items() if name in (*OF_DATASETS, *"uvw")}
         axes = {name: value for name, value in given.items() if name not in known}
         if axes:
@@ -134,7 +134,7 @@ class FieldOptions:
         }
 
     def refuse(self, names: Iterable[str], scope: str) -> None:
-        """Raise a FieldError if any of these is given, which apply to another kind of data."""
+        """Raise a FieldError if one of these arguments for another kind of data is given."""
         if names := [name for name in self.given if name in names]:
             raise FieldError(f"{', '.join(names)} applies to {scope}; omit it")
 
@@ -144,9 +144,8 @@ def accepts_options(
 ) -> Callable[[Function], Function]:
     """Show the fields of option classes as arguments of a function that takes ``**options``.
 
-    Further arguments, as ``**selection``, are shown after them. The line ``{options}`` of its
-    docstring becomes their description. Of the fields only those with ``names`` are shown, if these
-    are given; ``settings`` are shown as further arguments.
+    The line ``{options}`` of its docstring becomes their description. ``names`` limits the fields.
+    Arguments in ``**selection`` or, with ``settings``, in ``**settings`` follow them.
     """
 
     def complete(function: Function) -> Function:

@@ -96,7 +96,7 @@ class FlowHandle(AppearanceAttributes):
         self._plotter, self._renderer, self._forget = plotter, renderer, forget
         self._surface, self._shown_time, self._end = surface, scene.time, end
         self._overlays: dict[type[Overlay], Overlay] = {}
-        #: Called in a thread when more can be drawn; ``None`` where drawing waits for all.
+        #: Called in a thread when more data are ready; ``None`` if drawing waits for all data.
         self._notify: Callable[[], None] | None = None
         self._shown: Appearance | None = None
         #: What the flow was read from, and how, and the state in which that was.

@@ -68,9 +68,9 @@ ABOVE_SHARE = 0.2
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
 LAST = -1.0
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
-#: Point array of a line's mesh with the other end of the piece, as the shader names it.
+#: Point array of a line mesh: the other end of each segment. The shader uses the same name.
 OTHER = "flowtexOther"
-#: Point array with the side of the line.
+#: Point array of a line mesh: the side of the line.
 SIDE = "flowtexSide"
 
 
@@ -79,8 +79,6 @@ class Overlay:
 
     The ``surface`` has the number of pixels for one of the settings.
     """
-
-    busy = False  #: Whether something is still to be found.
 
     def __init__(
         self,
@@ -92,12 +90,17 @@ class Overlay:
     ) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
-        #: Called in a thread when something is found; without it drawing waits.
+        #: Called in a thread at the end of a search; ``None`` if drawing waits for the search.
         self.notify = notify
         self._parts: list[Part] = []
         callback = weak_callback(self._before_frame)
         self._observed = renderer.AddObserver("StartEvent", callback, LAST)
         self.show(scene)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a search still runs in the background."""
+        return False
 
     @staticmethod
     def is_needed(scene: Scene) -> bool:
@@ -319,8 +322,8 @@ class StructureOverlay(Overlay):
         return any(getattr(scene.settings, name) for name in STRUCTURE)
 
     @property
-    def busy(self) -> bool:  # type: ignore[override]
-        """Whether something is still to be found."""
+    def busy(self) -> bool:
+        """Whether a search still runs in the background."""
         return self._found is not None and not self._found.done()
 
     @property

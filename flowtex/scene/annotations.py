@@ -36,13 +36,13 @@ from flowtex.scene.scene import Scene
 
 #: Height of the text as a share of the picture's height.
 TEXT_SHARE = 1 / 30
-#: Ratio of width to height beyond which a lower picture does not have smaller text.
+#: Greatest ratio of width to height at which the text follows the height.
 WIDEST_ASPECT = 1.6
 #: Limits of the height of the text in a small picture.
 SMALL_TEXT_PX = (9, 11)
 #: Height of the text as a share of a small picture's height.
 SMALL_TEXT_SHARE = 1 / 13
-#: Share of a small picture's height that plates take at most.
+#: Greatest share of a small picture's height for plates.
 MOST_STRIPS = 0.55
 #: Factor of gaps and padding in a small picture.
 CLOSER = 0.5
@@ -50,15 +50,15 @@ CLOSER = 0.5
 MOST_COVER = 0.125
 #: Greatest share of the picture's width that a scale bar has.
 SCALE_BAR_WIDTH = 0.2
-#: Room around the text, in heights of the text, as the lengths below.
+#: Padding around the text, in heights of the text.
 PADDING = 0.4
-#: Room between plates.
+#: Gap between plates, in heights of the text.
 GAP = 0.6
-#: Least width of the colours of a legend.
+#: Least width of a colour bar, in heights of the text.
 RAMP_WIDTH = 9.0
-#: Height of the colours of a legend.
+#: Height of a colour bar, in heights of the text.
 RAMP_HEIGHT = 0.65
-#: Width of thin lines.
+#: Width of thin lines, in heights of the text.
 LINE = 0.1
 #: How opaque a plate is.
 OPACITY = 0.8
@@ -66,7 +66,7 @@ OPACITY = 0.8
 TICK_PX = 4
 #: Share of the range by which a number may lie beyond an end: less than a pixel.
 BEYOND = 0.004
-#: Share of the picture's width above which a time is written without a long unit.
+#: Greatest share of the picture's width for a time with a long unit.
 TIME_WIDTH = 0.4
 #: Widest legend with all of its values, as a share of the width of the picture.
 LEGEND_WIDTH = 0.6
@@ -75,7 +75,7 @@ METRES_PER_KM = 1000
 DOT_SHARE = 0.6
 #: Height of a line in a legend, in lines of text.
 LINE_SHARE = 0.3
-#: Factor by which they are drawn larger to be smooth.
+#: Supersampling factor of dots and lines in a legend.
 SMOOTH = 4
 
 

@@ -1,6 +1,6 @@
-"""Fields of scenes: read from what is drawn, with a further scalar, and shared by equal ones.
+"""Fields of scenes: reading, additional scalars, and sharing between equal fields.
 
-Flows that were drawn last are kept with their traces, by whatever drew them.
+A cache keeps the last flows with their traces, for all front ends.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
-#: Memory of a field with what is derived of it, over that of its arrays.
+#: Ratio of the memory of a field with its derived arrays to the memory of its own arrays.
 DERIVED_FACTOR = 4
-#: Memory of fields and traces that are kept after a picture.
+#: Memory limit of the cache of drawn fields and traces, in bytes.
 KEPT_BYTES = 500_000_000
-#: Name of an array that is given as scalars, as in PyVista.
+#: Name of a scalar array without a name, as in PyVista.
 DATA = "Data"
-#: Attribute of :class:`FieldOptions` that keeps it.
+#: Attribute of :class:`FieldOptions` with this array.
 ARRAY = "_array"
 
 _fields: WeakCache[FlowField] = WeakCache()
@@ -152,15 +152,15 @@ class TracedFlow:
 
     @property
     def nbytes(self) -> int:
-        """Size in memory, in bytes, with what is derived of the field."""
+        """Size in memory with derived arrays, in bytes."""
         return DERIVED_FACTOR * self.field.nbytes + self.store.nbytes
 
     def keep(self) -> TracedFlow:
-        """Keep the flow for the next picture of the same numbers, and return it.
+        """Keep the flow for the next picture of equal data, and return it.
 
-        :func:`share_field` finds the field, and a store of the same numbers
-        its slices. The least recently drawn is dropped first. For a field with lazy steps, which
-        holds a file open, only the slices are kept.
+        :func:`share_field` finds the field, and a store with equal data its slices. The cache drops
+        the least recently drawn flow first. It keeps only the slices of a field with lazy steps,
+        because such a field holds a file open.
         """
         field = self.field
         if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
@@ -171,5 +171,5 @@ class TracedFlow:
         return self
 
 
-#: Flows that were drawn last, by the memory that they take.
+#: Cache of the last drawn flows, limited by memory.
 kept_flows: ByteCache[int, TracedFlow | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)

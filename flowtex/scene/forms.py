@@ -1,4 +1,4 @@
-"""Arguments as texts, in a shell or in a link: how each is read and written."""
+"""Read and write arguments as text, for the command line and for links."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _read_differences(words: Sequence[str]) -> dict[str, Any]:
     return values
 
 
-#: Forms of a whole number or a name, and of a switch, by default none.
+#: Form of a whole number or a name.
 WHOLE = Form(read=lambda text: int(text) if text.isdecimal() else text)
 _SPECIAL = {
     "block": WHOLE,

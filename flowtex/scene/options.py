@@ -255,9 +255,8 @@ def _attribute(name: str) -> property:
 class AppearanceAttributes:
     """Base of objects that show a scene: its field, settings and appearance as attributes.
 
-    Those of the appearance can be set at any time; ``{appearance}`` in the docstring of a class
-    becomes their names. An object that is made takes no other attributes, so that a misspelt name
-    raises an error.
+    Attributes of the appearance can be set at any time. ``{appearance}`` in the docstring of a
+    class becomes their names. After ``__init__`` any other name raises an error.
     """
 
     scene: Any  #: A Scene; an attribute or a property of the class.

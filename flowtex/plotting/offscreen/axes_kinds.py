@@ -29,9 +29,9 @@ DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
 TICKS = (90, 60, *STEPS)
 #: Share of the ticks for which matplotlib sees room, where they are longitudes.
 WIDE = 0.85
-#: Places along a border of axes where longitude and latitude are looked up.
+#: Number of points along a border of axes at which longitude and latitude are computed.
 ALONG = 241
-#: Places inwards from the border, of which the first on the map counts.
+#: Number of points from the border inwards; the first one on the map is used.
 INWARDS = 33
 #: Share of the axes within which a place maps back to where it was looked up.
 NEAR = 1e-3
@@ -41,7 +41,7 @@ STEP = 1e-6
 LEAST_STEP = 1e-12
 #: Scales that matplotlib clips.
 CLIPPED = ("log", "logit")
-#: Scaled values that are clipped: the logarithm of values that are not positive is -1000.
+#: Magnitude of clipped scaled values: matplotlib gives -1000 as the logarithm of zero.
 BEYOND = 999.0
 #: Steps in which y is stretched against x, in powers of two.
 STRETCH_STEP = 0.5

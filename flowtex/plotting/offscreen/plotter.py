@@ -79,10 +79,14 @@ class OffscreenPlotter:
         window.SetDPI(window.GetDPI() * supersampling)
         for handle in self.handles:
             handle.density, handle.still = supersampling * density, still
-        #: A picture without the flow, and the rows of the flow in it; only with annotations.
+        #: Image without the flow, with room for annotations; ``None`` without these.
         self._canvas: Bytes | None = None
         if annotations:
-            self._reserve(size)
+            try:
+                self._reserve(size)
+            except BaseException:
+                self.close()
+                raise
 
     def picture(
         self, *, time: float | str | None = None, clock: float = 0.0, transparent: bool = False
