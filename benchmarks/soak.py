@@ -102,7 +102,7 @@ class User:
                 ("samples", (5, 9, 13)),
                 ("lod", (True, False)),
                 ("kernel", ("box", "hann")),
-                ("noise", ("procedural", "texture")),
+                ("parameter", ("arclength", "time")),
             )
         )
         present = self._settings[name]

@@ -92,12 +92,8 @@ def smaller(code: str) -> str:
     )
 
 
-#: The site runs the lessons, where a warning is an error as well.
-OTHERS = [path for path in NOTEBOOKS if not path.stem.startswith("lesson")]
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("path", OTHERS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path: Path, kernel: Any) -> None:
     """From top to bottom; it shows a widget, and no warning."""
     import nbclient

@@ -249,10 +249,10 @@ def open_plotter(
     scalar_bar_args: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> tuple[Any, list[FlowHandle]]:
-    """Return a plotter with a scene, or with two side by side, and their textures.
+    """Return a plotter with one scene or two side by side, and the handles of their textures.
 
-    The ``options`` are those of PyVista's plotters. Two scenes share a camera, and labels say how
-    they differ. Raises a FieldError when the view has axes, which only browsers draw.
+    The ``options`` go to the PyVista plotter. Two scenes share a camera, and labels show how they
+    differ. Raises a FieldError when the view has axes, which only browsers draw.
     """
     if view.axes is not None:
         raise FieldError(

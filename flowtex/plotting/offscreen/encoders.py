@@ -46,7 +46,7 @@ LIMITED = 1
 PILLOW_MAX_PIXELS = 1_000_000_000
 #: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
 GIF_MAX_FPS = 50.0
-#: Pictures of which a palette is made.
+#: Number of frames from which the palette is computed.
 PALETTE_PICTURES = 8
 #: About how many pixels of each of them along a side.
 PALETTE_SIDE = 256
