@@ -7,6 +7,7 @@ PyVista's readers open most files; PLOT3D, which does not describe itself, is re
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -19,7 +20,7 @@ import numpy as np
 
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
-from flowtex.field.options import OF_EARTH, FieldOptions
+from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
@@ -228,7 +229,6 @@ def read_files(
     file = one_path(path)
     if problem := _path_problem(file):
         raise FieldError(problem)
-    options.refuse(OF_EARTH, "datasets, but this is a mesh")
     if options.times is not None:
         raise FieldError("times is given, but the file already has times; omit it")
     if isinstance(time, str):
@@ -291,10 +291,11 @@ def members_of(path: Path) -> list[Path]:
 def _files(path: Path, depth: int) -> Iterator[Path]:
     yield path
     suffix = path.suffix.lower()
-    if path.is_dir():
-        yield from sorted(other for other in path.rglob("*") if other.is_file())
-    elif suffix == ".foam":
-        yield from sorted(other for other in path.parent.rglob("*") if other.is_file())
+    if path.is_dir() or suffix == ".foam":
+        # A store may have far more files than are compared, so its folders are listed one by one.
+        for folder, folders, names in os.walk(path if path.is_dir() else path.parent):
+            folders.sort()
+            yield from (Path(folder, name) for name in sorted(names))
     elif suffix == ".case":
         yield from sorted(other for other in path.parent.iterdir() if other.is_file())
     elif suffix in WITH_OTHERS and path.parent.is_dir():

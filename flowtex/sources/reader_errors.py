@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.
 _VTK_GLOBALS = threading.RLock()
-#: The variable that decides if HDF5 locks files.
+#: Environment variable that decides whether HDF5 locks files.
 LOCKING = "HDF5_USE_FILE_LOCKING"
 #: Programs by the suffixes of their files, and by the first bytes.
 SUFFIXES = {".slf": "TELEMAC", ".selafin": "TELEMAC", ".omf": "OVF", ".ovf": "OVF"}
@@ -86,8 +86,8 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             cause = error
         except MemoryError:
             cause = RuntimeError("its data do not fit into memory")
-        except (AttributeError, IndexError, TypeError, EOFError) as error:
-            # Readers fail so where parts of a broken file are missing.
+        except (AttributeError, IndexError, TypeError, EOFError, OverflowError) as error:
+            # Readers fail so where parts of a broken file are missing, or sizes are absurd.
             cause = RuntimeError(f"its content is invalid ({error})")
         except Exception as error:
             # Errors of ecCodes have no class in common with others.

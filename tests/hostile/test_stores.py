@@ -123,6 +123,20 @@ def test_any_flipped_bit_is_mended(whole: Path, share: float, at: float) -> None
     assert contents(place) == contents(whole)
 
 
+def test_swapped_shards_and_changed_metadata_are_made_again(whole: Path, copy: Path) -> None:
+    one, other = (copy / f"0/velocity/c/{step}/0/0/0" for step in (0, 1))
+    data = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(data)
+    faults = verify(copy, progress=False)
+    assert len(faults) == 2 and all("differs from what was written" in fault for fault in faults)
+    (copy / "1/zarr.json").write_text("{")
+    metadata = copy / "0/velocity/zarr.json"
+    metadata.write_text(metadata.read_text().replace("float32", "float64"))
+    build(flow(), copy, progress=False)
+    assert contents(copy) == contents(whole)
+
+
 def test_the_command_says_what_is_corrupt(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["pyramid", str(copy), "--verify"]) == 0
     assert "is whole" in capsys.readouterr().out
@@ -243,3 +257,13 @@ def test_a_zarr_of_any_size_is_refused_as_a_source(
         with pytest.raises(FieldError, match=rf"the variable ({name}) declares \d+ TB"):
             read(path)
     assert not (tmp_path / "a").exists()
+
+
+def test_zarr_of_an_impossible_shape_is_refused_as_a_source(tmp_path: Path) -> None:
+    zarr_of_a_size(tmp_path / "flow.zarr", 2)
+    file = tmp_path / "flow.zarr" / ".zmetadata"
+    told = json.loads(file.read_text())
+    told["metadata"]["u/.zarray"]["shape"][0] = 10**30
+    file.write_text(json.dumps(told))
+    with pytest.raises(FieldError, match="its content is invalid"):
+        FlowField.from_file(tmp_path / "flow.zarr")

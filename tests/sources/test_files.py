@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import re
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from waiting import PATIENCE_S
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.sources.meshes.plot3d import find_grid, find_solution
-from flowtex.sources.read_files import describe
+from flowtex.sources.read_files import describe, file_identity
 from flowtex.sources.reader_errors import errors_of_file
 
 pv = pytest.importorskip("pyvista")
@@ -278,6 +279,27 @@ def test_a_grid_without_its_solution(tmp_path: Path) -> None:
         FlowField.from_file(path)
 
 
+def test_identity_lists_no_more_folders_than_it_compares(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a", "b", "c"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "0").touch()
+    listed: list[str] = []
+    scandir = os.scandir
+
+    def listing(path: Any) -> Any:
+        listed.append(Path(path).name)
+        return scandir(path)
+
+    monkeypatch.setattr("flowtex.sources.read_files.MOST_FILES", 2)
+    monkeypatch.setattr(os, "scandir", listing)
+    identity = file_identity([tmp_path])
+    monkeypatch.undo()
+    assert [Path(name).name for name, *_ in identity] == [tmp_path.name, "0"]
+    assert "a" in listed and "c" not in listed
+
+
 # --- what cannot be read --------------------------------------------------------------------
 
 
@@ -337,6 +359,12 @@ def test_a_format_that_is_not_known(tmp_path: Path) -> None:
     path.rename(tmp_path / "flow")
     with says(f"{tmp_path / 'flow'}: unknown format (no suffix); expected {KNOWN}"):
         FlowField.from_file(tmp_path / "flow")
+    (tmp_path / "flow").rename(tmp_path / "flow.xyz")
+    with says(
+        f"{tmp_path / 'flow.xyz'}: unknown format (not a PLOT3D grid in any layout); expected "
+        + KNOWN
+    ):
+        FlowField.from_file(tmp_path / "flow.xyz")
 
 
 @pytest.mark.parametrize(

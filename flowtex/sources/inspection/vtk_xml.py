@@ -27,9 +27,8 @@ SUFFIXES = (
     *(".vtm", ".vtmb", ".pvd", ".vtpd"),
 )
 CHUNK_BYTES = 1 << 20
-_TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
+_TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>\s*""")
 _INTEGER = re.compile(rb"\d+")
-_BLANKS = re.compile(rb"\s*")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
 #: Kinds of cells, and the attributes with their counts.
 CELLS = {"Verts": "NumberOfVerts", "Lines": "NumberOfLines"}
@@ -249,8 +248,7 @@ class _Contents:
         """Return the begin of an array, its latest end, and whether it is in base64."""
         if array.format == "appended":
             return self._base + array.offset, len(self._data), self._document.encoded
-        blanks = _BLANKS.match(self._data, self._after_tag(array.begin))
-        return blanks.end() if blanks else 0, array.end, True
+        return self._after_tag(array.begin), array.end, True
 
     def _after_tag(self, begin: int) -> int:
         match = _TAG.match(self._data, begin)
@@ -319,9 +317,9 @@ class _Block:
             encoded_head = -(-head // 3) * 4
             if self._sizes or b"=" in self._data[begin : begin + encoded_head]:
                 begin, offset = begin + encoded_head, offset - head
-        stop = begin + -(-(offset + count) // 3) * 4
+        text = self._data[begin + offset // 3 * 4 : begin + -(-(offset + count) // 3) * 4]
         try:
-            return base64.b64decode(self._data[begin:stop])[offset : offset + count]
+            return base64.b64decode(text)[offset % 3 :][:count]
         except binascii.Error:
             return b""
 
