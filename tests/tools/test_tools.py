@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
+import pkgutil
 import runpy
 import shutil
 import subprocess
@@ -79,6 +81,18 @@ install.trusted-host='command.example'"""
         "UV_HTTP_TIMEOUT": "9",
         "UV_INSECURE_HOST": "command.example",
     }
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("benchmarks/*.py")), ids=lambda path: path.stem)
+def test_names_that_a_benchmark_imports_exist(path: Path) -> None:
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    names = [a.name for node in nodes if isinstance(node, ast.Import) for a in node.names]
+    names += [
+        f"{n.module}.{a.name}" for n in nodes if isinstance(n, ast.ImportFrom) for a in n.names
+    ]
+    for name in names:
+        if name.startswith(("flowtex", "paper")):
+            pkgutil.resolve_name(name)
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
