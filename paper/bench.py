@@ -20,7 +20,7 @@ from paper.noise_texture import NoiseImages, NoiseTextures
 T = TypeVar("T")
 
 #: The paper's own method: its noise texture and step texture, ten even contributions, backward.
-#: That texture, and ``noise_correction``, are of :mod:`paper.noise_texture` and no settings.
+#: ``noise`` and ``noise_correction`` select a :mod:`paper.noise_texture`; they are no settings.
 PAPER: dict[str, Any] = {
     "noise": "texture",
     "samples": 10,

@@ -87,7 +87,7 @@ class NoiseImages:
 
     @property
     def lookup(self) -> LookupMaker:
-        """What makes the look-up of fragments."""
+        """Maker of the look-up of fragments."""
         return lambda fragments, values: NoiseLookup(fragments, values, self)
 
 

@@ -36,9 +36,9 @@ NEAR_EDGE = 0.1
 LEAST_RING = 8
 #: Widest gap in cells between the last column and the first, across which they close.
 MOST_GAP = 1.5
-#: Distance of lines, over those beside and over most others, from which on data lack between them.
+#: Least ratio of a gap in the data to the distances of the lines beside it, and to most others.
 GAP = 1.75
-#: Share of the distances of lines that are most.
+#: Quantile of the distances between lines that stands for most of them.
 ALMOST_ALL = 0.9
 #: Share of different longitudes from which on nodes are scattered.
 SCATTERED = 0.125

@@ -109,7 +109,7 @@ def _say(axes: Any, m: int, position: Floats, level: float) -> None:
 
 
 class _Looked(NamedTuple):
-    """What a fragment looks up, by contribution from the nearest to the farthest."""
+    """The look-ups of a fragment, by contribution from the nearest to the farthest."""
 
     level: float  #: Of the noise, and of the slices.
     slice_level: float
@@ -125,7 +125,7 @@ class _Looked(NamedTuple):
 
 
 def _looked(bench: Bench) -> tuple[_Looked, Floats]:
-    """Return the look-ups of the point of figure 2, and the level of the noise that they are of."""
+    """Return the look-ups of the point of figure 2, and the noise at their level."""
     asked: dict[str, Any] = {**PAPER, "resolution": RESOLUTION}
     field = bench.gyre
     textures, surface = bench.textures(field, **asked), field.surface

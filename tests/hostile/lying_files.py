@@ -151,10 +151,7 @@ def grib2(points: int) -> bytes:
 def grib(
     edition: int, *, packed: int = 12, bits: int | None = None, latitude: float | None = None
 ) -> bytes:
-    """Return two messages of winds, packed into some bits, which may declare others.
-
-    They may declare another latitude as well.
-    """
+    """Return two messages of winds; ``bits`` and ``latitude`` replace the true declarations."""
     import eccodes
 
     messages = b""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -311,15 +312,36 @@ def test_what_is_missing_is_told(files: Whole, tmp_path: Path, name: str, share:
 
 
 @pytest.mark.parametrize("name", ["binary.vtk", "image.vtk", "old.vtk"])
-def test_a_byte_that_is_missing_in_a_binary_block_is_refused(
-    files: Whole, tmp_path: Path, name: str
-) -> None:
+def test_missing_byte_in_binary_block_raises(files: Whole, tmp_path: Path, name: str) -> None:
     data = files[name][name]
     begin = data.index(b"LOOKUP_TABLE default\n") + 21
     for at in (begin, begin + 100, begin + 299):
         path = lay(tmp_path / str(at), files, name, name, data[:at] + data[at + 1 :])
         with pytest.raises(FieldError, match=r"no newline follows the \d+ bytes of scalars"):
             FlowField.from_file(path)
+
+
+def test_inspection_decodes_only_the_ends_of_base64(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+    path = tmp_path / "large.vtp"
+    writer = vtkXMLPolyDataWriter(file_name=str(path))
+    writer.SetDataModeToBinary()
+    writer.SetCompressorTypeToNone()
+    writer.SetInputData(flow(pv.Plane(i_resolution=60, j_resolution=60)))
+    writer.Write()
+    lengths: list[int] = []
+    decode = base64.b64decode
+
+    def counted(text: bytes) -> bytes:
+        lengths.append(len(text))
+        return decode(text)
+
+    monkeypatch.setattr(base64, "b64decode", counted)
+    inspect_file(path)
+    assert lengths and max(lengths) < 100 and path.stat().st_size > 200_000
 
 
 def test_a_grid_that_is_cut_to_one_of_two_dimensions_is_refused(

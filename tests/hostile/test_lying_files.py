@@ -139,7 +139,7 @@ def test_a_size_that_the_file_has_not_is_refused(
     assert what in refused(tmp_path / name)
 
 
-def test_grib_of_any_packing_is_read(tmp_path: Path) -> None:
+def test_grib_with_any_packing_is_read(tmp_path: Path) -> None:
     for edition in (1, 2):
         for bits in (0, 1, 12, 24):
             path = tmp_path / f"{edition}_{bits}.grib"
@@ -147,7 +147,7 @@ def test_grib_of_any_packing_is_read(tmp_path: Path) -> None:
             inspect_file(path)
 
 
-def test_variables_beyond_a_number_are_refused(tmp_path: Path) -> None:
+def test_too_many_variables_raise(tmp_path: Path) -> None:
     import netCDF4
 
     for name, kind in (("classic.nc", "NETCDF3_CLASSIC"), ("four.nc", "NETCDF4")):

@@ -182,6 +182,3 @@ def test_noise_predicts_nothing_of_its_neighbours(rng: np.random.Generator) -> N
     measured = redundancy(replace(slices, displacement=data))
     assert measured.share < 0.05
     assert measured.by_neighbours.min() > 22
-
-
-# --- errors ---------------------------------------------------------------------------------

@@ -27,6 +27,7 @@ from flowtex.errors import FieldError, Notice
 from flowtex.field.steps import LazySteps
 from flowtex.sources.open_source import open_source
 from flowtex.sources.remote import (
+    Reader,
     RemoteSource,
     describe_source,
     open_remote,
@@ -217,6 +218,17 @@ def test_the_process_ends_with_what_needs_it(
     del field
     gc.collect()
     wait_until(lambda: is_gone(pid))
+
+
+def test_reader_forgets_steps_that_are_no_longer_used(tmp_path: Path) -> None:
+    reader = Reader()
+    reader({"do": "open", "paths": [str(weather(tmp_path / "weather.nc"))]})
+    first, second = (
+        reader({"do": "field"})[0]["value"]["arrays"]["velocity"]["steps"] for _ in range(2)
+    )
+    reader({"do": "step", "steps": second, "number": 1, "forgotten": [first]})
+    with pytest.raises(KeyError):
+        reader({"do": "step", "steps": first, "number": 1})
 
 
 # --- files that change ------------------------------------------------------------------------

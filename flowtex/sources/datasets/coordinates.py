@@ -86,7 +86,7 @@ class Places:
 
 
 class Beside(NamedTuple):
-    """Datasets that belong together, and what is drawn along the axes of the velocity."""
+    """Datasets that belong together, and the selection along the axes of the velocity."""
 
     datasets: Sequence[xr.Dataset]
     drawn: Drawn

@@ -82,7 +82,8 @@ def find_masks(
             if mask is not None:
                 yield mask
     if wanted is not None and wanted not in names:
-        raise FieldError(f"mask is {wanted!r}; {near_names(str(wanted), names)}, or False for none")
+        words = near_names(str(wanted), names)
+        raise FieldError(f"mask is {wanted!r}; {words} (False draws all values)")
 
 
 def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:
@@ -159,13 +160,13 @@ _USUAL = re.compile(
 #: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data.
 #: Below it an inlet or a moving wall may look the same.
 _HUGE = 1e11
-#: Factor by which such a value exceeds the others.
+#: Least distance of such a value from the others, as a multiple of their extent.
 _HUGE_RATIO = 1e3
-#: Factor by which a usual one does.
+#: Least distance of a usual fill value from the others, as a multiple of their extent.
 _USUAL_RATIO = 0.5
-#: Least number of values that a repeated value has.
+#: Least number of times that a fill value occurs.
 _FEW = 10
-#: Least share of all values that it has, where these are fewer.
+#: Least share of fill values in small arrays.
 _SHARE = 0.01
 
 

@@ -54,7 +54,7 @@ from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Longest name that fits into a legend.
+#: Longest name that fits beside a colour bar.
 LONGEST_NAME = 40
 #: Most values of an axis that are listed.
 MOST_VALUES = 8
@@ -171,7 +171,7 @@ def _vectors(nodes: MapNodes | MeshMap | PlaneNodes, scale: float, components: F
 
 
 def _note_rest(read: LazySteps, flow: Flow) -> None:
-    """Record that the first step is at rest, and the first one that is not."""
+    """Record a first step at rest, and the first step that moves."""
     searched = read[:MOST_SEARCHED]
     first = next((n for n, step in enumerate(searched) if np.nan_to_num(step).any()), 0)
     if first:

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Distance, as a share of a cell, up to which a line of a grid repeats another one.
 REPEATED = 0.01
-#: Offset of a grid in cells up to which it is the same.
+#: Offset in cells up to which two grids coincide.
 SAME_NODE = 0.03
-#: Difference of an offset from half a cell up to which it is that.
+#: Difference from half a cell up to which an offset is half a cell.
 HALF = 0.1
 
 

@@ -24,7 +24,7 @@ DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
 #: Most bytes of a number.
 NUMBER_BYTES = 8
 GRIB_MAGIC = b"GRIB"
-#: Length of a message of GRIB 1 from which on it counts in larger units.
+#: Least value of a GRIB 1 length that counts units of several bytes.
 LONG_MESSAGE = 0x800000
 #: Bytes of such a unit.
 LONG_UNIT = 120
@@ -34,15 +34,15 @@ HAS_GRID = 0x80
 HAS_BITMAP = 0x40
 #: Flags of GRIB 1 for values that are not simply packed.
 NOT_SIMPLE = 0xD0
-#: Number of columns or rows that a reduced grid declares.
+#: Number of columns or rows in the header of a reduced grid.
 MISSING = 0xFFFF
-#: Numbers of grids of latitudes and longitudes, also Gaussian ones, by the edition.
+#: Numbers of latitude-longitude and Gaussian grids, by the edition.
 LATLON = {1: (0, 4, 10, 14), 2: (0, 1, 2, 3, 40, 41, 42, 43)}
 #: Basic angles that stand for degrees, in GRIB 2.
 DEGREES = (0, 0xFFFFFFFF)
 #: Greatest latitude in degrees.
 POLE = 90.0
-#: Bits that may follow the packed values.
+#: Most bits of padding behind the packed values.
 PADDING = 16
 
 
@@ -132,8 +132,8 @@ def check_grib(data: Data) -> None:
 def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
     """Return the number of points of the largest grid of a message.
 
-    Raises a FieldError for latitudes beyond a pole, by which ecCodes may crash, and for packed
-    values that have not their declared number of bits, of which it would read others.
+    Raises a FieldError for latitudes beyond a pole, which may crash ecCodes, and for packed values
+    whose size does not match the declared bits, because ecCodes would decode other values.
     """
 
     def number(begin: int, count: int) -> int:
@@ -183,7 +183,7 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
 
 
 def _check_packed(nbytes: int, count: int, bits: int, label: str) -> None:
-    """Raise a FieldError if a section has not the bytes for this many bits of each value."""
+    """Raise a FieldError if the size of a section does not match the bits of each value."""
     check_count(nbytes, -(-count * bits // 8), f"the packing of {label}")
     if 8 * nbytes >= count * (bits + 1) + PADDING:
         raise FieldError(

@@ -22,7 +22,7 @@ SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 #: Bytes of a value by the number of its type.
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
-#: Most variables of a dataset; xarray looks at all of them for each one.
+#: Most variables of a dataset; the time that xarray needs grows with their square.
 MOST_VARIABLES = 2_000
 #: Number of records that the writer did not know.
 STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
@@ -38,7 +38,7 @@ def check_netcdf(data: Data, *, whole: bool) -> None:
 
 
 def check_variables(count: int) -> None:
-    """Raise a FieldError for more variables, or other entries of a header, than can be read."""
+    """Raise a FieldError for too many variables, or other entries of a header."""
     if count > MOST_VARIABLES:
         raise FieldError(
             f"the file has {count:,} variables, dimensions or attributes; expected at most "

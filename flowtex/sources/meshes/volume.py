@@ -32,7 +32,7 @@ from flowtex.sources.meshes.vectors import (
 
 #: Values that are kept of an array, of all steps together.
 MOST_VALUES = 1 << 16
-#: Values that are kept at least of one step.
+#: Least number of values that are kept of one step.
 LEAST_VALUES = 1 << 10
 #: Distance between sampled values, as a share of their number: it fits no axis of a grid.
 GOLDEN_SHARE = (5**0.5 - 1) / 2

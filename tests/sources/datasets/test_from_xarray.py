@@ -173,6 +173,12 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
             "lon increases and decreases.*drop_duplicates",
         ),
         (_nameless, "Name the components, as in u="),
+        (
+            lambda ds: ds.assign(
+                {n: (ds.u.dims, ds[n].values, {"units": "furlong"}) for n in "uv"}
+            ),
+            "^the unit of 'u' is 'furlong', which is not a unit of velocity",
+        ),
         (_unplaced, "no variable has two axes; expected the two components"),
     ],
     ids=[
@@ -182,6 +188,7 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
         "no degrees",
         "scrambled",
         "no names",
+        "no unit of velocity",
         "one axis",
     ],
 )

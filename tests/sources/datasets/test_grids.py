@@ -1,4 +1,4 @@
-"""Rows and columns of a grid that repeat others."""
+"""Repeated rows and columns of a grid, and masks."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from earth_data import DEGREES, components
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.staggered import unrepeated
 
@@ -47,6 +48,25 @@ def test_a_halo_beyond_the_date_line_is_left_out(halo: int) -> None:
     lon, lat = (lon + lat / 4) % 360, lat
     field = FlowField.from_xarray(curvilinear(lon, lat), globe=True)
     assert field.shape == (20, 37) and field.periodic == (False, True)
+
+
+def test_masked_and_unset_positions_are_land() -> None:
+    lon, lat = np.meshgrid(np.linspace(0, 20, 30), np.linspace(40, 50, 20))
+    lon = lon + lat / 10
+    mask = (np.arange(20)[:, None] > 4) & np.ones(30, bool)
+    masked = curvilinear(lon, lat, tmask=(("y", "x"), mask.astype(float)))
+    assert np.array_equal(FlowField.from_xarray(masked, globe=True).valid, mask)
+    with pytest.raises(FieldError, match=r"^mask is 'tmsk'; did you mean 'tmask'\? \(False"):
+        FlowField.from_xarray(masked, mask="tmsk")
+    lon[15:], lat[15:] = 0.0, 0.0  # as where a model leaves out processors
+    assert not FlowField.from_xarray(curvilinear(lon, lat), globe=True).valid[15:].any()
+
+
+def test_mask_that_hides_everything_is_not_used() -> None:
+    lon, lat = np.meshgrid(np.arange(0.0, 30), np.arange(40.0, 60))
+    land = (("y", "x"), np.ones(lon.shape))
+    field = FlowField.from_xarray(curvilinear(lon, lat, LANDMASK=land))
+    assert field.valid.all() and "LANDMASK is not used" in str(field.reading)
 
 
 @pytest.mark.parametrize("pivot", [0, 1])

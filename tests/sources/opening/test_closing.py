@@ -69,7 +69,7 @@ def test_groups_and_series_are_closed(tmp_path: Path) -> None:
         assert not any(map(is_open, (tree, *steps)))
 
 
-def test_a_source_holds_no_file_open(tmp_path: Path) -> None:
+def test_source_closes_its_file(tmp_path: Path) -> None:
     data().to_netcdf(tmp_path / "run.nc")
     source = open_source(tmp_path / "run.nc")
     assert not is_open(tmp_path / "run.nc")
@@ -77,7 +77,7 @@ def test_a_source_holds_no_file_open(tmp_path: Path) -> None:
     assert not is_open(tmp_path / "run.nc")
 
 
-def test_a_file_that_is_open_for_reading_is_not_locked(tmp_path: Path) -> None:
+def test_open_file_is_not_locked(tmp_path: Path) -> None:
     data().to_netcdf(tmp_path / "run.nc")
     reading = """
 import sys, h5py
