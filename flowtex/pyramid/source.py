@@ -51,8 +51,8 @@ class FieldSource:
     It has nodes (J, I) of a ``shape``, and the time steps of ``scalars``. ``flat`` is whether nodes
     and velocities lie in a plane of even height, ``rectilinear`` whether two lines of coordinates
     give all positions, ``late`` whether steps are read when they are needed, and ``travels``
-    whether a worker elsewhere can read it. ``has_position`` are the nodes whose position is known;
-    ``None`` for all.
+    whether a remote worker can read it. ``has_position`` marks the nodes with a known position;
+    ``None`` means all.
     """
 
     travels = False
@@ -97,7 +97,7 @@ class FieldSource:
         return FieldSource(with_uncertainty(self.field, value))
 
     def identity(self) -> str:
-        """Return no hash that would change with the field: its values must be read."""
+        """Return an empty hash, because only its values identify a field."""
         return ""
 
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
@@ -177,7 +177,7 @@ class RegionSource:
         return digest(words=(*infos, self.choice)).hex() if infos else ""
 
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
-        """Return no ranges, which are found from samples."""
+        """Return no ranges, because samples of the store determine them."""
         return {}
 
     def _members(self) -> Iterator[tuple[Path, os.stat_result]]:
@@ -188,7 +188,7 @@ class RegionSource:
                 yield file.resolve(), file.stat()
 
 
-#: What a pyramid is built from.
+#: Sources of a pyramid.
 NodeSource: TypeAlias = FieldSource | RegionSource
 
 
@@ -207,7 +207,8 @@ def source_of(data: Any, **options: Any) -> NodeSource:
 
 def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
     if isinstance(data, (FlowField, NodeSource)):
-        if names := [key for key, value in given.items() if key != "uncertainty" and value]:
+        refused = {**given, "name": name or None, "uncertainty": None}
+        if names := [key for key, value in refused.items() if value is not None]:
             raise FieldError(f"{', '.join(names)} applies to the data of a field; omit it")
         return data if isinstance(data, NodeSource) else FieldSource(data)
     if is_store(data):
@@ -259,7 +260,7 @@ def has_parts(place: object) -> bool:
     try:
         group = import_extra("zarr", "xarray").open_group(folder, mode="r")
         shapes = [array.shape for _, array in group.arrays()]
-    except (OSError, ValueError, KeyError, TypeError):  # whoever reads it reports the fault
+    except (OSError, ValueError, KeyError, TypeError):  # the reader reports the fault
         return False
     large = any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
     return large or "multiscales" in group.attrs

@@ -298,8 +298,14 @@ def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:
     data = around()
     with pytest.raises(FieldError, match=r"none of the .* nodes has data"):
         build(data.where(data.u > 9), tmp_path / "a.zarr", progress=False, u="u", v="v")
-    with pytest.raises(FieldError, match="globe applies to the data of a field"):
-        build(FlowField.from_xarray(data), tmp_path / "b.zarr", progress=False, globe=True)
+    field, times = FlowField.from_xarray(data), np.arange(2.0)
+    refused: dict[str, Any] = {"globe": True, "level": 0, "name": "flow", "times": times}
+    for name, value in refused.items():
+        with pytest.raises(FieldError, match=f"^{name} applies to the data of a field"):
+            build(field, tmp_path / "b.zarr", progress=False, **{name: value})
+    corners = [[0, 0], [1, 0], [0, 1]]
+    with pytest.raises(FieldError, match="on triangles"):
+        build(FlowField.from_triangles(corners, [[0, 1, 2]], corners), tmp_path / "b.zarr")
     build(data, tmp_path / "c.zarr", progress=False)
     with pytest.raises(FieldError, match="is already a pyramid"):
         build(tmp_path / "c.zarr", tmp_path / "d.zarr", progress=False)
