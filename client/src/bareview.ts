@@ -1,5 +1,5 @@
-// What every view of a scene does, and the one with nothing around it, for a host that shows it in its own way and
-// moves the camera.
+// The base of all views of a scene, and a view without controls, for a host that shows the image itself and moves the
+// camera.
 
 import { recoloured, type ColourChoice } from "./colours.ts";
 import { Camera, type CameraState } from "./camera.ts";
@@ -67,12 +67,13 @@ export abstract class SceneView implements View, User, Taker {
   abstract change(cameraOnly?: boolean): void;
   abstract refine(): void;
   abstract painted(isComplete: boolean): void;
-  /** Go on without what could not be had, and say why. */
+  /** Show why some data are missing; the view draws the rest. */
   protected abstract tell(reason: string): void;
-  /** A picture could not be drawn. */
+  /** Stop playing and show that drawing failed. */
   protected abstract fail(error: unknown): void;
 
   dispose(): void {
+    if (this.lifetime.isOver) return;
     this.lifetime.end();
     this.requests.stop();
     this.painter.dispose?.();
@@ -80,7 +81,7 @@ export abstract class SceneView implements View, User, Taker {
     this.graphics.leave(this);
   }
 
-  /** What is on the graphics card, where the browser draws. */
+  /** Buffers and textures on the graphics card; null if the host draws. */
   get scene(): Scene | null {
     return this.painter.scene ?? null;
   }
@@ -89,7 +90,7 @@ export abstract class SceneView implements View, User, Taker {
     return this.painter.tiles ?? null;
   }
 
-  /** Take a part; returns whether it is another one than before. */
+  /** Take a part; return whether it differs from the one before. */
   setPart(part: NamedPart): boolean {
     const tile = tilePart(part.name);
     if (tile) this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
@@ -101,7 +102,7 @@ export abstract class SceneView implements View, User, Taker {
     return true;
   }
 
-  /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
+  /** Draw without a tile at some steps, or without a step, because the source has none, and show why. */
   lack(reason: string, tile?: string, steps: number[] = []): void {
     if (tile !== undefined) this.tiles?.fail(tile, steps);
     this.tell(reason);
@@ -139,7 +140,7 @@ export abstract class SceneView implements View, User, Taker {
     return viewState({ header, camera, anchor: this.scene?.anchor ?? [0, 0, 0], player, rows }, shown, density);
   }
 
-  /** What is at (x, y), from -1 to 1, right and up, and where in what is drawn. */
+  /** Return the point at (x, y), from -1 to 1, right and up, and its place in the drawn layers. */
   find(x: number, y: number): Found | null {
     return this.painter.canPick ? (this.painter.find?.(x, y) ?? null) : null;
   }
@@ -244,5 +245,4 @@ export class BareView extends SceneView {
   get rows(): number {
     return this.canvas.height / this.ratio;
   }
-
 }

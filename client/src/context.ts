@@ -35,7 +35,7 @@ export interface User {
   change(): void;
 }
 
-/** Have textures of half precision drawn into, which their mip levels are made with as well, if that can be. */
+/** Enable drawing into half-precision textures, which also makes their mip levels; return whether it is supported. */
 export function drawsFloats(gl: WebGL2RenderingContext): boolean {
   return ["EXT_color_buffer_float", "EXT_color_buffer_half_float"].some((name) => gl.getExtension(name) !== null);
 }
@@ -80,8 +80,7 @@ export class Graphics {
     });
     this.canvas.addEventListener("webglcontextrestored", () => {
       this.isLost = false;
-      if (gl) drawsFloats(gl);
-      this.programs.findFeatures();
+      if (this.gl && drawsFloats(this.gl)) this.programs.findFeatures();
       for (const user of this.users) user.change();
     });
   }

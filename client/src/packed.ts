@@ -1,4 +1,4 @@
-// A scene as text in an exported page (flowtex/host/export.py writes what is around it), or in its own module.
+// A scene as text in an exported page, which flowtex/host/export.py writes, or in its own module.
 
 import { FlowtexView } from "./element.ts";
 import { Embedded, type PackedScene } from "./sources/embedded.ts";

@@ -35,6 +35,7 @@ export interface Painter {
   readonly shown?: Moment | null;
 }
 
+/** Shows images that the host draws and sends; the view moves its camera and waits for them. */
 export class StreamedPainter implements Painter {
   private readonly view: View;
   /** Whether the host has drawn the last request. */

@@ -22,6 +22,8 @@ export function constantsOf(shader: string): Constants {
   );
 }
 
+// The noise at one point, as in shaders/common/noise.glsl for grains that do not move.
+
 interface Lattice {
   /** The point in cells from the lattice point nearest to the origin, and cells by length. */
   here: Vector;

@@ -169,7 +169,7 @@ export class Places {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  /** What is drawn at (x, y), from -1 to 1, right and up, at an outline in the next pixel; null beside the surface. */
+  /** Return the place drawn at (x, y), from -1 to 1, right and up, or in the pixel beside it; null off the surface. */
   at(x: number, y: number): PlaceAt | null {
     const { graphics, target, layers } = this;
     const gl = graphics.context;

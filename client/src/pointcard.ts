@@ -17,7 +17,6 @@ import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
 
 const TITLE = "Path through this point";
-
 /** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
 const FEWEST_DIGITS = 4;
 const MOST_DIGITS = 14;

@@ -124,7 +124,7 @@ function sideOf(layers: Layers, lags: number[], first: number, sign: number, by:
   return result;
 }
 
-/** What takes displacements to space; null beyond the border of the image. */
+/** Return the function from displacements to points in space; it returns null beyond the border of the image. */
 export function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector | null {
   const { image, geometry } = scene.header;
   if (!image) return (moved) => add(position, fromFrame(geometry.frame, moved));

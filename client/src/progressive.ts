@@ -435,7 +435,10 @@ export interface Reuse {
 const product = (a: Mat2d, b: Mat2d) => mat2d.multiply([0, 0, 0, 0, 0, 0], a, b) as Affine;
 const inverse = (a: Mat2d) => mat2d.invert([0, 0, 0, 0, 0, 0], a) as Affine;
 
-/** How the picture of one projection of a plane lies in that of another, if it serves. */
+/**
+ * Return the affine map from the old image of a plane to the new one, or null if the old image does not serve.
+ * Without perspective the view of a plane changes by an affine map, so that a drag follows the pointer.
+ */
 export function reused(
   before: readonly number[],
   now: readonly number[],

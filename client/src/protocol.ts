@@ -62,7 +62,7 @@ export interface Row {
 
 /** An image in place of the noise. */
 export interface ImageTextures {
-  /** Columns and rows of its texels, and of those of the step texture. */
+  /** Columns and rows of the image, and of the step texture. */
   size: [number, number];
   stepSize: [number, number];
   repeat: [boolean, boolean];

@@ -55,7 +55,7 @@ export function arrowHeads(line: Line, apart = HEAD.apart): Line[] {
   return heads;
 }
 
-/** Shapes from the lowest to the topmost. */
+/** Shapes from the lowest to the topmost: light lines in dark casings, which contrast with all colours. */
 export function pathShapes({ path, sampled, point, directed, dots = [] }: PathLines): Shape[] {
   const lines = (all: Line[], kind: string) =>
     all.map((line): Shape => ["polyline", { class: kind, points: textOf(line) }]);

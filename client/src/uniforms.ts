@@ -156,7 +156,7 @@ function noiseOrigin(header: Header, view: ViewState, finest: number): Record<st
   };
 }
 
-/** Sizes of an image: what is drawn more densely takes its level from so many times more texels. */
+/** Sizes of an image; a greater density of pixels chooses a finer level. */
 function imageUniforms({ size, stepSize, repeat }: ImageTextures, tiles: number, density: number) {
   return {
     u_stepSize: stepSize.map((n) => n * density),

@@ -99,7 +99,6 @@ export class Viewer extends SceneView {
   }
 
   override dispose(): void {
-    if (this.lifetime.isOver) return;
     this.player.playing = false;
     super.dispose();
     this.canvas.width = this.canvas.height = 0;

@@ -1,4 +1,4 @@
-// A view as what draws it knows it, and where from and when a moment is seen, as the shaders' uniforms have it.
+// The interface between a view and its painter, and the camera and moment from which uniforms are computed.
 
 import { Camera, firstLook, type CameraState } from "./camera.ts";
 import type { Graphics } from "./context.ts";
@@ -9,7 +9,7 @@ import type { Requests, Source } from "./sources/source.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
-/** A view that a painter draws, and what it may ask of it. */
+/** A view that a painter draws. */
 export interface View {
   readonly canvas: HTMLCanvasElement;
   readonly root: HTMLElement;

@@ -242,6 +242,7 @@ export interface Loaded {
   error?: string;
 }
 
+/** A source that a kernel answers by messages: parts arrive before the message that ends their request. */
 export class Messages implements Source {
   readonly hasSteps = true;
   readonly hasMarks = true;

@@ -227,7 +227,7 @@ this.canvas.width=this.canvas.height=16;let gl=this.canvas.getContext("webgl2",{
 igh-performance"});this.gl=gl&&drawsFloats(gl)?gl:null,this.programs=new Programs(this),this.gl&&this.programs.findFeatures(),
 this.canvas.addEventListener("webglcontextlost",event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.
 clear(),this.common.clear(),this.tracings.clear(),this.picker=this.smooth=null;for(let user of this.users)user.lost()}),
-this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=!1,gl&&drawsFloats(gl),this.programs.findFeatures();
+this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=!1,this.gl&&drawsFloats(this.gl)&&this.programs.findFeatures();
 for(let user of this.users)user.change()})}get context(){if(!this.gl)throw new Error("WebGL2 is not available");return this.
 gl}leave(user){if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),
 this.scheduled=0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.
@@ -1390,16 +1390,17 @@ tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.length&&shown?this.r
 !camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.
 point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.at(pointed,camera,view.settings,shown),
 found}};var SceneView=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=sharedGraphics();lifetime=new Lifetime;held=new HeldParts(
-this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.end(),this.requests.stop(),
-this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this)}get scene(){return this.painter.scene??null}get tiles(){
-return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&this.tiles?.setPart(tile[0],{...part,
-name:tile[1]}),tile||!this.held.set(part)?!1:(this.scene?.forget(part.name),this.trim(),part.name==="cmap"&&this.tiles?.
-recolour(),this.change(),!0)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.tell(reason)}trim(){
-this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}request(){!this.lifetime.isOver&&this.isVisible&&
-this.graphics.request(this)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.
-fail(error)}}lost(){this.header&&this.painter.open?.(this.header),this.sharp=!1}view(shown,density){let{header,camera,player,
-rows}=this;if(!header||!camera)throw new Error("no scene is shown yet");return viewState({header,camera,anchor:this.scene?.
-anchor??[0,0,0],player,rows},shown,density)}find(x,y){return this.painter.canPick?this.painter.find?.(x,y)??null:null}};function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.isOver||(this.lifetime.end(),
+this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.painter.
+scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&this.tiles?.
+setPart(tile[0],{...part,name:tile[1]}),tile||!this.held.set(part)?!1:(this.scene?.forget(part.name),this.trim(),part.name===
+"cmap"&&this.tiles?.recolour(),this.change(),!0)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
+this.tell(reason)}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}request(){!this.lifetime.
+isOver&&this.isVisible&&this.graphics.request(this)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.frame(now,
+until)}catch(error){this.fail(error)}}lost(){this.header&&this.painter.open?.(this.header),this.sharp=!1}view(shown,density){
+let{header,camera,player,rows}=this;if(!header||!camera)throw new Error("no scene is shown yet");return viewState({header,
+camera,anchor:this.scene?.anchor??[0,0,0],player,rows},shown,density)}find(x,y){return this.painter.canPick?this.painter.
+find?.(x,y)??null:null}};function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}function shape(tag,attributes,children=[]){
 let element=document.createElementNS("http://www.w3.org/2000/svg",tag);for(let[name,value]of Object.entries(attributes))
 element.setAttribute(name,`${value}`);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 12z",pause:"\
@@ -2130,9 +2131,9 @@ graphics.users.add(this),this.observe()}observe(){let{lifetime,root}=this;lifeti
 arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{
 this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.
 listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,
-users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.frames}}dispose(){this.lifetime.
-isOver||(this.player.playing=!1,super.dispose(),this.canvas.width=this.canvas.height=0,this.root.remove())}setHeader(header,keepsCamera=!1){
-if(header.format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
+users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.frames}}dispose(){this.player.
+playing=!1,super.dispose(),this.canvas.width=this.canvas.height=0,this.root.remove()}setHeader(header,keepsCamera=!1){if(header.
+format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
 panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
 generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
 this.given=header,header={...header,...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.

@@ -161,29 +161,29 @@ this.canvas.width=this.canvas.height=16;let e=this.canvas.getContext("webgl2",{a
 gh-performance"});this.gl=e&&En(e)?e:null,this.programs=new Se(this),this.gl&&this.programs.findFeatures(),this.canvas.addEventListener(
 "webglcontextlost",t=>{t.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.
 clear(),this.picker=this.smooth=null;for(let r of this.users)r.lost()}),this.canvas.addEventListener("webglcontextrestor\
-ed",()=>{this.isLost=!1,e&&En(e),this.programs.findFeatures();for(let t of this.users)t.change()})}get context(){if(!this.
-gl)throw new Error("WebGL2 is not available");return this.gl}leave(e){if(this.users.delete(e),this.waiting.delete(e),!this.
-users.size){cancelAnimationFrame(this.scheduled),this.scheduled=0,this.programs.dispose();for(let t of[this.picker,this.
-smooth])t&&this.freeTarget(t);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(e){this.waiting.
-add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+Ya;for(let r of[
-...this.waiting])if(this.waiting.delete(r),r.frame(e,t),performance.now()>t)break;this.waiting.size&&(this.scheduled||=requestAnimationFrame(
-r=>this.run(r)))}counted(e){if(e===null)throw new Error("the graphics card has no memory left, or the context is lost");
-return this.objects+=1,e}free(e,t){if(t===null||this.isLost||!this.gl)return;this.objects-=1,this.gl[`delete${e}`](t)}hold(e){
-if(!e.digest)return e;let t=this.stock.get(e.digest)??{part:e,users:0};return this.stock.set(e.digest,{...t,users:t.users+
-1}),t.part}release(e){let t=e&&this.stock.get(e.digest);!e||!t||(t.users-=1,t.users||this.stock.delete(e.digest))}target(e,t,r,n){
-let s=this.context,i=this.counted(s.createFramebuffer());s.bindFramebuffer(s.FRAMEBUFFER,i);let c=[[e,s.COLOR_ATTACHMENT0],
-[s.DEPTH_COMPONENT24,s.DEPTH_ATTACHMENT]].map(([l,h])=>{let m=this.counted(s.createRenderbuffer());return s.bindRenderbuffer(
-s.RENDERBUFFER,m),s.renderbufferStorageMultisample(s.RENDERBUFFER,n,l,t,r),s.framebufferRenderbuffer(s.FRAMEBUFFER,h,s.RENDERBUFFER,
-m),m});return{frame:i,buffers:c}}freeTarget(e){this.free("Framebuffer",e.frame);for(let t of e.buffers)this.free("Render\
-buffer",t)}bindSmooth(e,t){let r=this.context,n=this.smooth;if(!n||n.width<e||n.height<t){let[s,i]=[Math.max(e,n?.width??
-0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,ja);this.smooth={...o,width:s,height:i}}
-r.bindFramebuffer(r.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(e,t){let r=this.context;r.bindFramebuffer(r.READ_FRAMEBUFFER,
-this.smooth?.frame??null),r.bindFramebuffer(r.DRAW_FRAMEBUFFER,null),r.disable(r.SCISSOR_TEST),r.blitFramebuffer(0,0,e,t,
-0,0,e,t,r.COLOR_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,null)}numbers(e,t=1,r=1){let n=this.context;this.picker??=
-this.target(n.RGBA32UI,...Xa,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(n.SCISSOR_TEST),
-n.enable(n.DEPTH_TEST),n.clearBufferuiv(n.COLOR,0,[0,0,0,0]),n.clear(n.DEPTH_BUFFER_BIT),e();let s=new Uint32Array(4*t*r);
-return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function Sn(){let a=globalThis;
-return a[qa]??=new fr}var nt=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(e,t,r){let[n,s]=t;this.poles=e,this.nodes=t,this.rays=
+ed",()=>{this.isLost=!1,this.gl&&En(this.gl)&&this.programs.findFeatures();for(let t of this.users)t.change()})}get context(){
+if(!this.gl)throw new Error("WebGL2 is not available");return this.gl}leave(e){if(this.users.delete(e),this.waiting.delete(
+e),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=0,this.programs.dispose();for(let t of[this.picker,
+this.smooth])t&&this.freeTarget(t);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(e){this.
+waiting.add(e),this.scheduled||=requestAnimationFrame(t=>this.run(t))}run(e){this.scheduled=0;let t=performance.now()+Ya;
+for(let r of[...this.waiting])if(this.waiting.delete(r),r.frame(e,t),performance.now()>t)break;this.waiting.size&&(this.
+scheduled||=requestAnimationFrame(r=>this.run(r)))}counted(e){if(e===null)throw new Error("the graphics card has no memo\
+ry left, or the context is lost");return this.objects+=1,e}free(e,t){if(t===null||this.isLost||!this.gl)return;this.objects-=
+1,this.gl[`delete${e}`](t)}hold(e){if(!e.digest)return e;let t=this.stock.get(e.digest)??{part:e,users:0};return this.stock.
+set(e.digest,{...t,users:t.users+1}),t.part}release(e){let t=e&&this.stock.get(e.digest);!e||!t||(t.users-=1,t.users||this.
+stock.delete(e.digest))}target(e,t,r,n){let s=this.context,i=this.counted(s.createFramebuffer());s.bindFramebuffer(s.FRAMEBUFFER,
+i);let c=[[e,s.COLOR_ATTACHMENT0],[s.DEPTH_COMPONENT24,s.DEPTH_ATTACHMENT]].map(([l,h])=>{let m=this.counted(s.createRenderbuffer());
+return s.bindRenderbuffer(s.RENDERBUFFER,m),s.renderbufferStorageMultisample(s.RENDERBUFFER,n,l,t,r),s.framebufferRenderbuffer(
+s.FRAMEBUFFER,h,s.RENDERBUFFER,m),m});return{frame:i,buffers:c}}freeTarget(e){this.free("Framebuffer",e.frame);for(let t of e.
+buffers)this.free("Renderbuffer",t)}bindSmooth(e,t){let r=this.context,n=this.smooth;if(!n||n.width<e||n.height<t){let[s,
+i]=[Math.max(e,n?.width??0),Math.max(t,n?.height??0)];n&&this.freeTarget(n);let o=this.target(r.RGBA8,s,i,ja);this.smooth=
+{...o,width:s,height:i}}r.bindFramebuffer(r.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(e,t){let r=this.context;r.bindFramebuffer(
+r.READ_FRAMEBUFFER,this.smooth?.frame??null),r.bindFramebuffer(r.DRAW_FRAMEBUFFER,null),r.disable(r.SCISSOR_TEST),r.blitFramebuffer(
+0,0,e,t,0,0,e,t,r.COLOR_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,null)}numbers(e,t=1,r=1){let n=this.context;
+this.picker??=this.target(n.RGBA32UI,...Xa,0),n.bindFramebuffer(n.FRAMEBUFFER,this.picker.frame),n.viewport(0,0,t,r),n.disable(
+n.SCISSOR_TEST),n.enable(n.DEPTH_TEST),n.clearBufferuiv(n.COLOR,0,[0,0,0,0]),n.clear(n.DEPTH_BUFFER_BIT),e();let s=new Uint32Array(
+4*t*r);return n.readPixels(0,0,t,r,n.RGBA_INTEGER,n.UNSIGNED_INT,s),n.bindFramebuffer(n.FRAMEBUFFER,null),s}};function Sn(){
+let a=globalThis;return a[qa]??=new fr}var nt=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(e,t,r){let[n,s]=t;this.poles=e,this.nodes=t,this.rays=
 r,this.isAlongJ=e[0]?.component!==0,[this.lines,this.cells]=this.isAlongJ?[n,s-1]:[s,n-1];let i=e.reduce((o,c)=>o+this.depth(
 c)+1,0);this.size={width:s+(this.isAlongJ?0:i),height:n+(this.isAlongJ?i:0)}}laidOut(e){if(!this.poles.length)return e;let[
 t,r]=this.nodes,{width:n,height:s}=this.size,i=new Float32Array(4*n*s);for(let o=0;o<t;o+=1)i.set(e.subarray(4*r*o,4*r*(o+
@@ -866,16 +866,16 @@ draw(c,o,t);l&&(i.slices.critical&&this.program(i,!0),r.player.varies&&this.prog
 return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.
 layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||!n||!s)return null;let l=ls(c,s,o,n,[e,t]),h={place:[e,t],
 position:l.point.position,height:i.root.clientHeight};return l.point.mark=s.marks.at(h,o,i.settings,n),l}};var _r=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ot;held=new it(
-this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.end(),this.requests.stop(),
-this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this)}get scene(){return this.painter.scene??null}get tiles(){
-return this.painter.tiles??null}setPart(e){let t=ue(e.name);return t&&this.tiles?.setPart(t[0],{...e,name:t[1]}),t||!this.
-held.set(e)?!1:(this.scene?.forget(e.name),this.trim(),e.name==="cmap"&&this.tiles?.recolour(),this.change(),!0)}lack(e,t,r=[]){
-t!==void 0&&this.tiles?.fail(t,r),this.tell(e)}trim(){this.held.trim(this.header,this.options.source,this.player.moment.
-slice(0,2))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}frame(e,t){if(!this.lifetime.isOver)
-try{this.painter.frame(e,t)}catch(r){this.fail(r)}}lost(){this.header&&this.painter.open?.(this.header),this.sharp=!1}view(e,t){
-let{header:r,camera:n,player:s,rows:i}=this;if(!r||!n)throw new Error("no scene is shown yet");return Dn({header:r,camera:n,
-anchor:this.scene?.anchor??[0,0,0],player:s,rows:i},e,t)}find(e,t){return this.painter.canPick?this.painter.find?.(e,t)??
-null:null}},Nt=class extends _r{player;isClear=!0;panel;requests;options;header;settings;painter;ratio=1;host;isNew=!0;constructor(e,{
+this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.isOver||(this.lifetime.end(),
+this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.painter.
+scene??null}get tiles(){return this.painter.tiles??null}setPart(e){let t=ue(e.name);return t&&this.tiles?.setPart(t[0],{
+...e,name:t[1]}),t||!this.held.set(e)?!1:(this.scene?.forget(e.name),this.trim(),e.name==="cmap"&&this.tiles?.recolour(),
+this.change(),!0)}lack(e,t,r=[]){t!==void 0&&this.tiles?.fail(t,r),this.tell(e)}trim(){this.held.trim(this.header,this.options.
+source,this.player.moment.slice(0,2))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}frame(e,t){
+if(!this.lifetime.isOver)try{this.painter.frame(e,t)}catch(r){this.fail(r)}}lost(){this.header&&this.painter.open?.(this.
+header),this.sharp=!1}view(e,t){let{header:r,camera:n,player:s,rows:i}=this;if(!r||!n)throw new Error("no scene is shown\
+ yet");return Dn({header:r,camera:n,anchor:this.scene?.anchor??[0,0,0],player:s,rows:i},e,t)}find(e,t){return this.painter.
+canPick?this.painter.find?.(e,t)??null:null}},Nt=class extends _r{player;isClear=!0;panel;requests;options;header;settings;painter;ratio=1;host;isNew=!0;constructor(e,{
 header:t,settings:r,player:n,source:s,isComing:i}){super(),this.host=e,this.header=t,this.settings=r,this.player=n,this.
 options={source:s,isComing:i},this.panel={wait:()=>{},showKinds:()=>{},fail:(o,c)=>e.failed(o,c)},this.requests=new ft(s,
 this),this.graphics.users.add(this),n.setHeader(t),this.painter=new Ft(this),this.requests.setHeader(t),this.painter.open(
