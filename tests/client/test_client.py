@@ -364,6 +364,33 @@ def test_a_lost_context_comes_back_with_the_same_picture(client: ClientPage) -> 
     np.testing.assert_array_equal(client.picture(), before)
 
 
+def test_context_lost_while_paths_are_traced_comes_back(client: ClientPage) -> None:
+    settings = Settings(samples=5)
+    data = ClientData(TextureSet.build(SliceStore(gyre())), traces=True)
+    assert data.traced
+    given = packed(data, data.header(settings))
+    client.mount(given, SIZE, **PLAIN)
+    before = client.picture()
+    lose = """() => {
+      const { gl } = viewers[0].graphics;
+      const draw = gl.drawArrays;
+      let passes = 0;
+      window.ext = gl.getExtension("WEBGL_lose_context");
+      gl.drawArrays = (...given) => {
+        draw.apply(gl, given);
+        if (viewers[0].graphics.tracings.size && ++passes === 3) ext.loseContext();
+      };
+    }"""
+    client.page.evaluate(lose)
+    second = client.mount(given, SIZE, **PLAIN)
+    client.page.wait_for_function("() => viewers[0].graphics.isLost")
+    assert not number(client, f"viewers[{second}].sharp")
+    number(client, "ext.restoreContext()")
+    client.page.wait_for_function("() => !viewers[0].graphics.isLost")
+    np.testing.assert_array_equal(client.picture(second), before)
+    number(client, "delete viewers[0].graphics.gl.drawArrays")
+
+
 def test_nothing_is_drawn_out_of_sight_or_at_rest(client: ClientPage) -> None:
     client.mount(scene(), SIZE, **PLAIN)
     client.sharp()
@@ -484,6 +511,13 @@ def test_a_widget_shows_its_model_and_tells_it_what_a_person_does(client: Client
     # The next one waits after each that is sent: there is not one for each move.
     told, waits = number(client, "[log.filter((m) => m[1] === 'camera').length, waits]")
     assert told == waits.count(100)
+    for playing, word in ((True, "Pause"), (False, "Play")):
+        page.evaluate("(playing) => model.set('playing', playing)", playing)
+        label = page.locator("[data-name=play]").get_attribute("aria-label") or ""
+        assert label.startswith(word)
+    page.wait_for_function("() => host.dataset.sharp === 'true'")
+    page.evaluate("() => model.fire('msg:custom', { kind: 'error', text: 'no disk' }, [])")
+    assert page.locator(".flowtex .note", has_text="no disk").is_visible()
     # And nothing stays behind.
     number(client, "left()")
     assert number(client, "[...model.handlers.values()].flat().length") == 0

@@ -123,6 +123,22 @@ def test_lines_are_as_wide_in_every_draft_and_at_every_zoom(client: ClientPage) 
         assert 0.55 < np.min(across) < 1.8
 
 
+def test_switches_hide_lines(client: ClientPage) -> None:
+    field = earth("globe")
+    number = client.mount(scene(field, camera_of(field, 1)), WITH_AXES)
+    before = client.picture(number)
+    client.page.evaluate("(n) => viewers[n].panel.fold(true)", number)
+    for name in ("coastlines", "graticule"):
+        switch = client.page.locator(f'[data-lines="{name}"] input')
+        assert switch.is_checked()
+        switch.evaluate("(input) => input.click()")
+    bare = scene(field, camera_of(field, 1), coastlines=False, graticule=False)
+    hidden = client.picture(client.mount(bare, WITH_AXES))
+    after = client.picture(number)
+    assert (before.astype(int) - after).min() < -60
+    assert np.abs(after.astype(int) - hidden).mean() < 0.5
+
+
 def test_the_readout_tells_longitude_and_latitude(client: ClientPage) -> None:
     for name in ("globe", "mercator"):
         field = earth(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pages import COMPLETE, acted, opened_page
 from PIL import Image
 from range_server import Answer, RangeServer, range_server
+from waiting import wait_until
 
 from flowtex import FlowField
 from flowtex.host.export import export
@@ -302,6 +303,34 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
     shown.zoom(-30)
     assert shown.page.locator(".flowtex .told").is_hidden()
     assert tiles_of(server)
+
+
+def test_tile_is_requested_again_after_a_failure(shown: Shown, server: RangeServer) -> None:
+    page = linked(server, "flat", **NEAR)
+    tried: list[str] = []
+
+    def answer(path: str) -> Answer:
+        if not path.startswith("flat.zarr/0/flow/c/"):
+            return None
+        tried.append(path)
+        return 503 if path == tried[0] and tried.count(path) <= 4 else None
+
+    server.fault = answer
+    shown.page.clock.install()
+    shown.open(page.as_uri())
+
+    def wait(holds: Callable[[], object]) -> None:
+        def is_late() -> object:
+            shown.page.clock.fast_forward(1000)
+            return holds()
+
+        wait_until(is_late)
+
+    told = shown.page.locator(".flowtex .told")
+    wait(told.is_visible)
+    assert "the store does not answer" in told.inner_text()
+    wait(shown.page.locator(COMPLETE).is_visible)
+    assert tried.count(tried[0]) == 5
 
 
 def test_a_page_of_two_views_beside_its_store(

@@ -20,6 +20,7 @@ from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
 from flowtex.host.export import contents_of, export, page_pieces
 from flowtex.host.view import web_views
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl.client_data import ClientData, Colours
@@ -270,6 +271,27 @@ def test_tiles_around_a_pole_are_those_of_numpy(
     monkeypatch.setattr(view, "page_data", lambda: data)
     path.write_text("".join(page_pieces(contents_of([view], picture=b""))), encoding="utf-8")
     agree(textures, texels(browser, path), textures.layers(0).astype("<f2").astype(float))
+
+
+def test_image_over_a_pole_is_that_of_numpy(client: ClientPage) -> None:
+    field, settings = FIELDS["winds"][0](), Settings(samples=11)
+    top = field.points[..., 2].max()
+    above = (0.1 * top, 0.05 * top, 3 * top), (0.02 * top, 0.01 * top, top), (0, 1, 0)
+    textures = TextureSet.build(SliceStore(field))
+    plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
+    data = ClientData(textures, plain, traces=True)
+    assert data.traced
+    given = packed(data, data.header(settings), (0,))
+    for height in (1.2, 0.05):
+        camera = Camera(*above, parallel=True, parallel_scale=height * top)
+        given["header"]["camera"] = state(camera)
+        theirs = client.picture(client.mount(given, SIZE, controls=False, smooth=False))
+        judge = render(textures, settings, camera, SIZE)
+        root, share, edge = difference(theirs, judge.rgb((0.6, 0.6, 0.6), background=(1, 0, 0)))
+        assert judge.covered.mean() > 0.3 and edge < 200
+        assert root < 2 * ROOT
+        assert share < 2 * SHARE
+        client.clear()
 
 
 @pytest.mark.usefixtures("quick_export")

@@ -7,6 +7,7 @@ from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from threading import Thread
+from threading import enumerate as threads
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,8 @@ import pytest
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import PyramidError, build, open_store, verify
+from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
+from flowtex.pyramid.build import MOST_FAILURES
 from flowtex.pyramid.levels import Levels
 from flowtex.textures.tiles.pyramid import TileKey
 
@@ -139,6 +141,25 @@ def test_long_and_narrow_roots_are_read_as_they_were_built(tmp_path: Path) -> No
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([1 + y, x], axis=-1))
     build(field, tmp_path / "a.zarr", progress=False)
     Levels(tmp_path / "a.zarr").check_tile(TileKey(0, 0, 0), 0)
+
+
+def test_build_stops_after_many_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+
+    def full(*given: Any) -> None:
+        if given[2].step:  # the first one comes alone
+            tried.append(given)
+            msg = "no space left"
+            raise OSError(msg)
+
+    monkeypatch.setattr(tasks, "write_part", full)
+    ends, steps = (np.arange(20), np.arange(15)), np.arange(300)
+    many = FlowField.from_arrays(ends, np.ones((300, 15, 20, 2)), times=steps, periodic="")
+    failed = rf"{MOST_FAILURES} in a row shards could not be built .* OSError: no space left"
+    with pytest.raises(PyramidError, match=failed):
+        build(many, tmp_path / "a.zarr", progress=False)
+    assert not [one for one in threads() if one.name.startswith("flowtex-pyramid")]
+    assert len(tried) <= tasks.MOST_TRIALS * (MOST_FAILURES + 4 * tasks.Threads().count(1))
 
 
 class Refusing(BaseHTTPRequestHandler):

@@ -12,7 +12,7 @@ from cluster import Cluster, ObjectStorage, digests
 from small_tiles import shrink
 from waiting import PATIENCE_S
 
-from flowtex.pyramid import build, open_store, tasks
+from flowtex.pyramid import PyramidError, build, open_store, tasks
 from flowtex.pyramid.places import store_at
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
@@ -94,6 +94,11 @@ def test_workers_build_what_threads_build_though_one_is_killed(
         assert tile is not None
         tiles.append(tile.layers())
     np.testing.assert_array_equal(tiles[0], tiles[1])
+
+
+def test_unserializable_source_raises() -> None:
+    with pytest.raises(PyramidError, match="cannot be sent to the workers"):
+        tasks._packed(n for n in range(3))
 
 
 def _name_of(client: Any, pid: int) -> str:

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given
 from range_server import RangeServer, range_server
 from strategies import property_test
-from waiting import PATIENCE_S
+from waiting import PATIENCE_S, wait_until
 
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
@@ -24,6 +24,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store
 from flowtex.pyramid.layout import sealed
 from flowtex.pyramid.levels import Levels
+from flowtex.textures.tiles.loader import TileLoader
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
 
@@ -290,3 +291,23 @@ def test_what_is_refused_is_missing_in_a_private_bucket(server: RangeServer, tru
     with pytest.raises(PyramidError, match=r"is missing or access is denied \(403\)"):
         shared_pyramid(open_store(server.address), "arclength").tile(TileKey(0, 0, 0), [0])
     assert judge(server.address, truth)
+
+
+def test_tile_is_read_once(server: RangeServer) -> None:
+    pyramid = shared_pyramid(open_store(server.address), "arclength")
+    pyramid.tile(TileKey(0, 0, 0), [0])
+    server.asked.clear()
+    pyramid.tile(TileKey(0, 0, 0), [0])
+    assert not server.asked
+
+
+def test_closing_a_loader_cancels_its_requests(server: RangeServer) -> None:
+    loader = TileLoader(shared_pyramid(open_store(server.address), "arclength"))
+    over = threading.Event()
+    server.fault = lambda path: None if "/c/" not in path else over.wait(PATIENCE_S) and None
+    loader.request([TileKey(0, 0, 0)], [0])
+    wait_until(lambda: any("/c/" in path for path in server.paths))
+    loader.close()
+    wait_until(lambda: not loader._running)
+    assert not loader.errors and not over.is_set()
+    over.set()
