@@ -57,7 +57,7 @@ MOST_LETTERS = 300
 NUMBER_BYTES = 8
 #: Bytes of a velocity.
 NODE_BYTES = 24
-#: Most bytes of steps that are held; those of a longer series are read late.
+#: Most bytes of steps in memory; a longer series is read step by step.
 KEPT_BYTES = 64_000_000
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.
@@ -99,7 +99,7 @@ class Levels:
         self._lock = threading.Lock()
 
     def _array(self, name: str) -> AsyncArray[ArrayV3Metadata]:
-        """Return an array of Zarr's, with the metadata of one that is made for the same pyramid."""
+        """Return a Zarr array with the metadata that a build gives it, not those in the store."""
         from flowtex.pyramid.objects import bounded
 
         top = name.partition("/")[0]

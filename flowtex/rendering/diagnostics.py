@@ -1,4 +1,4 @@
-"""Diagnosis of OpenGL: which one is used, and what installs it where it is missing.
+"""Diagnosis of OpenGL: its version and renderer, or the command that installs it.
 
 VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so OpenGL
 is tried in a second process, which draws a picture of 16 x 16 pixels, reads it back and prints its

@@ -28,9 +28,9 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 MAX_ERROR_PIXELS = 0.05
 #: Weight of an error of the outline: a quarter of a pixel across it.
 OUTLINE_SHARE = 0.2
-#: Weight along the surface: pixels are placed between all nodes, so four of them.
+#: Weight of an error along the surface: four pixels, because all nodes place the pixels.
 PLACED_SHARE = 0.0125
-#: Weight across the surface, by which the outline of a curved one is off: half a pixel.
+#: Weight of an error across the surface: half a pixel, seen at the outline of a curved one.
 HEIGHT_SHARE = 0.1
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0

@@ -180,7 +180,7 @@ def pixels_of(picture: Image) -> AnyArray:
 class ImageTextures:
     """An image over the parameters of a surface, and the step size with it."""
 
-    #: Texels as from :func:`as_picture`, (H, W, 4), or grey, (H, W); row 0 is at j = 0.
+    #: Texels as from :func:`as_picture`, (H, W, 4); row 0 is at j = 0.
     texels: Floats32
     #: Lag in which the flow crosses a texel of this texture, in multiples of the unit of lag.
     step: Floats32
@@ -264,7 +264,7 @@ def steps_of(store: SliceStore, index: Floats, texel: Floats) -> Floats32:
     field = store.field
     speed = np.abs(field.index_velocity.components).max(axis=0)
     if store.parameter == "arclength":
-        # Cells crossed in a unit of length; nodes at rest take that of the nearest one.
+        # Cells crossed in a unit of length; nodes at rest take the value of the nearest node.
         pace = field.index_velocity.speed[0]
         moving = field.valid & (pace > 1e-7 * pace.max())
         by_length = speed / np.where(moving, pace, 1.0)[..., None]

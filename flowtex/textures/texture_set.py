@@ -290,7 +290,7 @@ class TextureSet:
         return length[..., None].astype(np.float32)
 
 
-#: Of the windows of tiles, which share it.
+#: Critical cells by field, because the tiles of a window share its field.
 _critical_cells: WeakKeyDictionary[FlowField, float] = WeakKeyDictionary()
 
 

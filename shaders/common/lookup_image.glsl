@@ -1,7 +1,7 @@
 // An image in place of the noise: the mean of its colours along the path. Its contrast is its own.
 //
 // The step is looked up at the level that mipmapping chooses for its texture, where its values count
-// 2^level times. It is no wider than a texel of the image, of which none must be passed over.
+// 2^level times. It is no wider than a texel of the image, so that no texel is skipped.
 
 vec2 flowtexHere;        // image coordinate of the fragment
 float flowtexNoiseLevel; // level of the image
@@ -12,7 +12,7 @@ float flowtexWeights;
 void flowtexGather(vec3 displacement, float weight)
 {
   vec2 at = flowtexHere + displacement.xy;
-  // Beyond its edge the image is repeated, which must not be seen where the surface ends.
+  // The repetition beyond the image's edge must not be visible where the surface ends.
   at = mix(clamp(at, flowtexInset, 1.0 - flowtexInset), at, u_imageRound);
   flowtexSeen += weight * textureLod(u_image, vec3(at * u_tiles, 0.0), flowtexNoiseLevel);
   flowtexWeights += weight;

@@ -1,6 +1,6 @@
-"""What is summed along paths: noise that is even in space, or an image in its place.
+"""Look-ups along paths: noise that is even in space, or an image in its place.
 
-As in ``shaders/common``: ``noise.glsl``, ``lookup_space.glsl`` and ``lookup_image.glsl``.
+They follow ``noise.glsl``, ``lookup_space.glsl`` and ``lookup_image.glsl`` in ``shaders/common``.
 """
 
 from __future__ import annotations
@@ -222,7 +222,7 @@ class ImageLookup(Lookup):
         self.level = mip_level(covered_texels(coordinate, size), values)
         self._inset = np.minimum(0.5 * np.exp2(np.ceil(self.level))[:, None] / size, 0.5)
         covered = covered_texels(coordinate, step_size)
-        # No texel of the image may be passed over.
+        # A step must not skip a texel of the image.
         least = min(float(np.min(step_size / size)), 1.0)
         width = np.maximum(covered, least) if values["u_lod"] else least
         step = mips.step.at(self._start, mip_level(covered, values))[:, 0]

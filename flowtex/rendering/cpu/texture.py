@@ -102,7 +102,7 @@ def shared(apart: Floats, near: Floats) -> Floats:
 class Summing:
     """The loop over the samples of some fragments; values are the uniforms.
 
-    Slopes may be in image coordinates, ``by_lag`` instead of by length.
+    With ``by_lag``, slopes are in image coordinates per unit of lag, not of length.
     """
 
     def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, by_lag: bool) -> None:
@@ -136,7 +136,7 @@ class Summing:
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, count)
         value = lookup.blend(sums)
-        if value.ndim > 1:  # a image keeps its colours
+        if value.ndim > 1:  # an image keeps its colours
             return value
         return np.asarray(value * self.faded(coordinate, level, certainty))
 

@@ -175,7 +175,7 @@ class FlowSurface:
 
     def write_scalars(self) -> None:
         """Write the values again after they have changed."""
-        # Another object, so that tiles on their way do not count as written.
+        # A new object, because pending tiles have the old values.
         self._scalars = self._scalars and self._scalars._replace()
         for layer in (self._base, *self._tiles.values()):
             self._write_scalars(layer)

@@ -185,7 +185,7 @@ class FlowLayer:
         """
         old_time = self.view.time
         if between and not self.view.between:
-            self._retire("u_slicesNext")  # in whose place something small was sent
+            self._retire("u_slicesNext")  # a placeholder
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
             reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
@@ -385,7 +385,7 @@ class FlowLayer:
         self._move_anchor()
 
     def prepare(self, *, blank: bool = False) -> None:
-        """Begin to trace for the next frame; where hardly anything is seen, it has no paths."""
+        """Start to trace for the next frame; a ``blank`` layer, which tiles cover, has no paths."""
         blank &= not has_arrows(self.textures, self._settings)
         if self._is_blank and not blank:
             self._retire("u_slices", "u_slicesNext")

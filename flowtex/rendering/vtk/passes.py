@@ -46,7 +46,7 @@ SCISSOR = 0x0C11
 DEPTH_TEST = 0x0B71
 #: OpenGL's number of the comparison of equal depths.
 EQUAL = 0x0202
-#: OpenGL's number of a comparison that holds always.
+#: OpenGL's number of the comparison that is always true.
 ALWAYS = 0x0207
 #: Most layers, a power of two: their numbers are depths.
 MOST_LAYERS = 4096
@@ -63,7 +63,7 @@ class DeferredPasses:
 
     def __init__(self, renderer: pv.Renderer) -> None:
         self._renderer = weakref.ref(renderer)
-        #: Layers by their owners, of which some are hidden.
+        #: Layers by owner, including hidden owners.
         self._shown: weakref.WeakKeyDictionary[object, list[FlowLayer]] = (
             weakref.WeakKeyDictionary()
         )
@@ -91,7 +91,7 @@ class DeferredPasses:
         self._hidden.add(owner)
 
     def remove(self, owner: object) -> None:
-        """Draw nothing of an owner any more, and free what was needed for it."""
+        """Stop drawing an owner and free its resources."""
         self._shown.pop(owner, None)
         self._follow([])
 

@@ -29,13 +29,13 @@ MARK_PARTS = {
     "separatrices": "separatrices",
     "nullclines": "nullclines",
 }
-#: The number of a line is so many times that of its saddle, plus a sum of flags:
+#: Factor of the saddle's number in the number of a line, which adds flags.
 SADDLE = 8
-#: a closed orbit,
+#: Flag of a closed orbit.
 ORBIT = 4
-#: a line that leaves its saddle,
+#: Flag of a line that leaves its saddle.
 LEAVING = 2
-#: and the side of the saddle.
+#: Flag of the second side of a saddle.
 SIDE = 1
 
 

@@ -37,7 +37,7 @@ MOST_DIFFERENCES = 2
 SAMPLE = 20_000
 #: Least rows of that sample.
 LEAST_ROWS = 4
-#: Types of the whole numbers of which floats may be multiples, and their bits.
+#: Integer types that pack floats, which are multiples of a unit, and their bits.
 WHOLE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}
 #: Greatest exponent of a unit.
 MOST_SCALE = 100

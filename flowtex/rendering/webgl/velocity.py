@@ -41,9 +41,9 @@ SMALL_CELLS = 1.0
 RATE_UNIT = 2.0**-9
 #: Percentile of wide cells.
 WIDE_CELLS = 95
-#: Steps of the speed: its error is 2^-13 of the typical one,
+#: Least step of the speed in typical speeds: the error is half of it.
 SPEED_UNIT = 2.0**-12
-#: or 2^-10 of itself, where it has so many steps.
+#: Least steps of a speed in its own unit: the error is at most 2^-10 of the speed.
 SPEED_STEPS = 2**9
 #: Bytes of a node at one time, about.
 NODE_BYTES = 4
@@ -53,7 +53,7 @@ MOST_STEPS = 64
 HALF_MAX = 65504.0
 #: Bytes of packed steps that are cached.
 CACHE_BYTES = 64_000_000
-#: Least packed steps that are cached.
+#: Least number of packed steps that are cached.
 LEAST_STEPS = 2
 #: Levels below the grid that is sent: enough for the deepest zoom.
 DEPTH = 20

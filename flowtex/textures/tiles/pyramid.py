@@ -63,9 +63,9 @@ MOST_COMPOSED = 500_000
 WIDENINGS = (1, 2, 4)
 #: Share of a path's length that must not be cut.
 NEEDED_SHARE = 0.75
-#: Most cut paths as a share of those of a tile.
+#: Most cut paths as a share of the paths of a tile.
 MOST_CUT_SHARE = 5e-3
-#: Every so many lines are sampled for cut paths.
+#: Step between the lines that are sampled for cut paths.
 SAMPLED_LINES = 8
 #: Rows that are averaged together.
 ROWS = 256
@@ -452,7 +452,7 @@ def is_cut(textures: TextureSet, step: int) -> bool:
         first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, len(field.times))
     moment = field.at_steps(range(first, last))
     j, i = (np.arange(n)[p] for n, p in zip(field.shape, textures.geometry.texels, strict=True))
-    # No path is longer than by the greatest velocity.
+    # The greatest velocity bounds the lengths of all paths.
     flow, is_open = moment.index_velocity, np.array(textures.grid.open_sides)
     speed = np.maximum(flow.speed, np.finfo(float).tiny) if store.parameter == "arclength" else 1.0
     rate = np.abs(np.asarray(flow.components)) / np.asarray(speed)[..., None]

@@ -2,11 +2,10 @@
 
 Level 0 has all nodes, each next one about a quarter of them: those of :class:`Clusters`, down to a
 field of moderate size that is traced whole, the root. Tiles are boxes of a k-d tree, so that each
-holds about as many nodes however these are spread; connected parts that lie one in another, such as
-nested isosurfaces, are divided from each other before space is, as the outer ones hide the inner
-ones. A tile draws the triangles that reach into its
-box: those of two levels overlap where they meet, and no crack shows between them. Its paths are
-traced in the triangles around it, as far as they are long.
+holds about as many nodes however these are spread. Nested connected parts, such as isosurfaces, are
+separated before space is divided, because the outer ones hide the inner ones. A tile draws the
+triangles that reach into its box: those of two levels overlap where they meet, and no crack shows
+between them. Its paths are traced in the triangles around it, as far as they are long.
 
 A tile has 2 x 2 blocks, and so has the root; in each lies one tile of the next level.
 """
@@ -44,7 +43,7 @@ BIN_SHARE = 1 / 3
 MOST_SHARE = 0.95
 #: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
 MOST_AROUND = 2.0
-#: Mean extent of connected parts, as a share of that of all, from which they lie one in another.
+#: Mean extent of connected parts, as a share of the whole extent, from which they count as nested.
 NESTED_SHARE = 0.55
 #: Greatest width of the window around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
@@ -99,7 +98,7 @@ class TrianglePyramid(Pyramid):
         triangles = geometry.triangles[np.unique(places[:, 2].astype(np.intp))]
         corners = self._points(self.depth)[triangles]
         points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
-        # In the root the surface below may lie above the one that is seen.
+        # In the coarse root, a hidden part may lie above the visible one.
         beside = np.array([0.0, 0.0, 0.0, 1.0])
         seen = self._boxes.members(points - beside, points + beside, self._steps(0))
         ends = corner_ends(self._points(self.depth), geometry.triangles)
@@ -318,9 +317,9 @@ class Boxes:
     """Boxes from ``steps`` divisions, each of one box into 2 x 2, at medians of points (N, 4).
 
     A k-d tree divides space at medians, along the longest side of its content, or the numbers of
-    connected parts, the fourth coordinate, where these lie one in another. Two cuts after another
-    make 2 x 2 boxes of one, in rows and columns, so that boxes of a depth are a square of
-    blocks as those of a structured surface are. A box holds all of its space: its outer sides are
+    connected parts, the fourth coordinate, where these are nested. Two cuts after another make 2 x
+    2 boxes of one, in rows and columns, so that boxes of a depth are a square of blocks as those
+    of a structured surface are. A box holds all of its space: its outer sides are
     open.
 
     Boxes of a depth are numbered in the order of their cuts: the last two bits of a number are row
