@@ -1,4 +1,4 @@
-"""What users are told: faults of one call, raised together, notices, and missing extras.
+"""Errors and notices for users: all faults of a call at once, and missing optional packages.
 
 Checks return each fault as one sentence that names the value, what was expected and the remedy.
 :func:`raise_faults` turns them into a single error, so that a user corrects a call once and not

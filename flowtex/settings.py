@@ -189,7 +189,7 @@ class Signal:
         self._listeners: list[Callable[..., object]] = []
 
     def connect(self, listener: Callable[..., object]) -> Callable[[], None]:
-        """Call a function at each event, after the others; the returned function ends this."""
+        """Call a function at each event, after the others; the returned function disconnects it."""
         listeners = self._listeners
         listeners.append(listener)
         return lambda: listeners.remove(listener) if listener in listeners else None

@@ -379,6 +379,8 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
     flowtex.critical_points(plane()).of_kind: [
         (["node"], "kind 'node' does not exist; expected one of saddle"),
     ],
+    flowtex.critical_points(plane()).to_geojson: [([], "GeoJSON needs longitudes and latitudes")],
+    flowtex.examples.double_gyre_velocity: [([POINTS[..., :1]], "points has shape (3, 4, 1)")],
     lambda mesh, margin=0.1, **given: flowtex.extent(mesh, margin=margin, **given): [
         *(([plane(), wrong], "margin is ... ; expected a number") for wrong in (-0.1, 0.5, "wide")),
         ([torus()], "the surface is curved ... with flowtex.render"),

@@ -118,7 +118,7 @@ def checked_path(name: str, path: Any) -> Path:
 
 
 def checked_source(path: Any) -> Path:
-    """Return the real path of what is to be read: a file, a folder, or nothing there."""
+    """Return the real path of a file or folder to read, which may be missing."""
     real = Path(os.path.realpath(checked_path("path", path).expanduser()))
     try:
         kind = stat.S_IFMT(real.stat().st_mode)

@@ -50,10 +50,10 @@ NORM_ENTRIES = 1024
 BISECTIONS = 120
 #: Share of the colour map by which a norm may decrease: rounding.
 ROUNDING = 1e-9
-BAR_SIZE = (3.0, 1.0)  #: Size of the matplotlib bar whose ticks a norm has, in inches.
-TICK_GAP = 0.12  #: Least share of the bar between two ticks.
-DIGITS = range(3, 9)  #: Digits of the values of a legend: the fewest that distinguish them.
-LARGE = 1e6  #: Number from which on the text of one has a power of ten.
+BAR_SIZE = (3.0, 1.0)  #: Size in inches of a colour bar for choosing ticks.
+TICK_GAP = 0.12  #: Least distance of two ticks, as a share of the bar.
+DIGITS = range(3, 9)  #: Possible numbers of digits in the labels of a colour bar.
+LARGE = 1e6  #: Value from which on labels have an exponent.
 #: The table of no colours.
 NO_COLOURS = np.zeros((0, 4), np.uint8)
 
@@ -92,7 +92,7 @@ def is_light(colour: Sequence[float]) -> bool:
 def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Bytes:
     """Return a colour map as (N, 4) with a number of colours, 256 by default, or in reverse.
 
-    It may be a name, a map of matplotlib's or PyVista's, or an array (N, 3 or 4), uint8 or from 0
+    ``cmap`` is a name, a matplotlib or PyVista colour map, or an array (N, 3 or 4), uint8 or from 0
     to 1. Anything else raises a FieldError, which suggests similar names.
     """
     values = cmap if isinstance(cmap, np.ndarray) else getattr(cmap, "values", None)

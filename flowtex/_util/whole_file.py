@@ -1,9 +1,9 @@
-"""Files for a user, replaced once the new one is complete, else left as they were; and folders.
+"""Files for users, which replace the old ones once they are complete, and temporary folders.
 
-Everything that writes a file for a user writes it here, beside the old one until it is complete and
-on the disk. A file or temporary folder in use is locked by its process, and the system unlocks it
-however that ends: what is not locked is stale, and removed by the next process that writes the same
-file or needs a folder. Windows has no such locks.
+All code that writes a file for a user writes it here. The new file lies beside the old one until it
+is complete and on the disk. A process locks its files and temporary folders, and the system unlocks
+them when the process ends. The next process that writes the same file, or needs a folder, removes
+unlocked ones. Windows has no such locks.
 """
 
 from __future__ import annotations

@@ -78,8 +78,8 @@ def _read_switch(text: str) -> bool:
 
 
 _read_number = numbers(1, expected="a number")
-PLAIN = Form()  #: Texts as they are.
-#: Numbers.
+PLAIN = Form()  #: Text, unchanged.
+#: A number.
 NUMBER = Form(read=lambda text: _read_number(text)[0], write=lambda value: repr(float(value)))
-#: What is on or off.
+#: A switch, on or off.
 SWITCH = Form(read=_read_switch, write=lambda value: "on" if value else "off")

@@ -67,9 +67,9 @@ __all__ = [
     "weather",
 ]
 
-AMPLITUDE = 0.1  #: Strength of the cells of the double gyre.
-EPSILON = 0.25  #: Amplitude of the oscillation of their border.
-PERIOD = 10.0  #: Period of that oscillation.
+AMPLITUDE = 0.1  #: Amplitude of the streamfunction of the double gyre.
+EPSILON = 0.25  #: Amplitude of the oscillating border between the two cells.
+PERIOD = 10.0  #: Period of the oscillation.
 
 
 def cylinder_field() -> FlowField:
@@ -546,11 +546,11 @@ def _border(x: Floats, time: float, epsilon: float, period: float) -> tuple[Floa
     return a * x**2 + (1.0 - 2.0 * a) * x, 2.0 * a * x + 1.0 - 2.0 * a, np.full_like(x, 2.0 * a)
 
 
-#: Middle of the circle, whose real part, negative, gives thickness and whose imaginary part camber.
+#: Centre of the circle: a negative real part gives thickness, the imaginary part camber.
 CENTER = -0.1 + 0.08j
-INCIDENCE = np.radians(8.0)  #: Angle of the stream of unit speed to the x axis.
+INCIDENCE = np.radians(8.0)  #: Angle between the free stream and the x axis.
 RADIUS = abs(1.0 - CENTER)  #: Radius of the circle.
-EDGE = np.angle(1.0 - CENTER)  #: Angle of the trailing edge on it.
+EDGE = np.angle(1.0 - CENTER)  #: Angle of the trailing edge on the circle.
 #: Circulation, clockwise.
 CIRCULATION = 4.0 * np.pi * RADIUS * np.sin(INCIDENCE - EDGE)
 _CIRCLE = CENTER + RADIUS * np.exp(1j * (EDGE + np.linspace(0.0, 2.0 * np.pi, 4001)))

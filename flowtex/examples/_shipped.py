@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 #: Folder of the shipped files.
 DATA = Path(__file__).parent / "data"
-CYLINDER = "cylinder.npz"  #: Vortex shedding.
+CYLINDER = "cylinder.npz"  #: Vortex shedding behind a cylinder.
 VORTEX = "vortex.npz"  #: Two-dimensional turbulence.
-DELTA_WING = "delta_wing.npz"  #: The winged body.
-OCEAN = "ocean.nc.gz"  #: Currents.
-WEATHER = "weather.nc.gz"  #: Winds.
-TURNING = 7.2921e-5  #: Earth's turning in radians a second.
-GRAVITY = 9.81  #: Gravity in m/s².
+DELTA_WING = "delta_wing.npz"  #: Flow along a winged body.
+OCEAN = "ocean.nc.gz"  #: Ocean currents.
+WEATHER = "weather.nc.gz"  #: Global winds.
+TURNING = 7.2921e-5  #: Angular velocity of the Earth in radians per second.
+GRAVITY = 9.81  #: Gravitational acceleration in m/s².
 
 
 def cylinder_arrays() -> tuple[Floats, Floats, Floats, Floats]:

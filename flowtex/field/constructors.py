@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-#: Arguments for files, which have times.
+#: Arguments of :meth:`FieldConstructors.from_file`. Files contain their times.
 OF_FILES = tuple(name for name in (*OF_DATASETS, *OF_MESHES) if name != "times")
 
 
@@ -27,7 +27,7 @@ class FieldConstructors:
         raise NotImplementedError
 
     @classmethod
-    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES), settings=False)
+    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES, "uncertainty"), settings=False)
     def from_pyvista(
         cls,
         mesh: Any,
@@ -78,6 +78,8 @@ class FieldConstructors:
         preference
             The array to read where points and cells have one of the same name: ``"point"``, the
             default, or ``"cell"``.
+        uncertainty
+            As for :meth:`from_xarray`: a scalar, or an array with a value for each node.
 
         Returns
         -------
@@ -122,7 +124,9 @@ class FieldConstructors:
         from flowtex.sources.meshes.read_meshes import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
-        return cls.of(read_meshes(mesh, FieldOptions(**options), name=name))
+        chosen = FieldOptions(**options)
+        field = cls.of(read_meshes(mesh, chosen, name=name))
+        return _with_uncertainty(field, chosen.uncertainty)
 
     @classmethod
     @accepts_options(FieldOptions, names=OF_FILES, settings=False)

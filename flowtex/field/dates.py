@@ -15,12 +15,12 @@ from flowtex.errors import FieldError, import_extra, notify
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-DAY_S = 86_400.0  #: Seconds of a day.
-#: Decimals of a time beyond which it is written with an exponent.
+DAY_S = 86_400.0  #: Seconds in a day.
+#: Most decimals of a time without an exponent.
 MOST_DECIMALS = 6
-#: Times from which on they are written with an exponent.
+#: Time from which on an exponent is used.
 LONGEST_TIME = 1e9
-#: Longest unit of a time that is written, in letters.
+#: Greatest length of a time unit to show.
 UNIT_LENGTH = 8
 #: Text of a date of any precision.
 _DATE = re.compile(
@@ -74,7 +74,7 @@ def date_text(start: Any, time: float, step: float) -> str:
 def time_text(field: Any, time: float, longest_unit: int = UNIT_LENGTH) -> str:
     """Return a time of a field: its date, or a number that distinguishes its steps.
 
-    A unit is shown up to this length.
+    Longer units are omitted.
     """
     alone = DAY_S if field.start is not None else abs(time) or 1.0
     step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone

@@ -41,7 +41,7 @@ from flowtex.field.validation import ALL_AT_REST, prepared
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
-#: Attribute of a coarsest level with the function that opens the field again.
+#: Attribute of the coarsest level of a store: the function that opens the field again.
 OPENED = "_opened"
 
 #: Attributes that a field takes from its source as they are.
@@ -151,7 +151,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         return super().__reduce_ex__(protocol) if opened is None else (opened, ())
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the data; what is computed from them is computed again."""
+        """Return the data without cached properties, which are computed again."""
         kind = type(self)
         return {
             name: value
@@ -368,7 +368,7 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     @classmethod
     def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:
-        """Make a field, whose velocity is scaled; warn if it is at rest."""
+        """Make a field with a scaled velocity; warn if it is at rest."""
         velocity = scaled_steps(arrays.pop("velocity"), scale)
         times = np.arange(len(velocity), dtype=float) if times is None else times.copy()
         if not moves(velocity):

@@ -27,16 +27,16 @@ from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.triangle_surface import Surface
 
-START_NODES = 4  #: Nodes around a point from which walks begin.
-WALK_STEPS = 96  #: Most triangles of a walk.
+START_NODES = 4  #: Number of nodes around a point at which walks begin.
+WALK_STEPS = 96  #: Most triangles in a walk.
 #: Height of a triangle over a side, squared, below which it has no area.
 FLAT_TRIANGLE = 1e-20
-CURVED_TOLERANCE = 0.1  #: Distance from a curved surface that counts as on it, in cells.
-FLAT_TOLERANCE = 1e-6  #: The same from a flat one.
-EARTH_TOLERANCE = 1e-4  #: The same on the Earth, where a map is inverted.
-EARTH_SKEW = 1e-3  #: How far a cell on the Earth is from a parallelogram, at most, to count as one.
-MOST_CELLS = 8  #: Cells that are tried for a place.
-ROUNDING = 1e-9  #: Share of a cell by which a place may lie beside it.
+CURVED_TOLERANCE = 0.1  #: Tolerance in cells for points on a curved surface.
+FLAT_TOLERANCE = 1e-6  #: Tolerance in cells for points on a flat surface.
+EARTH_TOLERANCE = 1e-4  #: Tolerance in cells on the Earth, for inverse projections.
+EARTH_SKEW = 1e-3  #: Greatest deviation from a parallelogram of a bilinear cell on the Earth.
+MOST_CELLS = 8  #: Most candidate cells for a place.
+ROUNDING = 1e-9  #: Tolerance for rounding, as a share of a cell.
 #: Latitude from which on a node has the longitude of the one beside it.
 POLE_LATITUDE = 90 - 1e-6
 #: The globe on which places of the Earth are looked up.

@@ -1,4 +1,4 @@
-"""What surfaces of both kinds have in common: nodes, cells, and vectors in index space.
+"""The common part of both kinds of surfaces: nodes, cells, and vectors in index space.
 
 A position on a surface is two numbers, (i, j) in index space; what they mean is up to the surface.
 """
@@ -22,7 +22,7 @@ COLLAPSED_AREA = 1e-10
 
 
 class NodeSurface:
-    """What surfaces of both kinds are: nodes in space with data, in the mesh's own units."""
+    """Nodes in space with data, in the mesh's own units: the base of both kinds of surfaces."""
 
     points: Floats  #: Positions of the nodes, (J, I, 3); a surface of triangles has one row.
     valid: Bools  #: Nodes that carry data, (J, I).

@@ -11,8 +11,8 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.cache import ByteCache
 
-KEPT_BYTES = 256_000_000  #: Bytes of steps that are kept once they have been read.
-MOST_KEPT = 8  #: Number of steps that are kept.
+KEPT_BYTES = 256_000_000  #: Bytes of steps that stay in memory.
+MOST_KEPT = 8  #: Most steps that stay in memory.
 
 
 class LazySteps:

@@ -10,10 +10,10 @@ from flowtex.errors import FieldError, import_extra
 
 #: Texts of data without a unit.
 NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")
-LENGTHS = ("[length]", "[printing_unit]")  #: Lengths by pint's names; images have pixels.
-TIMES = ("[time]", "[frame]")  #: Times by pint's names; images have frames.
-PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Pressures by pint's names.
-#: Velocities by pint's names.
+LENGTHS = ("[length]", "[printing_unit]")  #: Dimensions of lengths in pint; images have pixels.
+TIMES = ("[time]", "[frame]")  #: Dimensions of times in pint; images have frames.
+PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Dimensions of pressures in pint.
+#: Dimensions of velocities in pint.
 VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
 #: Spellings that pint reads otherwise: its px is a length of web pages.
 SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))

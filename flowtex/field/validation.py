@@ -21,8 +21,8 @@ from flowtex.field.units import speed_unit, velocity_units
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
-LENGTHS = (1e-30, 1e30)  #: Range of lengths, for single precision.
-MAGNITUDES = (1e-100, 1e100)  #: Range of speeds and times, whose squares must be finite.
+LENGTHS = (1e-30, 1e30)  #: Range of lengths in single precision.
+MAGNITUDES = (1e-100, 1e100)  #: Range of speeds and times with finite squares.
 #: The scalar that is 1 where there are no data, 0 elsewhere.
 NO_DATA = "no data"
 
@@ -73,7 +73,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
-#: Warning about a velocity that is zero.
+#: Warning about a velocity of zero.
 ALL_AT_REST = (
     "The velocity is zero at every node, so the picture shows no flow; check the selected "
     "array and its region. On a wall draw the wall shear stress, such as wallShearStress."
@@ -290,7 +290,7 @@ def filled_gaps(
 
 
 def _filled(sometimes: Bools, step: Floats) -> Floats:
-    """Return a step with zeros at nodes that lack data, and have them at other steps."""
+    """Return a step with zeros at nodes that lack data in this step but not in all."""
     return np.where((sometimes & ~_known(step))[..., None], 0.0, step)
 
 

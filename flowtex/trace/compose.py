@@ -31,16 +31,16 @@ from flowtex.trace.sampler import Corners, NodeGrid
 
 #: Most pieces of a path, after which the rest is looked up at once despite its error.
 MOST_PIECES = 64
-#: Pieces after which paths that are stuck at a pole are integrated past it together.
+#: Pieces after which all paths that are stuck at a pole are integrated past it.
 TOGETHER = MOST_PIECES // 2
 #: Paths looked up together.
 BLOCK = 65536
 #: Cells beyond a border to which look-ups may displace a path that follows it.
 BORDER_CELLS = 1e-2
-SEARCH_PARTS = 16  #: Parts of a piece in which its end is searched.
-SEARCH_BISECTIONS = 6  #: Halvings of the part with the end.
-ERROR_SHARE = 0.002  #: Error of a look-up that is allowed, as a share of the path's length.
-ERROR_CELLS = 0.003  #: Error that is allowed besides, in cells.
+SEARCH_PARTS = 16  #: Parts of a piece in the search for its end.
+SEARCH_BISECTIONS = 6  #: Bisections of the part with the end.
+ERROR_SHARE = 0.002  #: Tolerance of a look-up, as a share of the path's length.
+ERROR_CELLS = 0.003  #: Tolerance of a look-up in cells, added to this share.
 #: Typical error of a look-up over the range of the second differences at the corners of its cell.
 ERROR_CHANGE = 1 / 64
 #: Factor of the allowed error in the first composed slice, whose pieces are many.
@@ -222,7 +222,7 @@ class _SliceLookup:
     ) -> _Piece:
         """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag.
 
-        It is by a whole slice, or a part of the first: between long slices errors are larger.
+        A piece is a whole slice or a part of the first: between long slices errors are larger.
         """
         base = self._base(step)
         unit = self._unit_in(corners)

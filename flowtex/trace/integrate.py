@@ -20,19 +20,18 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Numbers, Sampler
 
-STEP_SHRINK = 0.2  #: Least factor by which a step changes.
-STEP_GROWTH = 4.0  #: Greatest one.
-STEP_SAFETY = 0.9  #: Share of the step that its error allows.
+STEP_SHRINK = 0.2  #: Least ratio of a step to the one before.
+STEP_GROWTH = 4.0  #: Greatest ratio of a step to the one before.
+STEP_SAFETY = 0.9  #: Safety factor of the step size.
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps for each line of nodes after which the remaining paths are ended, as a path in
-#: few cells goes round and round.
+#: Most steps per line of nodes: paths that circle within few cells would never end.
 STEPS_PER_LINE = 50
-LEAST_STEPS = 1_000  #: Least number of rounds.
-MOST_STEPS = 20_000  #: Greatest number of rounds.
-#: Steps within which a path in a steady flow leaves a small square; otherwise it stays there.
+LEAST_STEPS = 1_000  #: Least limit of the number of steps.
+MOST_STEPS = 20_000  #: Greatest limit of the number of steps.
+#: Steps after which a path in a steady flow ends if it has hardly moved.
 CIRCLE_STEPS = 48
-CIRCLE_ERRORS = 20.0  #: Sides of that square, in errors allowed in a step.
+CIRCLE_ERRORS = 20.0  #: Least displacement in these steps, in multiples of the tolerance.
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, also in computations.
@@ -188,7 +187,7 @@ class _Run:
             self.state = self.state.pick(~resting)
 
     def end_circling(self) -> None:
-        """Leave paths in place that go round and round in a small part of a cell."""
+        """End paths that circle within a small part of a cell."""
         state = self.state
         circling = _speed(state.y - self.before[:, state.which]) < CIRCLE_ERRORS * self.tolerance
         self.before[:, state.which] = state.y

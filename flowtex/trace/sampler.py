@@ -31,16 +31,16 @@ RESTING_CELLS = 1e-3
 #: By time, a particle is at rest that goes no further than this, in cells, until the last lag.
 STILL_CELLS = 1e-5
 Numbers = NDArray[np.int8]
-LEAST_NEAR_CELLS = 6  #: Cells from a pole within which a path is followed in the plane, at least.
-NEAR_ASPECT = 0.5  #: Ratio of width to length up to which cells are followed there.
+LEAST_NEAR_CELLS = 6  #: Least distance in cells from a pole that the tangent plane covers.
+NEAR_ASPECT = 0.5  #: Greatest ratio of width to length of the cells that it covers.
 #: Cells from a pole within which slices are not interpolated between nodes.
 CLOSE_CELLS = 4
-LEAVE_CELLS = 1  #: Cells beyond those at which a path leaves the plane again.
-SPARE_CELLS = 3  #: Cells beyond that with data.
+LEAVE_CELLS = 1  #: Further cells after which a path leaves the plane again.
+SPARE_CELLS = 3  #: Further cells with data in the plane.
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
-MOST_ROOM_CELLS = 4  #: Cells that a particle may move at once where nothing is blanked.
-LEAST_ROOM_CELLS = 1  #: The same next to a blanked cell.
+MOST_ROOM_CELLS = 4  #: Longest step in cells far from blanked ones.
+LEAST_ROOM_CELLS = 1  #: Longest step in cells next to a blanked one.
 
 
 class Sampler:
@@ -55,14 +55,14 @@ class Sampler:
     def __init__(self, field: FlowField, *, by_length: bool) -> None:
         flow = field.index_velocity
         data = np.asarray(flow.components)
-        #: Speed up to which a particle has stopped, by arc length.
+        #: Speed below which a particle has stopped, by arc length.
         self._floor = 0.0
         if by_length:
             data = np.concatenate([data, flow.speed[..., None]], axis=-1)
             self._floor = max(STOPPED_SPEED * float(flow.speed.max()), np.finfo(float).tiny)
-        #: Times of the data, and the one from which lags count.
+        # Lags count from the destination time.
         self.times, self.destination = field.times, float(field.times[-1])
-        #: Longest step in units of lag, so that no change in time is missed.
+        #: Longest step in units of lag, which misses no change in time.
         self.longest = np.inf if field.steady else float(np.diff(field.times).max())
         data = fill_blanked(data, field.valid, data.ndim - 3)
         parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

@@ -38,14 +38,14 @@ NODE_AXES = {
     "forward": 2,
 }
 FIRST_CELLS = 0.25  #: First lag in cells.
-LAST_EXTENTS = 0.25  #: Last lag as a share of the surface's extent.
-MOST_CHOSEN_LAGS = 24  #: Greatest number of lags.
+LAST_EXTENTS = 0.25  #: Last lag, as a share of the surface's extent.
+MOST_CHOSEN_LAGS = 24  #: Most lags.
 #: Parts of an octave to which a chosen last lag is rounded.
 LAST_PARTS = 8
 #: Percentile of the sizes of cells that counts as that of small ones.
 SMALL_CELLS = 5
-LEAST_CELL = 0.25  #: Least size of cells, in multiples of one unit, with which they share it.
-MOST_CELL = 16.0  #: Greatest one.
+LEAST_CELL = 0.25  #: Least size of cells in multiples of a common unit.
+MOST_CELL = 16.0  #: Greatest size of cells in multiples of a common unit.
 #: Quotient of one lag and the one before.
 RATIO = 2.0
 #: Least number of lags that are drawn; the uncertainty of a flow lies in the layer of one more.

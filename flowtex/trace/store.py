@@ -22,12 +22,12 @@ from flowtex.trace.trace import trace
 
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
-#: Most bytes of the steps in which paths to one time are traced, where they are read late.
+#: Most bytes of late steps in memory for tracing paths to one time.
 HELD_BYTES = 500_000_000
-STEP_BYTES = 72  #: Bytes of a node of each: velocity, speed, and samples.
-LEAST_HELD = 8  #: Least number of steps that remain when more are thinned out evenly.
-STREAK_EXTENTS = 0.05  #: Length of a streak as a share of the surface.
-MOST_CHANGE = 0.5  #: Most change of velocity meanwhile, as a share.
+STEP_BYTES = 72  #: Bytes per node of a step: velocity, speed, and samples.
+LEAST_HELD = 8  #: Least number of steps that remain when they are thinned out.
+STREAK_EXTENTS = 0.05  #: Length of a streak, as a share of the surface.
+MOST_CHANGE = 0.5  #: Greatest relative change of velocity along a streak.
 #: Most nodes where it changes by more, as a share, for pathlines.
 MOST_CHANGING = 0.05
 #: Most nodes along each axis, and pairs of steps, that are sampled.
@@ -72,8 +72,7 @@ class SliceStore:
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
             self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell, first_cells)
-            # Where cells differ, lags that are long enough for small ones are many times that for
-            # large ones.
+            # Where cells differ in size, small ones need many times the lags of large ones.
             self.long_enough = (longest or longest_path(field)) if np.ptp(self.unit) else np.inf
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit

@@ -34,18 +34,18 @@ from flowtex.trace.triangles.triangle_slices import triangle_paths, triangle_sli
 
 A = TypeVar("A")
 B = TypeVar("B")
-LEAST_LAG = 1e-30  #: Least lag that single precision holds, also in computations.
-MOST_LAG = 1e30  #: Greatest one.
+LEAST_LAG = 1e-30  #: Least lag for computations in single precision.
+MOST_LAG = 1e30  #: Greatest lag for computations in single precision.
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
-ROUNDED_SPEED = 1e-9  #: Share of the greatest speed that is rounding.
-LEAST_STRETCH = 10 * TOLERANCE  #: Contraction that is due to the error of paths.
+ROUNDED_SPEED = 1e-9  #: Speed that counts as rounding, as a share of the greatest speed.
+LEAST_STRETCH = 10 * TOLERANCE  #: Least stretching that exceeds the error of paths.
 #: First step of a particle in a steady flow, as a share of the horizon.
 FIRST_STEP = 0.2
 #: Particles followed together. Threads wait for each other between the operations on a block: on
 #: 16 cores blocks a quarter as large take 1.5 times as long.
 BLOCK = 65536
-MOST_THREADS = 8  #: Blocks followed at once.
+MOST_THREADS = 8  #: Most threads.
 #: Length in cells up to which the paths of a steady field are integrated, not composed.
 DIRECT_CELLS = 1.0
 

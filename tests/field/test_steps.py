@@ -14,6 +14,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds, date_text, seconds_since
 from flowtex.field.steps import LazySteps, map_steps
+from flowtex.trace import store
 from flowtex.trace.store import SliceStore
 
 cftime: Any = pytest.importorskip("cftime")
@@ -72,7 +73,9 @@ def series() -> FlowField:
 
 
 @pytest.mark.parametrize("lines", ["streamlines", "pathlines"])
-def test_a_series_that_is_read_late_is_traced_alike(series: FlowField, lines: str) -> None:
+def test_a_series_that_is_read_late_is_traced_alike(
+    series: FlowField, lines: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     values = np.asarray(series.velocity)
     steps, read = lazy(values)
     late = replace(series, velocity=steps)
@@ -88,6 +91,22 @@ def test_a_series_that_is_read_late_is_traced_alike(series: FlowField, lines: st
         assert set(read) <= {0, 3, 7}
         whole, part = (trace(each, lags=[1.0, 4.0], steps=[3]) for each in (series, late))
         np.testing.assert_array_equal(whole.displacement, part.displacement)
+    else:
+        # This flow is linear in time, so some of the steps are enough.
+        monkeypatch.setattr(store, "HELD_BYTES", 0)
+        monkeypatch.setattr(store, "LEAST_HELD", 3)
+        steps, read = lazy(values)
+        some = SliceStore(replace(series, velocity=steps), lines=lines, compose=False)
+        some.lags, some.unit = one.lags, one.unit
+        assert np.allclose(some.at(3).displacement, one.at(3).displacement, atol=2e-3)
+        assert 3 in read and not {2, 4} & set(read)
+
+
+def test_derived_series_reads_only_the_step_in_use(series: FlowField) -> None:
+    steps, read = lazy(np.asarray(series.velocity))
+    vorticity = replace(series, velocity=steps).derive("vorticity")
+    assert isinstance(vorticity, LazySteps)
+    assert np.array_equal(vorticity[3], series.derive("vorticity")[3]) and read == [3]
 
 
 def test_dates_are_those_of_their_calendar() -> None:

@@ -87,8 +87,8 @@ def test_a_scalar_on_cells_is_averaged_to_the_nodes() -> None:
     grid = pv.ImageData(dimensions=(4, 3, 1))
     grid["U"], grid.cell_data["sigma"] = np.ones((12, 2)), np.arange(6) / 10
     expected = grid.cell_data_to_point_data().point_data["sigma"]
-    field = with_uncertainty(FlowField.from_pyvista(grid), "sigma")
-    assert field.on_cells == ()
+    field = FlowField.from_pyvista(grid, uncertainty="sigma")
+    assert field.on_cells == () and field.uncertainty == "sigma"
     np.testing.assert_allclose(field.scalars["sigma"][0].ravel(), expected)
     triangles = with_uncertainty(FlowField.from_pyvista(grid.cast_to_unstructured_grid()), "sigma")
     assert triangles.on_cells == () and triangles.scalars["sigma"].shape == (1, 1, 12)

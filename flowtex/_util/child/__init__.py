@@ -49,9 +49,9 @@ FORKS = sys.platform == "linux"
 if FORKS:
     import fcntl
 
-#: Seconds between two checks whether an answer is still wanted.
+#: Seconds between two checks whether the caller still wants an answer.
 CHECK_INTERVAL_S = 0.05
-#: Seconds for which the status of a child that has closed its pipe is waited for.
+#: Longest wait in seconds for the status of a child that has closed its pipe.
 STATUS_WAIT_S = 5.0
 #: Share of the available memory that a child may take.
 MEMORY_SHARE = 0.6
@@ -63,7 +63,7 @@ PIPE_BYTES = 1 << 20
 REQUEST_BYTES = 65_536
 #: Bytes of a status.
 STATUS_BYTES = 4
-#: Number of the request to the kernel that ends a process with its parent.
+#: Option of Linux's prctl that ends a process with its parent.
 PR_SET_PDEATHSIG = 1
 #: Seconds that a child has to end by itself.
 ENDING_S = 1.0

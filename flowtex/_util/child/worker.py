@@ -36,7 +36,7 @@ _PROGRAM = (
 OOM_SCORE = "800"
 #: Errors whose text is sufficient without a trace.
 QUIET = ("Stopped", "MemoryError", "FieldError")
-#: Most characters of the text of an error.
+#: Greatest length of an error text.
 TEXT_LENGTH = 4_000
 #: Length of the header.
 _PREFIX = struct.Struct(">I")

@@ -39,7 +39,7 @@ COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 #: Letters of the components, along the axes of space.
 LETTERS = "xyz"
-#: Letters of components by the numbers and letters that name them.
+#: Component letter by its name, a number or a letter.
 COMPONENTS = {**dict(zip("012", LETTERS, strict=True)), **{x: x for x in LETTERS}}
 #: Name of vectors that have none.
 UNNAMED = "velocity"

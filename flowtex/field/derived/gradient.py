@@ -24,7 +24,7 @@ from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
-QUADRATIC_NEIGHBOURS = 5  #: Neighbours that a quadratic fit needs.
+QUADRATIC_NEIGHBOURS = 5  #: Least number of neighbours for a quadratic fit.
 REGULARISATION = 1e-12  #: Regularisation of a fit, as a share of the largest entry.
 #: Determinant of the correlations of the terms of a fit, at least.
 LEAST_INDEPENDENCE = 1e-9

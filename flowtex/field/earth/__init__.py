@@ -47,23 +47,23 @@ METHODS = {
     "Robinson": "robinson",
     "Equal Earth": "equalearth",
 }
-#: Step in degrees for derivatives. The pieces of PROJ's Robinson differ by a metre where they meet:
-#: shorter steps turned directions by up to 3 degrees.
+#: Step in degrees for derivatives. PROJ's Robinson projection is discontinuous by a metre between
+#: its pieces, so shorter steps turn directions by up to 3 degrees.
 STEP = 0.02
-NEAREST_POLE = 0.5  #: Nearest distance to a pole at which derivatives are computed, in degrees.
+NEAREST_POLE = 0.5  #: Least distance in degrees from a pole for computing derivatives.
 #: A step that is longer than the opposite one by this factor crosses a tear.
 TORN = 2.0
 #: Factor by which a position outside the map is moved towards its middle.
 INSIDE = 1 - 1e-7
-#: File of the coasts.
+#: File of the coastlines.
 COASTS = Path(__file__).with_name("coastlines.npz")
 #: Stored steps of a degree, as in tools/coastlines.py.
 STEPS_PER_DEGREE = 100
 #: Longest piece of a line in degrees.
 LONGEST_PIECE = 1.0
-#: Share of a piece from which on it may be torn, if its middle is so far from that of its ends.
+#: A piece may be torn if it bends by more than this share of its length.
 BENT = 0.05
-MOST_BENT = 0.2  #: Share from which on it is torn, as where it leads along the outline of a map.
+MOST_BENT = 0.2  #: Share beyond which it is torn, as along the outline of a map.
 #: Share of a torn piece that its tear is wide, at least.
 LEAST_TEAR = 0.02
 #: Scale beyond which a map has no lines: they go to infinity, as at a pole.
@@ -72,9 +72,9 @@ MOST_STRETCHED = 20.0
 FEWEST_SPACINGS = 4
 #: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
 HALVINGS = 14
-#: Possible degrees between the lines of a graticule.
+#: Possible spacings of a graticule in degrees.
 STEPS = (30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
-#: Most lines that cross a map.
+#: Most graticule lines across a map.
 MOST_LINES = 6
 #: Least pieces of a line between two that cross it.
 FEWEST_PIECES = 8

@@ -26,7 +26,7 @@ from flowtex.field.formula.grammar import (
 
 __all__ = ["Formula", "FormulaError", "Parameter"]
 
-RANGE = (-5.0, 5.0)  #: Range of a coordinate by default.
+RANGE = (-5.0, 5.0)  #: Default range of a coordinate.
 #: Greatest speed and length; values beyond are blanked.
 MOST = 1e30
 #: Step of the differences for tangents, as a share of a range.
@@ -83,8 +83,8 @@ _RULES: Mapping[str, tuple[str, ...]] = {
     "hypot": ("a/hypot(a, b)", "b/hypot(a, b)"),
     "mod": ("1", "-floor(a/b)"),
 }
-FUNCTION_SHARE = 1e-4  #: Step of the differences for functions, as a share of a range.
-#: Steps and weights of these differences.
+FUNCTION_SHARE = 1e-4  #: Step of finite differences for functions, as a share of a range.
+#: Steps and weights of these finite differences.
 WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 
 

@@ -22,7 +22,7 @@ Tree = float | str | tuple[Any, ...]
 #: Numbers or arrays by name.
 Values = Mapping[str, Any]
 
-#: Functions of one argument that NumPy has under the same name.
+#: Functions of one argument with the same name in NumPy.
 SAME_NAMES = (
     *("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "log2"),
     *("log10", "sqrt", "abs", "sign", "floor", "ceil"),
@@ -49,16 +49,16 @@ OPERATIONS: dict[str, tuple[Any, int | None]] = {
 }
 #: Names of functions in formulas.
 FUNCTIONS = tuple(name for name in OPERATIONS if name.isalnum() and name != "neg")
-CONSTANTS = {"pi": np.pi, "e": np.e}  #: Numbers with a name.
+CONSTANTS = {"pi": np.pi, "e": np.e}  #: Named numbers.
 
-#: Binding powers of operators to their right.
+#: Binding power of each operator to its right.
 BINDING = {
     **dict.fromkeys(("<", ">", "<=", ">="), 1),
     **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
 }
-SIGN_BINDING = 4  #: That of a sign, less than that of a power.
-MOST_LETTERS = 2000  #: Most letters of a formula.
-MOST_DEPTH = 60  #: Most levels of nesting.
+SIGN_BINDING = 4  #: Binding power of a sign, which is weaker than a power.
+MOST_LETTERS = 2000  #: Greatest length of a formula.
+MOST_DEPTH = 60  #: Greatest depth of nesting.
 _TOKEN = re.compile(
     r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)"
     r"|(?P<sign>\*\*|<=|>=|[-+*/^(),<>]))"

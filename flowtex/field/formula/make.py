@@ -20,17 +20,17 @@ from flowtex.field.field import FlowField
 from flowtex.field.formula import Formula
 
 NODES = 257  #: Nodes along the longer side of a plane.
-SURFACE_NODES = 129  #: The same of a surface, whose poles slow down tracing.
-LEAST_NODES = 33  #: Least nodes along the shorter side.
-MOST_NODES = 10_000  #: Most nodes that may be requested.
+SURFACE_NODES = 129  #: The same for a surface, whose poles slow down tracing.
+LEAST_NODES = 33  #: Least number of nodes along the shorter side.
+MOST_NODES = 10_000  #: Greatest resolution that users may request.
 #: Share of the size of a surface within which places are the same.
 SAME_PLACE = 1e-9
 #: Letters of a caption.
 MOST_TITLE = 60
-MOST_LETTERS = 4000  #: Most letters of a line.
-MOST_TIMES = 200  #: Most steps of a line.
+MOST_LETTERS = 4000  #: Greatest length of a line of text.
+MOST_TIMES = 200  #: Most time steps of a line of text.
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
-#: Words of known formulas, and their lines.
+#: Titles and lines of known formulas by name.
 KNOWN = {
     "pendulum": ("Pendulum", "y; -sin(x) - b*y; x=-7,7; y=-4,4; b=0.2,0,1"),
     "van_der_pol": ("Van der Pol", "y; mu*(1 - x^2)*y - x; x=-5,5; y=-4,4; mu=1,0,4"),

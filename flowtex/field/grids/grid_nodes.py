@@ -1,7 +1,7 @@
 """Arguments of a field on a structured surface as its arrays, and signs of sign-free ones.
 
 Around a half-integer singularity a vector without a sign returns reversed. So signs at nodes agree
-with their neighbours but along a cut, and the corners of each cell are given equal signs
+with their neighbours except along a cut, and the corners of each cell are given equal signs
 (:func:`corner_signs`) before interpolation.
 """
 
@@ -199,7 +199,7 @@ def grid_nodes(
     sign_free: bool,
     on_globe: bool,
 ) -> tuple[GridSurface, dict[str, Any]]:
-    """Check arrays; return the surface, and arguments of a field. Of late steps one is read."""
+    """Check arrays; return the surface and the arguments of a field. Only one late step is read."""
     if not isinstance(scalars, Mapping):
         raise FieldError(
             f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
@@ -254,7 +254,7 @@ def grid_nodes(
 
 
 def _closed(appended: Sequence[bool], step: Floats) -> Floats:
-    """Return a step whose first line comes again at the end along these axes."""
+    """Return a step with its first line appended at the end along these axes."""
     for axis, is_appended in enumerate(appended):
         if is_appended:
             step = np.concatenate([step, np.take(step, [0], axis=axis)], axis=axis)

@@ -28,7 +28,7 @@ from flowtex.field.validation import finite_nodes
 SAME_POINT_SHARE = 1e-12
 #: Corners of the two triangles of a cell, as (j, i) from its first corner.
 CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
-#: Steps (j, i) to the cells across the edges opposite to them.
+#: Steps (j, i) to the cells across the edges opposite to these corners.
 ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
 #: Lines from a pole over which the size of the cells turns into their length.
 POLE_LINES = 8

@@ -29,7 +29,7 @@ from flowtex.field.validation import (
 FLAT_TRIANGLE = 1e-12
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
-#: Direction, of at most unit length, along which points of no usual mesh coincide.
+#: Direction without symmetry, of at most unit length: points of usual meshes differ along it.
 GENERIC = np.array([0.36787944, 0.69314718, 0.61983])
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them near nodes that lie in the plane up to rounding in single precision.
@@ -47,7 +47,7 @@ def triangle_nodes(
     scalars: Mapping[str, Any],
     cell_scalars: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Return arguments of a field whose nodes are a row, (1, N); check the arrays.
+    """Check arrays; return the arguments of a field whose nodes are a row, (1, N).
 
     Nodes at one place are joined, and parts that cannot be drawn are left out.
     """
@@ -304,16 +304,13 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
 
 
 def connected_parts(beside: Indices) -> Indices:
-    """Return the least number of the triangles connected to each, (M,), from neighbours (M, 3)."""
-    part = np.arange(len(beside))
-    beside = np.where(beside < 0, part[:, None], beside)
-    while True:
-        least = np.minimum(part, part[beside].min(axis=1, initial=len(part)))
-        if (least == part).all():
-            return part
-        np.minimum.at(part, part.copy(), least)
-        while (part[part] != part).any():
-            part = part[part]
+    """Return the number of the connected part of each triangle, (M,), from neighbours (M, 3)."""
+    rows, corners = np.nonzero(beside >= 0)
+    size = (len(beside), len(beside))
+    ends = rows, beside[rows, corners]
+    graph = scipy.sparse.coo_array((np.ones(len(rows)), ends), shape=size)
+    part: Indices = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    return part
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:

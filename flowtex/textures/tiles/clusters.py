@@ -70,7 +70,7 @@ class Clusters:
             for offset in (1, 2):
                 border[triangles[open_sides[:, k], (k + offset) % 3]] = True
         part = np.zeros(field.shape[1], dtype=np.intp)
-        part[triangles] = np.unique(connected_parts(beside), return_inverse=True)[1][:, None]
+        part[triangles] = connected_parts(beside)[:, None]
         if part.any():
             part = np.unique(part, return_inverse=True)[1]
             part = np.argsort(np.argsort(part_extents(field.points[0], part)))[part]

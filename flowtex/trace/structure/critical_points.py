@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink", "degenerate")
-ROUNDING = 1e-9  #: Eigenvalue that is zero, as a share of the other one.
-REAL_SHARE = 1e-6  #: Imaginary part that is zero, as a share of the eigenvalue.
-#: Growth as a share of the rotation from which a point is a spiral whatever the grid.
+ROUNDING = 1e-9  #: Greatest ratio to the other eigenvalue of one that counts as zero.
+REAL_SHARE = 1e-6  #: Greatest imaginary part of a real eigenvalue, as a share of it.
+#: Least ratio of growth to rotation of a spiral on any grid.
 SPIRAL_SHARE = 0.25
 #: Error of the velocity's gradient, in its change over a cell: in a cell the interpolated gradient
 #: is that of its middle, half a cell away.

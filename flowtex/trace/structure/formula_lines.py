@@ -22,46 +22,46 @@ from flowtex.trace.integrate import Paths
 from flowtex.trace.trace import paths
 
 CELLS = 160  #: Search cells along the longer side.
-LEAST_CELLS = 8  #: Search cells along the other side, at least.
-STEPS = 100  #: Steps of Newton's method.
-FAR = 3.0  #: How far they may lead.
-LAST_STEP = 1e-6  #: Last step of a zero.
-LEFT = 1e-11  #: Remaining rate of a zero.
-BEYOND = 1e-6  #: How far beyond the border a zero may lie.
-SAME = 1e-6  #: Distance from which zeros are different ones.
-SAME_DEGENERATE = 0.05  #: The same for degenerate ones, which are less precise.
-CHANGE = 1e-2  #: Step of the change of the determinant.
-DEGENERATE = 1e-5  #: Distance of the determinant's zero at a degenerate point.
-SINGULAR = 1e-13  #: Determinants that are zero, as a share of the gradient.
-ROUNDING = 1e-9  #: Traces that are zero, as a share of the gradient.
-AROUND = 0.1  #: Distance around a degenerate point at which others are searched for.
-ON_LINE = 0.02  #: Distance of another one from which on the point lies on a line of rest.
+LEAST_CELLS = 8  #: Least number of search cells along the other side.
+STEPS = 100  #: Most steps of Newton's method.
+FAR = 3.0  #: Greatest distance from the start of Newton's method, in cells.
+LAST_STEP = 1e-6  #: Greatest last step to a zero, in cells.
+LEFT = 1e-11  #: Greatest remaining rate at a zero.
+BEYOND = 1e-6  #: Greatest distance of a zero beyond the border.
+SAME = 1e-6  #: Least distance between two zeros, in cells.
+SAME_DEGENERATE = 0.05  #: Least distance between two degenerate zeros, which are less precise.
+CHANGE = 1e-2  #: Step of the finite differences of the determinant, in cells.
+DEGENERATE = 1e-5  #: Greatest distance from a zero of the determinant at a degenerate point.
+SINGULAR = 1e-13  #: Determinant that counts as zero, relative to the gradient.
+ROUNDING = 1e-9  #: Trace that counts as zero, relative to the gradient.
+AROUND = 0.1  #: Distance from a degenerate point at which the search for others begins.
+ON_LINE = 0.02  #: Greatest distance from there to another one on the same line of rest.
 #: Area of a cell of a surface at its poles, as a share of that in the middle.
 POLE_AREA = 1e-6
-RADIUS = 0.05  #: Radius of the circle on which an index is counted.
-CIRCLE = 720  #: Points of that circle.
-MOST_DIRECTIONS = 24  #: Most directions of a degenerate point.
-TURN_RADIUS = 2.0  #: Radius of a turn around a possible centre.
-TURN_STEPS = 400  #: Steps of that turn.
-RETURNED = 1e-7  #: Change of the radius that counts.
+RADIUS = 0.05  #: Radius of the circle around a point for its index.
+CIRCLE = 720  #: Points on this circle.
+MOST_DIRECTIONS = 24  #: Most directions at a degenerate point.
+TURN_RADIUS = 2.0  #: Radius of the turn around a possible centre.
+TURN_STEPS = 400  #: Steps of this turn.
+RETURNED = 1e-7  #: Least growth of the radius that is no error.
 _SIDES = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], float)
 #: Longest step along a line, as a share of the diagonal.
 STEP = 1 / 700
-ALMOST = 0.8  #: Share of the period after which an orbit is at its section again at the earliest.
-TURNS = 12  #: Turns until it closes.
-CLOSED = 1e-7  #: Its greatest remaining displacement, as a share of the diagonal.
-POINTS = 4000  #: Points of an orbit as it is integrated.
-TOLERANCE = 1e-10  #: Tolerance of that integration.
-LEAST_GROWTH = 1e-6  #: Least growth in a turn beside an orbit, as an exponent.
-#: A component is zero up to this share of its quantile: beside a pole it is huge.
+ALMOST = 0.8  #: Least share of the estimated period after which an orbit may return.
+TURNS = 12  #: Most turns until an orbit closes.
+CLOSED = 1e-7  #: Greatest gap of a closed orbit, as a share of the diagonal.
+POINTS = 4000  #: Points of an orbit in the integration.
+TOLERANCE = 1e-10  #: Tolerance of this integration.
+LEAST_GROWTH = 1e-6  #: Least exponent of growth in a turn beside an orbit.
+#: A component counts as zero up to this share of its usual value.
 ZERO_SHARE = 1e-12
-USUAL_SHARE = 0.9  #: That quantile.
-HALVINGS = 12  #: Halvings of a side of a triangle that a line crosses.
-#: Greatest remaining share of a value that goes to zero there; at a pole or a jump more remains.
+USUAL_SHARE = 0.9  #: Quantile of the usual value, because values beside a pole are huge.
+HALVINGS = 12  #: Bisections on the side of a triangle for the crossing of a line.
+#: Greatest share of a value that remains at a zero; at a pole or a jump more remains.
 LEFT_SHARE = 0.25
-LINE_CELLS = 256  #: Cells along the longer side of what is searched for lines in a formula.
-WINDOW_VIEWS = 2.0  #: Size of a window over that of the view, at least.
-WINDOW_STEPS = 4  #: Steps of its middle over its size.
+LINE_CELLS = 256  #: Cells along the longer side in the search for nullclines of a formula.
+WINDOW_VIEWS = 2.0  #: Least ratio of the size of a window to the view.
+WINDOW_STEPS = 4  #: Steps of the middle of a window per size.
 
 
 def formula_rates(field: FlowField) -> Rates | None:

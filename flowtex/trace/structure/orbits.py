@@ -2,7 +2,7 @@
 
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
 ray from there. Where the flow returns to a ray one turn later shows the side of an orbit: from both
-sides it comes nearer, or moves away. :func:`isolation` distinguishes an orbit from a centre. Those
+sides it comes nearer, or moves away. :func:`isolation` distinguishes an orbit from a centre. Orbits
 of a formula in the plane are then integrated from the formula.
 """
 
@@ -28,22 +28,22 @@ from flowtex.trace.structure.critical_points import (
 )
 from flowtex.trace.structure.formula_lines import follower, formula_orbit, plane_rates
 
-POINT_CELLS = 0.5  #: Distance between the points of a line in cells.
-CHUNK = 50  #: Points that are followed at once.
+POINT_CELLS = 0.5  #: Distance between the points of a line, in cells.
+CHUNK = 50  #: Points that are computed at once.
 TURN_EXTENTS = 3.0  #: Greatest length of a turn, as a share of the surface's extent.
 MOST_POINTS = 3000  #: Most points of a turn.
-FIRST_CELLS = 1.0  #: First point of a ray, in cells.
+FIRST_CELLS = 1.0  #: Distance of the first point of a ray, in cells.
 RATIO = 1.2  #: Ratio of successive distances on a ray.
-EXTENT_SHARE = 0.03  #: Greatest distance of two points of a ray, as a share of the extent.
-MOVED_CELLS = 0.05  #: Least radial displacement by a turn, in cells.
-MOVED_SHARE = 0.05  #: The same as a share of the distance from the middle.
-#: The same share where lines are those of a formula.
+EXTENT_SHARE = 0.03  #: Greatest distance between points of a ray, as a share of the extent.
+MOVED_CELLS = 0.05  #: Least radial displacement in a turn, in cells.
+MOVED_SHARE = 0.05  #: Least radial displacement in a turn, as a share of the radius.
+#: This share for the lines of a formula.
 MOVED_EXACT = 1e-6
-CLOSED_CELLS = 0.1  #: Greatest distance of the end of an orbit from its beginning, in cells.
-PARTS = 64  #: Parts into which a stretch of a ray with an orbit is divided.
-ROUNDS = 2  #: How often it is divided.
-REST_CELLS = 0.25  #: Distance from a critical point, in cells, at which a line ends.
-WALL_CELLS = 0.05  #: The same from a wall.
+CLOSED_CELLS = 0.1  #: Greatest gap of a closed orbit, in cells.
+PARTS = 64  #: Parts of a section of a ray with an orbit.
+ROUNDS = 2  #: Number of times that the section is divided.
+REST_CELLS = 0.25  #: Distance from a critical point at which a line ends, in cells.
+WALL_CELLS = 0.05  #: Distance from a wall at which a line ends, in cells.
 #: Critical points around which orbits are searched for, the strongest ones.
 MOST_RAYS = 8
 

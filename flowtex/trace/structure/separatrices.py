@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 BEGIN_CELLS = 0.05  #: Distance from the saddle at which a line begins, in cells.
-POINT_CELLS = 0.5  #: Distance between its points, in cells.
+POINT_CELLS = 0.5  #: Distance between the points of a line, in cells.
 LENGTH_EXTENTS = 3.0  #: Length of a line, as a share of the surface's extent.
 MOST_POINTS = 4000  #: Most points of a line.
-FIRST_POINTS = 4  #: Points of a line before a critical point may end it.
-REST_CELLS = 0.25  #: Distance in cells from such a point at which it is followed no longer.
+FIRST_POINTS = 4  #: Points of a line that cannot end at a critical point.
+REST_CELLS = 0.25  #: Distance from a critical point at which tracing stops, in cells.
 #: Distance in cells between two turns of a line at which it is a closed orbit.
 CLOSED_CELLS = 0.02
 #: The same where it winds up, in distances of its points.
 WOUND_POINTS = 2.0
-END_CELLS = 0.75  #: Distance in cells at which a line ends at a critical point.
-LEAST_TURN = 8  #: Least points of a turn.
+END_CELLS = 0.75  #: Distance from a critical point at which a line is joined to it, in cells.
+LEAST_TURN = 8  #: Least number of points in a turn.
 
 
 @dataclass(frozen=True, eq=False)

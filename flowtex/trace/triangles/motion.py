@@ -27,7 +27,7 @@ COLUMNS = 14
 #: Ratio of the rates at which particles approach a line in a triangle and move along it, from which
 #: on they count as on the line.
 STIFF = 4.0
-OFF_LINE = 1e-3  #: Their greatest distance from it then, in sizes of the triangle.
+OFF_LINE = 1e-3  #: Greatest distance from the line, in sizes of the triangle.
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +138,9 @@ def _across(surface: TriangleSurface) -> Indices:
 #: By the last three bits of :attr:`TriangleMesh.across`: the corner of the other triangle that is
 #: not on the edge.
 BEHIND = np.array([3 - m - (m + step) % 3 for m in range(3) for step in (1, 2)], dtype=np.intp)
-#: Which of its second and third shares, (2, 6), are of the next corner here.
+#: Whether its second and third shares, (2, 6), belong to the next corner here.
 NEXT = np.array([[m == k for m in range(3) for _ in (1, 2)] for k in (1, 2)], dtype=float)
-#: Which are of the corner after that.
+#: Whether they belong to the corner after the next.
 AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in (1, 2)], float)
 
 

@@ -27,10 +27,10 @@ from flowtex.trace.triangles.motion import (
     dot,
 )
 
-#: Rounds of steps after which paths are ended, for each row of a square of as many nodes: a few
-#: that turn in one place must not delay all others.
+#: Most steps per row of a square with as many nodes: a few paths that turn in one place must not
+#: delay all others.
 STEPS_PER_ROW = 30
-LEAST_STEPS = 3_000  #: Least number of rounds.
+LEAST_STEPS = 3_000  #: Least limit of the number of steps.
 #: Rounds in one triangle, or from one to the next without a move, after which a path is ended: it
 #: spirals, or crosses a triangle so flat that it is practically stuck. No more triangles meet in a
 #: node.

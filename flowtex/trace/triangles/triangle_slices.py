@@ -27,8 +27,8 @@ from flowtex.trace.triangles.triangle_paths import TrianglePaths, all_shares, be
 
 #: Particles followed together.
 BLOCK = 65536
-DIRECT_CELLS = 8.0  #: Length in small cells up to which paths are integrated.
-LEAST_DIRECT = 2  #: Least number of such slices.
+DIRECT_CELLS = 8.0  #: Greatest length of integrated paths, in small cells.
+LEAST_DIRECT = 2  #: Least number of slices that are integrated.
 #: Rounds of steps for these, twice those that meshes need; more are circles about a node.
 DIRECT_STEPS = 75
 #: Paths that are continued together.
@@ -78,10 +78,12 @@ def triangle_slices(
             for motion, moved in zip(motions, displacement[:, 0, :, 0], strict=True)
         ]
 
+    starts = [[*run(partial(begin, nodes=at), side)] if len(at) else [] for side in motions]
+
     def work(job: tuple[int, int, slice]) -> None:
         side, step, block = job
         motion, nodes = motions[side][step], at[block]
-        triangle, corner = np.divmod(begin(motion, nodes), 3)
+        triangle, corner = np.divmod(starts[side][step][block], 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
         units = unit[0, nodes]
         due = lags[:direct, None] * units

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 from triangle_meshes import random_plane, soup, sphere
 
 from flowtex.field.triangles.triangle_nodes import (
+    connected_parts,
     flipped,
     merged_nodes,
     neighbours,
@@ -70,3 +73,12 @@ def test_where_three_meet_the_straight_one_is_beside(order: tuple[int, int, int]
     assert one in beside[other]
     # The one that stands up looks at one of them and is looked at by none.
     assert order.index(2) not in beside[[one, other]]
+
+
+def test_sheets_that_share_an_edge_are_one_part_in_any_order() -> None:
+    points = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [0.5, -1, 0], [0.5, 0, 1], [9, 9, 9]])
+    sheets = np.array([[0, 1, 4], [0, 1, 2], [1, 0, 3], [3, 4, 5]])
+    for order in permutations(range(4)):
+        part = connected_parts(neighbours(points, sheets[list(order)]))
+        alone = order.index(3)
+        assert len(set(np.delete(part, alone))) == 1 and part[alone] not in np.delete(part, alone)
