@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import re
-import secrets
 import stat
 import time
 from collections.abc import Sequence
@@ -45,7 +44,7 @@ if TYPE_CHECKING:
 
 #: Environment variable with the secret word of ``flowtex serve``.
 TOKEN_VARIABLE = "FLOWTEX_TOKEN"
-#: Characters that are read of a file with the secret word.
+#: Most characters of a file with the secret word.
 MOST_TOKEN = 1000
 
 
@@ -61,9 +60,9 @@ def serve(
         Parameter(
             group=PAGE,
             help=(
-                "Secret word in the address, without which nothing is shown; by default that of "
-                "the environment variable FLOWTEX_TOKEN, or a random one. Other users of this "
-                "machine can read it in the list of processes."
+                "Secret word in the address, without which nothing is shown. The default is the "
+                "environment variable FLOWTEX_TOKEN, or a random word. Other users of this "
+                "machine can read the option in the list of processes."
             ),
         ),
     ] = None,
@@ -80,14 +79,14 @@ def serve(
     """Serve a page that streams a pyramid."""
     options, server = drawing(look, settings), address or AddressFlags()
     require_app()
-    word = _secret_word(token, token_file)
+    given = _secret_word(token, token_file)
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
         raise UsageError(
             f"{store} is missing or not a pyramid; build one with `flowtex pyramid FILE -o {store}`"
         )
-    from flowtex.app.server.security import LimitedServer, known_hosts
+    from flowtex.app.server.security import LimitedServer, known_hosts, new_secret
     from flowtex.app.server.site import serve_until_ended
     from flowtex.app.server.store_site import ServedStore, store_application
     from flowtex.rendering.diagnostics import has_display
@@ -95,7 +94,7 @@ def serve(
     with waiting(f"Reading {store.name}") as end_waiting:
         served = ServedStore(store)
         field = open_store(store)
-        page = _page(field, title, options, f"store/{served.run}/")
+        page, word = _page(field, title, options, f"store/{served.run}/"), given or new_secret()
         hosts = known_hosts(server.host, server.allow_host)
         limited = LimitedServer(
             store_application(served, page, word, hosts), handler_cancellation=True
@@ -112,8 +111,8 @@ def serve(
     return 0
 
 
-def _secret_word(token: str | None, file: Path | None) -> str:
-    """Return the secret word of the page's address, a random one where none is given."""
+def _secret_word(token: str | None, file: Path | None) -> str | None:
+    """Return the secret word that is given for the page's address; None without one."""
     word, readable = os.environ.get(TOKEN_VARIABLE), ""
     source = f"{TOKEN_VARIABLE} contains another text"
     if token is not None:
@@ -124,12 +123,12 @@ def _secret_word(token: str | None, file: Path | None) -> str:
             with file.open(encoding="utf-8", errors="replace") as opened:
                 word, source = opened.read(MOST_TOKEN).strip(), f"{file} contains another text"
                 if os.fstat(opened.fileno()).st_mode & stat.S_IROTH and os.name == "posix":
-                    readable = f"{file}; take it from them with `chmod 600 {file}`"
+                    readable = f"{file}; protect it with `chmod 600 {file}`"
         except OSError as error:
             reason = error.strerror or error
             raise UsageError(f"--token-file is {file}, which cannot be read ({reason})") from error
     if word is None:
-        return secrets.token_urlsafe(24)
+        return None
     if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", word):
         raise UsageError(
             f"{source}; expected 16 or more letters, digits, '-' and '_' that nobody can guess; "

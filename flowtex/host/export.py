@@ -66,7 +66,7 @@ EXPECTED = (
 )
 #: Address from which pages load MapLibre.
 MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist"
-#: Its files, the style after the modules, and their digests, without which a browser refuses them.
+#: Files of MapLibre, the style last, with the digests that browsers compare.
 MAPLIBRE_DIGESTS = {
     "maplibre-gl.mjs": "sha384-pghUwrZY2q/5xc+bZCYbeUP4JsNuZEmG8j+ZvzJMC1DOy3Rdj5AhRNThLRAiEjSb",
     "maplibre-gl-worker.mjs": (
@@ -350,7 +350,7 @@ def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Itera
         contents,
         scene_pieces(contents),
         asset("map.mjs").read_text("utf-8"),
-        # MapLibre and the layer are run from copies whose digests were compared.
+        # The page compares the digests of MapLibre, and runs copies from blob addresses.
         scripts=" blob:",
         allowed=f"worker-src data: blob:; style-src 'unsafe-inline' {MAPLIBRE}/; "
         f"connect-src {anywhere}; img-src {anywhere}",

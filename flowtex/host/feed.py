@@ -101,9 +101,10 @@ class Feed:
 
     def draw(self, size: tuple[int, int], camera: MakeCamera, **look: Any) -> None:
         """Draw a still of the scene, once, after what is being sent."""
+        sending = self._sending  # a later one may be behind the still in the pool
 
         def make() -> bytes:
-            self._sending.result()
+            sending.result()
             return still.still_png(self.view, size, camera, data=self.source.scene, **look)
 
         self.still = self.still or in_pool(make, lambda: self._closed)

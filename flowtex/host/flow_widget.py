@@ -73,7 +73,7 @@ class CheckedTrait(traitlets.TraitType[Any, Any]):
         self, check: Callable[[Any, Any], Any], default: Any = None, text: str = ""
     ) -> None:
         self._check = check
-        super().__init__(default, help=text, allow_none=True)
+        super().__init__(default, help=text)
         self.tag(sync=True)
 
     def validate(self, obj: traitlets.HasTraits | None, value: Any) -> Any:

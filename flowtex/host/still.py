@@ -59,9 +59,9 @@ ARROW_LENGTH = 1.05
 HEAD = 0.32
 #: Half the width of a head over the length of the arrow.
 HEAD_WIDTH = 0.144
-#: Width of the shaft.
+#: Width of the shaft, in pixels.
 SHAFT_PX = 2
-#: Width of what is light around an arrow.
+#: Width of the light outline of an arrow, in pixels.
 HALO_PX = 2
 #: Share of the surface in a pixel where arrows are.
 INSIDE = 0.9

@@ -258,7 +258,7 @@ class TileSource:
     :mod:`flowtex.pyramid.tasks` writes and a browser reads without a server.
 
     ``scene`` may be replaced at any time by the same scene in other colours. All methods may be
-    called from any thread. ``generation`` is its number among those of this process.
+    called from any thread. ``generation`` is its number in this process.
     """
 
     def __init__(self, scene: ClientData, budget: int = BUDGET_BYTES) -> None:
@@ -268,7 +268,7 @@ class TileSource:
 
     @classmethod
     def of(cls, scene: ClientData, before: TileSource | None) -> TileSource:
-        """Return the source of a scene: the one before if only its colours differ, else closed."""
+        """Return the source of a scene; reuse the one before for other colours, or close it."""
         if before is not None and before.scene.textures is scene.textures:
             before.scene = before.scene.recoloured(scene.colours)
             return before

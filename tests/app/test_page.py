@@ -19,7 +19,7 @@ from pages import new_context, painted
 from PIL import Image
 from served import Served, start
 from waiting import wait_until
-from watching import Watch, browser_draws, count, difference
+from watching import Watch, browser_draws, count, difference, zoom_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
@@ -307,6 +307,50 @@ def test_the_pointer_reads_the_flow_and_a_click_shows_the_path(page: Page) -> No
     assert abs(middle() - 390) < 2
     card.get_by_text("Close").click()
     card.wait_for(state="hidden")
+
+
+def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
+    page.evaluate("document.activeElement.blur()")  # a menu would take the key
+    before = count(page)
+    page.keyboard.press("0")
+    whole, before = settled(page, before), count(page)
+    page.keyboard.press("+")
+    assert difference(settled(page, before), whole) > 3 and zoom_of(page) > 1.2
+    for shown in ("visible", "detached"):
+        before = count(page)
+        page.keyboard.press("t")
+        page.locator(".flowtex-light").wait_for(state=shown)
+        settled(page, before)
+    for key, shown in (("?", "visible"), ("Escape", "hidden")):
+        page.keyboard.press(key)
+        page.locator(".flowtex-help").wait_for(state=shown)
+
+
+def test_two_files_are_shown_side_by_side(page: Page) -> None:
+    if "series" not in page.inner_text(".flowtex-title"):
+        before = count(page)
+        open_file(page, "series.pvd")
+        settled(page, before)
+    group(page, "View")
+    choose(page, page.locator("[data-setting=compare]"), "Another file")
+    # The next file of the folder is broken.
+    page.get_by_text(re.compile(r"torn\.vts: ")).wait_for()
+    page.locator(".flowtex-complaint").get_by_role("button", name="Close").click()
+    choose(page, page.locator("[data-setting=file_beside]"), "block.vts")
+    page.locator(".title", has_text="block.vts").wait_for()
+    fold(page)
+    both, before = settled(page, 0), count(page)
+    page.mouse.move(300, 240)
+    page.mouse.wheel(0, -500)
+    moved = settled(page, before)
+    middle = SIZE["width"] // 2 - WATCH.left
+    for half in (slice(0, middle - 40), slice(middle + 70, None)):
+        assert difference(moved[:, half], both[:, half]) > 3
+    group(page, "View")
+    choose(page, page.locator("[data-setting=compare]"), "nothing")
+    page.wait_for_function("() => document.querySelectorAll('.flowtex').length === 1")
+    settled(page, 0)
+    fold(page)
 
 
 def test_the_server_draws_the_same_from_the_same_camera(page: Page) -> None:

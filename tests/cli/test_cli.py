@@ -90,7 +90,7 @@ def test_a_token_that_can_be_guessed_is_refused(
     assert (f"--token is {token!r}" if way == "--token" else "contains another text") in err
 
 
-def test_ways_to_give_a_token_that_others_can_read_are_warned_of(run: Run, tmp_path: Path) -> None:
+def test_a_token_that_others_can_read_warns(run: Run, tmp_path: Path) -> None:
     pytest.importorskip("trame_rca")
     file = tmp_path / "token"
     file.write_text("x" * 20)

@@ -462,6 +462,7 @@ def test_a_page_with_a_map_is_written_whole(
           const script = document.createElement("script");
           script.textContent = "window.ran = true";
           document.body.append(script);
+          if (window.ran) resolve("ran");
         })""")
         assert refused.startswith("script-src") and opened.evaluate("() => window.ran") is None
 

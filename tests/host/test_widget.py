@@ -24,6 +24,7 @@ from flowtex._util.colours import colour_table
 from flowtex.examples import gyre_nodes as nodes_of
 from flowtex.field.earth import Projection
 from flowtex.host import feed, still
+from flowtex.host.view import MOST_THREADS, in_pool
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE
 
@@ -419,6 +420,20 @@ def test_messages_of_any_thread_have_the_session_of_the_widget(
     assert any(thread != threading.current_thread().name for _, thread in sent)
 
 
+@pytest.mark.threads
+def test_still_is_drawn_before_later_requests_are_answered(make: Make) -> None:
+    widget, free = make(), threading.Semaphore(0)
+    holders = [in_pool(free.acquire, lambda: False) for _ in range(MOST_THREADS)]
+    try:
+        widget._feeds[0].draw((24, 16), **widget._look())
+        widget._handle_custom_msg({"kind": "ready"}, [])  # waits behind the still
+        free.release()
+        still = widget._feeds[0].still
+        assert still is not None and still.result(PATIENCE_S)
+    finally:
+        free.release(len(holders))
+
+
 def test_many_views_of_one_mesh_share_what_is_made_of_it(make: Make) -> None:
     first, other = make(gyre(nodes=100)), make(gyre(nodes=100), contrast=2.0)  # made twice
     assert first.field is other.field
@@ -526,6 +541,15 @@ def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
     assert widget.field is field and widget._header is header
     widget.cmap = "magma"
     assert widget.scene.field is field
+
+
+@pytest.mark.parametrize("name", ["samples", "noise", "camera", "size"])
+def test_none_raises_and_leaves_the_value(make: Make, name: str) -> None:
+    widget = make()
+    before = getattr(widget, name)
+    with pytest.raises(ValueError, match=f"^{name} is None; expected"):
+        setattr(widget, name, None)
+    assert getattr(widget, name) == before
 
 
 def test_axes_are_named_or_refused(make: Make) -> None:

@@ -39,9 +39,9 @@ COMPARISONS: dict[str, dict[str, Any]] = {
 }
 #: Label of a second pane at another time.
 ANOTHER_TIME = "Another time"
-#: Label of one with another file.
+#: Label of a second pane with another file.
 ANOTHER_FILE = "Another file"
-#: Label of one with another scalar, before its name.
+#: Label of a second pane with another scalar, before its name.
 COLOUR_BY = "Colour by: "
 #: Stops of the slider of another time between two steps of the field.
 STOPS_PER_STEP = 8

@@ -292,7 +292,7 @@ class FileBeside(FlowOpener):
         self.data = data
         self._name, self._choice = "", Choice()
         self._active = False
-        self._flow: TracedFlow | None = None  #: What is shown, whose traces stay with it.
+        self._flow: TracedFlow | None = None  #: The flow that is shown, with its traces.
         self.state.set(file_beside="")
         self.state.on(self.take_file, "file_beside")
         context.field_changed.connect(self.follow)

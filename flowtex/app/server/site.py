@@ -281,10 +281,8 @@ def _host_name(host: str) -> str:
 
 
 def _redirection(address: str, folder: Path) -> str:
-    """Return the address of a file that leads to another address, which only this user can read.
-
-    Other users can read the arguments of a browser in the list of processes.
-    """
+    """Write a page, for this user alone, that redirects to an address; return its URL."""
+    # Other users can read the arguments of a browser in the list of processes.
     file = folder / "flowtex.html"
     file.touch(0o600)
     file.write_text(f'<meta http-equiv="refresh" content="0; url={escape(address)}">', "utf-8")
@@ -308,12 +306,14 @@ class RepeatFilter(logging.Filter):
         if now - began >= WINDOW_S:
             began, count = now, 0
         self._windows[place] = began, count + 1
+        if count >= MOST_RECORDS:
+            return False
         record.msg, record.args = _cut(record.getMessage()), ()
         if kind and issubclass(kind, OTHERS_FAULTS):
             record.exc_info = record.exc_text = None
         elif record.exc_info:
             record.exc_text = _cut(logging.Formatter().formatException(record.exc_info))
-        return count < MOST_RECORDS
+        return True
 
 
 def _cut(text: str) -> str:

@@ -176,6 +176,17 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
         assert len(app.viewport.panes) == 1
 
 
+async def test_files_in_different_length_units_raise() -> None:
+    kilometres = other(length_unit="km")
+    metres = FlowField.from_arrays(kilometres.points, kilometres.velocity[0], length_unit="m")
+    app = page(one=metres, two=kilometres)
+    async with playing(app):
+        app.state.send(compare=FILE)
+        await until(lambda: app.state.get("problem"))
+        assert app.state.get("problem").startswith("two is in km and one in m; expected the same")
+        assert len(app.viewport.panes) == 1
+
+
 async def test_a_link_and_the_lines_of_python_name_both() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
     async with playing(app):

@@ -1,7 +1,7 @@
 """The sessions of a server: one for each page, in its process or in one of its own.
 
 A session is known by a token that lives in its browser tab. It waits some minutes for its page, so
-that one that is loaded again has its state; then its window, its tasks and its trame server end, or
+that a reloaded page finds its state; then its window, its tasks and its trame server end, or
 its process. ``flowtex show`` and ``flowtex demo`` serve a process for each session where the system
 can fork (``process.py``); a script and other systems have all in their own process (``local.py``).
 """
