@@ -192,9 +192,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([0], "factor is 0; expected 1 or more"),
         ([3], "factor is 3, which keeps 1 of 3 lines; ... at least 2"),
     ],
-    torus().downsample: [
-        ([20], "expected a smaller factor that keeps at least 4"),
-    ],
+    torus().downsample: [([20], "expected a smaller factor that keeps at least 4")],
     triangles().downsample: [([2], "no lines of nodes")],
     plane().at_step: [([1], "time step 1 does not exist: expected 0 to 0")],
     partial(locate, plane()): [
@@ -266,7 +264,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([-1], "lag is -1; expected 0 to 1"),
     ],
     partial(flowtex.trace(plane(), two_sided=False).positions, 0.1): [
-        ({"forward": True}, "the slices have no forward side: trace with"),
+        ({"forward": True}, "the slices have no forward side: trace with")
     ],
     slices().downsample: [
         ([factor], f"factor is {factor}; expected 1 to 3, the shorter") for factor in (0, -1, 22)
@@ -276,7 +274,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([33], "33 lags were traced; drawing needs 2 to 32"),
     ],
     partial(textures, FlowField.from_arrays(POINTS[:2], VELOCITY[0, :2])): [
-        ([flowtex.trace(plane(), lags=[0.5, 1])], "the slices have (3, 4) nodes and the field (2,"),
+        ([flowtex.trace(plane(), lags=[0.5, 1])], "the slices have (3, 4) nodes and the field (2,")
     ],
     as_picture: [
         ([np.zeros((3, 4, 2))], "the image has shape (3, 4, 2); expected (H, W)"),
@@ -356,14 +354,12 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"critical_points": 7}, "critical_points is 7; expected 0"),
     ],
     partial(Scene.of, triangles()): [
-        ({"image": np.ones((4, 4, 3))}, "noise is 'image' ... triangles; expected noise="),
+        ({"image": np.ones((4, 4, 3))}, "noise is 'image' ... triangles; expected noise=")
     ],
     partial(Scene.of, torus()): [
-        ({"nullclines": True}, "nullclines is True; expected False: the surface"),
+        ({"nullclines": True}, "nullclines is True; expected False: the surface")
     ],
-    Scene.of(plane()).beside: [
-        ([{"plane": "k=2"}], "beside has plane, which selects data"),
-    ],
+    Scene.of(plane()).beside: [([{"plane": "k=2"}], "beside has plane, which selects data")],
     lambda at, pixel: probe(Scene(plane()), at, pixel=pixel, size=(9, 9)): [
         ([(41.0, 3.0), 0.1], "(41, 3), outside the surface"),
         ([(1.0, 2.0), 0.0], "pixel is 0.0; expected a positive length"),
@@ -377,7 +373,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
     ],
     partial(flowtex.separatrices, plane()): [({"length": -1}, "expected a positive length")],
     flowtex.critical_points(plane()).of_kind: [
-        (["node"], "kind 'node' does not exist; expected one of saddle"),
+        (["node"], "kind 'node' does not exist; expected one of saddle")
     ],
     flowtex.critical_points(plane()).to_geojson: [([], "GeoJSON needs longitudes and latitudes")],
     flowtex.examples.double_gyre_velocity: [([POINTS[..., :1]], "points has shape (3, 4, 1)")],
@@ -516,10 +512,7 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "values_at": (values_at, {"field": field, "index": (0.5, 0.5), "time": 0.5}),
     "extent": (flowtex.extent, dict(mesh=field, size=(20, 10), margin=0.1, zoom=1.0, focus=None)),
     "export": (flowtex.export, dict(mesh=field, path="a.html", steps=None, store=None)),
-    "build": (
-        flowtex.pyramid.build,
-        dict(source=field, store="a.zarr", lines="auto", memory=None),
-    ),
+    "build": (flowtex.pyramid.build, dict(source=field, store="a.zarr", lines="auto", memory=None)),
     "open_store": (flowtex.pyramid.open_store, {"store": None}),
     "double_gyre": (flowtex.examples.double_gyre, {"time": 0.0}),
 }

@@ -265,11 +265,7 @@ def _round_labels(low: float, high: float, *, log_scale: bool) -> vtkDataArray:
 
 
 def _fit(
-    bar: vtkScalarBarActor,
-    labels: Sequence[str],
-    points: float,
-    view: tuple[int, int],
-    dpi: int,
+    bar: vtkScalarBarActor, labels: Sequence[str], points: float, view: tuple[int, int], dpi: int
 ) -> tuple[float, float, float]:
     """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
     title, label = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()

@@ -17,14 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.arguments import (
-    brief,
-    checked_count,
-    closest,
-    elsewhere,
-    is_number,
-    near_names,
-)
+from flowtex._util.arguments import brief, checked_count, closest, elsewhere, is_number, near_names
 from flowtex._util.colours import (
     DEFAULT_CMAP,
     NORM_ENTRIES,
@@ -83,8 +76,7 @@ class Appearance:
         "cells of a mesh or the nodes of a field, or ``False`` for a plain surface.",
     )
     component: int | str | None = option(
-        None,
-        "Component of the vectors that ``scalars`` names, 0 to 2 or ``x`` to ``z``.",
+        None, "Component of the vectors that ``scalars`` names, 0 to 2 or ``x`` to ``z``."
     )
     cmap: Any | None = option(
         None,
@@ -142,8 +134,7 @@ class Appearance:
         None, "Whether coasts are drawn; by default if the field has a projection."
     )
     graticule: bool | None = option(
-        None,
-        "Whether meridians and parallels are drawn; by default if the field has a projection.",
+        None, "Whether meridians and parallels are drawn; by default if the field has a projection."
     )
     land: Any = option(
         LAND_COLOR,
@@ -303,8 +294,7 @@ class ViewOptions:
 
     zoom: float = option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
     focus: tuple[float, ...] | None = option(
-        None,
-        "Point of the mesh to look at, two or three coordinates; the middle by default.",
+        None, "Point of the mesh to look at, two or three coordinates; the middle by default."
     )
     camera: Any | None = option(
         None,
@@ -312,8 +302,7 @@ class ViewOptions:
         "(``plotter.camera``), or position, focal point and up direction as three points.",
     )
     background: Any = option(
-        None,
-        "Background colour; by default white, and in a browser that of the surrounding page.",
+        None, "Background colour; by default white, and in a browser that of the surrounding page."
     )
     beside: Mapping[str, Any] | None = option(
         None,

@@ -14,11 +14,7 @@ from scipy.ndimage import map_coordinates
 
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
-from flowtex.examples import (
-    airfoil_field,
-    cylinder_field,
-    double_gyre_field,
-)
+from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from paper.redundancy import Redundancy, error_in_texels, redundancy
 from paper.redundancy.prediction import Predictor, SliceGrid
 

@@ -9,11 +9,7 @@ import cylinder_run
 import numpy as np
 import packing
 import pytest
-from cylinder_flow import (
-    CylinderFlow,
-    CylinderSetup,
-    _running_integral,
-)
+from cylinder_flow import CylinderFlow, CylinderSetup, _running_integral
 from numpy.typing import NDArray
 from scipy import fft
 
