@@ -355,10 +355,7 @@ def _bodies(actor: Any) -> Iterator[Body]:
         raise _NotDrawnError("coloured by a texture")
     matrix = pv.array_from_vtkmatrix(actor.GetMatrix())
     for block in blocks:
-        surface = _coloured(block, mapper, prop)
-        if not np.array_equal(matrix, np.eye(4)):
-            surface = surface.transform(matrix, inplace=False)
-        yield from _parts_of(surface, prop)
+        yield from _parts_of(_coloured(block, mapper, prop).transform(matrix, inplace=False), prop)
 
 
 def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
@@ -386,83 +383,46 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
 def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
     """Yield the faces, lines and points of a surface, and the edges of its faces."""
     style, width = prop.GetRepresentationAsString(), prop.GetLineWidth()
-    faces = surface.triangulate() if surface.GetNumberOfStrips() else surface
-    verts, lines, polys = (_cells(faces, kind) for kind in ("Verts", "Lines", "Polys"))
     if style == "Points":
-        points = np.arange(faces.n_points)
-        yield _body(faces, (points, points, 0 * points), width=prop.GetPointSize())
+        points = surface.cell_data_to_point_data()
+        numbers = np.repeat(np.arange(points.n_points)[:, None], 2, axis=1)
+        yield _body(points, numbers, 0, width=prop.GetPointSize())
         return
-    yield _body(faces, (verts[0], verts[0], verts[2]), width=prop.GetPointSize())
-    yield _body(faces, _pieces(lines), width=width)
+    plain = surface.triangulate(pass_verts=True, pass_lines=True)  # also parts polylines
+    yield _body(plain, plain.verts.reshape(-1, 2)[:, [1, 1]], 0, width=prop.GetPointSize())
+    yield _body(plain, plain.lines.reshape(-1, 3)[:, 1:], plain.n_verts, width=width)
+    edges = surface.extract_all_edges()
+    ends = edges.lines.reshape(-1, 3)[:, 1:]
     if style == "Wireframe":
-        yield _body(faces, _edges(polys), width=width)
+        yield _body(edges, ends, 0, width=width)
         return
-    if not len(polys[0]):
-        return
-    triangles = faces.triangulate()
-    ids, _, owners = _cells(triangles, "Polys")
     light = {"ambient": prop.GetAmbient(), "diffuse": prop.GetDiffuse()}
-    corners = (*ids.reshape(-1, 3).T, owners[::3])
-    yield _body(triangles, corners, **(light if prop.GetLighting() else {}))
-    if prop.GetEdgeVisibility():
-        yield _body(faces, _edges(polys), width=width, colour=prop.GetEdgeColor())
-
-
-#: Points of all cells in a row, the first of each cell, and the cell of each point.
-Cells = tuple[Indices, Indices, Indices]
-
-
-def _cells(mesh: pv.PolyData, kind: str) -> Cells:
-    """Return the cells of a kind, numbered as in arrays of cell data."""
-    before = {"Verts": 0, "Lines": mesh.n_verts, "Polys": mesh.n_verts + mesh.n_lines}[kind]
-    cells = getattr(mesh, f"Get{kind}")()
-    ids, starts = (
-        np.asarray(pv.convert_array(array), dtype=np.int64)
-        for array in (cells.GetConnectivityArray(), cells.GetOffsetsArray())
+    first = plain.n_verts + plain.n_lines
+    yield _body(
+        plain, plain.regular_faces.reshape(-1, 3), first, **(light if prop.GetLighting() else {})
     )
-    return ids, starts, np.repeat(np.arange(len(starts) - 1) + before, np.diff(starts))
+    if prop.GetEdgeVisibility():
+        yield _body(edges, ends, 0, width=width, colour=prop.GetEdgeColor())
 
 
-def _pieces(lines: Cells) -> Cells:
-    """Return both ends of the pieces of lines, and their cells."""
-    ids, _, owners = lines
-    is_joined = owners[:-1] == owners[1:]
-    return ids[:-1][is_joined], ids[1:][is_joined], owners[:-1][is_joined]
-
-
-def _edges(polygons: Cells) -> Cells:
-    """Return both ends of the edges of polygons, each once, and one of its cells."""
-    ids, starts, owners = polygons
-    after = np.arange(1, len(ids) + 1)
-    after[starts[1:] - 1] = starts[:-1]
-    ends = np.sort(np.stack([ids, ids[after]], axis=1), axis=1)
-    ends, first = np.unique(ends, axis=0, return_index=True)
-    return ends[:, 0], ends[:, 1], owners[first]
-
-
-def _body(
-    mesh: pv.PolyData, corners: tuple[Indices, ...], colour: Any = None, **look: float
-) -> Body:
-    """Return triangles or pieces of lines by corners and cells, apart if cells have colours."""
-    ends, owners = corners[:-1], corners[-1]
-    cells, points = np.stack(ends, axis=1), np.asarray(mesh.points, dtype=float)
-    normals = mesh.point_data.active_normals
+def _body(mesh: pv.PolyData, cells: Indices, first: int, colour: Any = None, **look: float) -> Body:
+    """Return triangles or pieces of lines from a first cell on, apart if cells have colours."""
+    count, normals = cells.shape[1], mesh.point_data.active_normals
     if COLOURS in mesh.cell_data:
-        colours = np.repeat(np.asarray(mesh.cell_data[COLOURS])[owners], cells.shape[1], axis=0)
-        used = cells.ravel()
+        own = np.asarray(mesh.cell_data[COLOURS])[first : first + len(cells)]
+        colours, used = np.repeat(own, count, axis=0), cells.ravel()
         cells = np.arange(cells.size).reshape(cells.shape)
     else:
         used, numbers = np.unique(cells, return_inverse=True)
         cells, colours = numbers.reshape(cells.shape), mesh.point_data[COLOURS][used]
     if colour is not None:
         colours = np.concatenate([np.tile(_bytes(colour), (len(used), 1)), colours[:, 3:]], axis=1)
-    is_face = len(ends) == 3
-    faces, pieces = (np.zeros((0, k), np.intp) for k in (3, 2))
+    faces, pieces = (cells if count == k else np.zeros((0, k), np.intp) for k in (3, 2))
     return Body(
-        points[used],
+        np.asarray(mesh.points, dtype=float)[used],
         np.asarray(colours),
-        cells if is_face else faces,
-        pieces if is_face else cells,
+        faces,
+        pieces,
         normals=None if normals is None else np.asarray(normals, dtype=float)[used],
         **look,
     )

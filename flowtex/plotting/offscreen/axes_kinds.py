@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator
+from matplotlib.transforms import Affine2D
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Floats
@@ -50,56 +51,40 @@ STRETCH_STEP = 0.5
 DegreeText = Callable[..., str]
 
 
-@dataclass(frozen=True)
-class AxesUnit:
-    """Unit of axes: a position of the map is ``scale * value + offset``, of x and y."""
-
-    scale: tuple[float, float] = (1.0, 1.0)
-    offset: tuple[float, float] = (0.0, 0.0)
-
-    def on_map(self, values: Floats) -> Floats:
-        """Return positions (..., 2) on the map of values of the axes."""
-        return np.asarray(values * np.array(self.scale) + self.offset)
-
-    def on_axes(self, positions: Floats) -> Floats:
-        """Return values (..., 2) of the axes of positions on the map."""
-        return np.asarray((np.asarray(positions) - self.offset) / self.scale)
-
-
 def is_geo(ax: Axes) -> bool:
     """Return whether axes are cartopy's."""
     return hasattr(ax, "projection") and hasattr(ax.projection, "proj4_init")
 
 
-def projection_of_axes(ax: Any) -> tuple[str, AxesUnit]:
-    """Return the projection of cartopy's axes, as PROJ takes it, and their unit.
+def projection_of_axes(ax: Any) -> tuple[str, Affine2D]:
+    """Return the projection of cartopy's axes, as PROJ takes it, and their :func:`unit_of`.
 
     Axes in degrees show a plate carrée in metres.
     """
     text = str(ax.projection.proj4_init)
     if ax.projection.is_projected:
-        return text, AxesUnit()
+        return text, Affine2D()
     middle = re.search(r"\+pm=(\S+)", text)
     text = re.sub(r"\+(pm|a|ellps|to_meter)=\S+ ?", "", text)
     text = re.sub(r"proj=lat ?long?|proj=longlat", "proj=eqc", text)
     if middle:
         text += f" +lon_0={middle[1]}"
-    return f"{text} +R={EARTH_RADIUS:.12g}", AxesUnit((DEGREE, DEGREE))
+    return f"{text} +R={EARTH_RADIUS:.12g}", Affine2D().scale(DEGREE)
 
 
-def unit_of(projection: Projection | None) -> AxesUnit:
-    """Return the unit of straight axes: degrees on a plate carrée, else that of the data."""
+def unit_of(projection: Projection | None) -> Affine2D:
+    """Return the transform from straight axes, in degrees on a plate carrée, to the data."""
     if projection is None or projection.name != "platecarree":
-        return AxesUnit()
+        return Affine2D()
     lon, standard = projection.center
-    scale = DEGREE * math.cos(math.radians(standard)), DEGREE
-    return AxesUnit(scale, (-lon * scale[0], 0.0))
+    scale = DEGREE * math.cos(math.radians(standard))
+    return Affine2D().scale(scale, DEGREE).translate(-lon * scale, 0.0)
 
 
-def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
+def label_degrees(ax: Axes, projection: Projection) -> None:
     """Give straight axes ticks in degrees: of a map, where its graticule meets their border."""
     for number, axis in enumerate((ax.xaxis, ax.yaxis)):
-        if unit == AxesUnit():
+        if projection.name != "platecarree":
             border = _Border(ax, projection, number)
             axis.set_major_locator(border)
             axis.set_major_formatter(FuncFormatter(border.text))

@@ -7,13 +7,14 @@ Pillow takes all pictures at once, so they wait in a temporary file on the disk.
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -23,17 +24,12 @@ from flowtex._util.progress import Stopped
 from flowtex._util.whole_file import WholeFile
 from flowtex.errors import FieldError, install_extra
 
-if TYPE_CHECKING:
-    from PIL import Image
-
 Size = tuple[int, int]
 
 #: Suffixes of the files that can be written.
 FORMATS = (".mp4", ".gif", ".webp")
 #: Quality where none is requested.
 DEFAULT_QUALITY = 80
-#: Longest side of a picture, in pixels.
-LONGEST_SIDE_PIXELS = 16_384
 #: Pixels of a picture at the highest level of H.264.
 MP4_MAX_PIXELS = 139_264 * 256
 #: Matrix and primaries of BT.709, a number of ITU-T H.273 as those below.
@@ -72,8 +68,8 @@ def default_fps(path: str | Path) -> float:
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
     """Check that a movie can be written, before anything is drawn.
 
-    The parameters are those of :class:`MovieWriter`. Raises a MovieError with the remedy, and for
-    an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
+    Drawing checks the length of the sides and the frames per second. Raises a MovieError with the
+    remedy, and for an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
     """
     path = checked_target(path)
     suffix = path.suffix.lower()
@@ -84,9 +80,7 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
         msg = f"{path}: {why}; expected {', '.join(FORMATS)}"
     elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
-    elif not (is_number(fps) and fps > 0):
-        msg = f"fps is {fps!r}; expected a positive number of frames per second, such as 30"
-    elif suffix == ".gif" and fps > GIF_MAX_FPS:
+    elif suffix == ".gif" and is_number(fps) and fps > GIF_MAX_FPS:
         msg = (
             f"fps is {fps:g}; a GIF can show at most {GIF_MAX_FPS:g} frames per second; write an "
             "MP4 for more"
@@ -95,8 +89,6 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
         msg = f"{shown}; an MP4 needs even sides, such as {width // 2 * 2} x {height // 2 * 2}"
     elif suffix == ".mp4" and width * height > MP4_MAX_PIXELS:
         msg = f"{shown}; an MP4 can have at most {MP4_MAX_PIXELS:,} pixels: choose a smaller size"
-    elif not all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
-        msg = f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
     else:
         if suffix == ".mp4":
             _pyav()
@@ -132,11 +124,11 @@ class MovieWriter:
 
     def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:
         check_movie(path, size, fps, quality)
-        self._size = size
-        self._file = WholeFile(Path(path))
-        kind = _MP4 if self._file.part.suffix.lower() == ".mp4" else _Pillow
+        self._size, self._file = size, WholeFile(Path(path))
+        encode = _encode_mp4 if self._file.part.suffix.lower() == ".mp4" else _encode_by_pillow
+        self._encoder = encode(self._file, size, fps, quality)
         try:
-            self._encoder = kind(self._file, size, fps, quality)
+            next(self._encoder)
         except BaseException:
             self._file.drop()
             raise
@@ -152,15 +144,15 @@ class MovieWriter:
             raise MovieError(
                 f"a picture is {width} x {height}; expected {expected}, the size of the movie"
             )
-        self._encoder.add(np.ascontiguousarray(picture))
+        self._encoder.send(np.ascontiguousarray(picture))
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
         """Complete the file, and put it in its place.
 
         Raises :class:`Stopped` when ``cancelled()`` became true before.
         """
-        self._encoder.finish(cancelled)
-        self._encoder.close()
+        with suppress(StopIteration):
+            self._encoder.send(cancelled)
         if cancelled():
             raise Stopped
         self._file.keep()
@@ -174,107 +166,85 @@ class MovieWriter:
             self._file.drop()
 
 
-class _MP4:
-    """Writes H.264 with PyAV."""
+#: Takes pictures, and at the end the function that tells whether it is cancelled.
+Encoder = Generator[None, Bytes | Callable[[], bool], None]
 
-    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
-        av = _pyav()
-        from av.video.reformatter import Interpolation
 
-        self._frame_of = av.VideoFrame.from_ndarray
-        self._colours = {
-            "format": "yuv420p",
-            "src_color_range": "JPEG",
-            "dst_color_range": "MPEG",
-            "dst_colorspace": "ITU709",
-            "interpolation": Interpolation.AREA | Interpolation.ACCURATE_RND,
-        }
-        self._movie = av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"})
-        self.close = self._movie.close
-        # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
-        factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
-        rate = Fraction(fps).limit_denominator(1001)
-        self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
-        self._stream.width, self._stream.height = size
-        self._stream.pix_fmt = "yuv420p"
-        codec = self._stream.codec_context
+def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:
+    """Write H.264 with PyAV."""
+    av = _pyav()
+    from av.video.reformatter import Interpolation
+
+    colours = {
+        "format": "yuv420p",
+        "src_color_range": "JPEG",
+        "dst_color_range": "MPEG",
+        "dst_colorspace": "ITU709",
+        "interpolation": Interpolation.AREA | Interpolation.ACCURATE_RND,
+    }
+    # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
+    factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
+    rate = Fraction(fps).limit_denominator(1001)
+    with av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"}) as movie:
+        stream = movie.add_stream("libx264", rate=rate, options=factor)
+        (stream.width, stream.height), stream.pix_fmt = size, "yuv420p"
+        codec = stream.codec_context
         codec.colorspace, codec.color_primaries = BT709, BT709
         codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
-
-    def add(self, picture: Bytes) -> None:
-        frame = self._frame_of(picture, format="rgb24").reformat(**self._colours)
-        self._movie.mux(self._stream.encode(frame))
-
-    def finish(self, _cancelled: Callable[[], bool]) -> None:
-        self._movie.mux(self._stream.encode(None))
+        while isinstance(picture := (yield), np.ndarray):
+            frame = av.VideoFrame.from_ndarray(picture, format="rgb24").reformat(**colours)
+            movie.mux(stream.encode(frame))
+        movie.mux(stream.encode(None))
 
 
-class _Pillow:
-    """Keeps pictures on the disk until Pillow writes them, those of a GIF by one palette."""
+def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:
+    """Keep pictures on the disk until Pillow writes them, those of a GIF by one palette."""
+    from PIL import Image
 
-    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
-        self._file, self._size, self._fps, self._quality = new.file, size, fps, quality
-        self._format = new.part.suffix[1:].upper()
-        self._count = 0
-        self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
-        self.close = self._spool.close
+    kind, plain = new.part.suffix[1:].upper(), Image.Dither.NONE
+    shape = (size[1], size[0], 3)
+    most = 3 * PILLOW_MAX_PIXELS // math.prod(shape)
+    with tempfile.TemporaryFile() as spool:
+        count = 0
+        while isinstance(picture := (yield), np.ndarray):
+            count += 1
+            if count > most:
+                raise MovieError(
+                    f"a {kind} can have at most {PILLOW_MAX_PIXELS:,} pixels in all; write an MP4, "
+                    "or a smaller movie"
+                )
+            spool.write(picture.data)
+        spool.flush()
+        cancelled: Callable[[], bool] = picture
+        kept = np.memmap(spool, np.uint8, "r", shape=(count, *shape))
+        palette = None
+        if kind == "GIF":  # one palette for pictures from the whole movie
+            chosen = np.linspace(0, count - 1, min(count, PALETTE_PICTURES)).round().astype(int)
+            step = max(min(size) // PALETTE_SIDE, 1)
+            samples = Image.fromarray(np.vstack([kept[n, ::step, ::step] for n in chosen]))
+            colours = max(round(256 * quality / 100), 2)
+            palette = samples.quantize(colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=plain)
 
-    def add(self, picture: Bytes) -> None:
-        self._count += 1
-        if self._count * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
-            most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
-            raise MovieError(
-                f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
-            )
-        self._spool.write(picture.data)
+        def pictures() -> Iterator[Image.Image]:
+            for picture in kept:
+                if cancelled():
+                    raise Stopped
+                image = Image.fromarray(picture)
+                yield image if palette is None else image.quantize(palette=palette, dither=plain)
 
-    def finish(self, cancelled: Callable[[], bool]) -> None:
-        palette = self._palette() if self._format == "GIF" else None
         # A GIF counts in hundredths of a second, a WebP in thousandths.
-        unit = 1 if palette is None else 10
-        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
+        unit, images = 1 if palette is None else 10, pictures()
+        ends = [round(1000 * n / fps / unit) * unit for n in range(count + 1)]
         durations = [after - before for before, after in pairwise(ends)]
-        options = {"quality": self._quality, "method": 2, "optimize": False, "disposal": 1}
-        pictures = self._pictures(palette, cancelled)
-        next(pictures).save(
-            self._file,
-            self._format,
+        options = {"quality": quality, "method": 2, "optimize": False, "disposal": 1}
+        next(images).save(
+            new.file,
+            kind,
             save_all=True,
-            append_images=pictures,
-            duration=durations if len(durations) > 1 else durations[0],
+            append_images=images,
+            duration=durations if count > 1 else durations[0],
             loop=0,
             **options,
-        )
-
-    def _pictures(
-        self, palette: Image.Image | None, cancelled: Callable[[], bool]
-    ) -> Iterator[Image.Image]:
-        from PIL import Image
-
-        plain = Image.Dither.NONE
-        for number in range(self._count):
-            if cancelled():
-                raise Stopped
-            picture = self._picture(number)
-            yield picture if palette is None else picture.quantize(palette=palette, dither=plain)
-
-    def _picture(self, number: int) -> Image.Image:
-        from PIL import Image
-
-        width, height = self._size
-        self._spool.seek(number * width * height * 3)
-        return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
-
-    def _palette(self) -> Image.Image:
-        """Return an image with one palette for pictures from the whole movie."""
-        from PIL import Image
-
-        chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
-        step = max(min(self._size) // PALETTE_SIDE, 1)
-        samples = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
-        colours = max(round(256 * self._quality / 100), 2)
-        return Image.fromarray(np.vstack(samples)).quantize(
-            colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
         )
 
 

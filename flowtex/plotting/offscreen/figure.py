@@ -15,6 +15,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.transforms import Affine2D
 from PIL import Image
 
 from flowtex._util.arguments import brief, checked_size, sized
@@ -26,7 +27,6 @@ from flowtex.field.dates import time_text
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (
     AxesScales,
-    AxesUnit,
     is_geo,
     label_degrees,
     projection_of_axes,
@@ -270,7 +270,7 @@ class FlowImage(AxesImage):
     _changes = 0  #: Number of changes of the norm and the colour map.
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
-        self._unit = AxesUnit()
+        self._unit = Affine2D()
         if is_geo(ax):
             name, self._unit = projection_of_axes(ax)
             options = _in_projection(mesh, options, name)
@@ -295,7 +295,7 @@ class FlowImage(AxesImage):
         self._shown: tuple[object, ...] = ()
         self._picture = np.zeros((1, 1, 4), np.uint8)
         middle, half = frame @ surface.center, surface.plane_size / 2
-        corners = self._unit.on_axes(np.stack([middle - half, middle + half]))
+        corners = self._unit.inverted().transform([middle - half, middle + half])
         if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
             corners = AxesScales(ax, framed=False).extent(self._flow, frame)
         (left, bottom), (right, top) = corners.tolist()
@@ -410,10 +410,10 @@ class FlowImage(AxesImage):
             ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
         if is_geo(ax) or self._scales is not None or section is not None:
             return
-        across, up = self._unit.scale
+        across, up, _ = self._unit.get_matrix().diagonal()
         ax.set_aspect(up / across)
         if self._projection is not None:
-            label_degrees(ax, self._projection, self._unit)
+            label_degrees(ax, self._projection)
 
     def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""
@@ -450,7 +450,7 @@ class FlowImage(AxesImage):
         high = np.ceil(np.multiply(box.max, magnification))
         pixels = np.stack([low, high]) / magnification
         if self._scales is None:
-            corners = self._unit.on_map(self.axes.transData.inverted().transform(pixels))
+            corners = self._unit.transform(self.axes.transData.inverted().transform(pixels))
         else:
             corners = self._scales.shown(pixels)
         width, height = (int(n) for n in np.maximum(high - low, 1))

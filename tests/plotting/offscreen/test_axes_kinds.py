@@ -150,7 +150,7 @@ def test_directions_on_maps_of_cartopy_are_those_that_it_computes(
     valid = field.surface.valid
     lon, lat = field.projection.lonlat(field.points[valid])
     east, north = field.projection.components(lon, lat, np.asarray(field.velocity[0])[valid])
-    place = unit.on_axes(field.points[valid][:, :2])
+    place = unit.inverted().transform(field.points[valid][:, :2])
     theirs = ax.projection.transform_points(crs.PlateCarree(), lon, lat)[:, :2]
     beside = np.abs(theirs - place).max(axis=1) < 1e-6 * np.ptp(ax.get_xlim())
     beside &= np.abs(lat) < 80  # where cartopy, too, takes differences
