@@ -236,6 +236,6 @@ def test_a_limit_that_the_system_refuses_is_none(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(resource, "setrlimit", refuse)
     monkeypatch.setattr(os, "dup2", lambda *_: None)
     monkeypatch.setattr("flowtex._util.child.worker.OOM_SCORE", "none")
-    settle(100 * MB, lasting=False)
+    settle(100 * MB, prints=False)
     (_, (soft, _)) = asked[1]
     assert soft > 100 * MB

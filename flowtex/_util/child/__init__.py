@@ -1,19 +1,17 @@
 """Work in a separate process, which may die without taking anything along.
 
 A :class:`Child` is such a process as its parent sees it: requests with a time limit, and an error
-at once when it ends. It is forked, within milliseconds, from a process that has loaded libraries.
-That has one thread, unlike the process that asks for children. It holds one end of a pipe for each
-child: it writes the status of one that has ended, and kills one that does not end soon after its
-pipe was closed. So no child outlives the process that requested it, in whatever way that ends.
+at once when it ends. It is forked, within milliseconds, from a process that has loaded libraries
+and has one thread, unlike the process that asks for children. A guard between them holds one end of
+a pipe: it writes the status of a child that has ended, and kills one that does not end soon after
+the pipe was closed. So no child outlives the process that requested it, however that ends.
 """
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import itertools
 import json
-import math
 import os
 import select
 import signal
@@ -63,8 +61,6 @@ PIPE_BYTES = 1 << 20
 REQUEST_BYTES = 65_536
 #: Bytes of a status.
 STATUS_BYTES = 4
-#: Option of Linux's prctl that ends a process with its parent.
-PR_SET_PDEATHSIG = 1
 #: Seconds that a child has to end by itself.
 ENDING_S = 1.0
 
@@ -110,9 +106,8 @@ class Child:
     however that ends. ``entry`` is the ``"module:name"`` of a function without arguments that
     returns the handler of requests, which takes a value of JSON and returns one with a list of
     arrays. A forked child has the modules ``preload`` at once. ``memory`` is its limit in bytes, by
-    default a share of the available memory; macOS and Windows have no such limit. A ``lasting``
-    child continues when the process that it was forked from dies, and has the standard error of
-    this process.
+    default a share of the available memory; macOS and Windows have no such limit. A child that
+    ``prints`` has the standard error of this process.
     """
 
     def __init__(
@@ -122,12 +117,12 @@ class Child:
         preload: tuple[str, ...] = (),
         memory: int | None = None,
         forks: bool = FORKS,
-        lasting: bool = False,
+        prints: bool = False,
     ) -> None:
         #: Bytes that it may take.
         self.memory = int(MEMORY_SHARE * available_bytes()) if memory is None else memory
         start = _forked if forks else _spawned
-        self._process = start(entry, self.memory, preload, lasting)
+        self._process = start(entry, self.memory, preload, prints)
         self._answers: SimpleQueue[_Received] = SimpleQueue()
         self._asking, self._writing = threading.Lock(), threading.Lock()
         self._numbers = itertools.count(1)
@@ -248,18 +243,18 @@ def _ending(status: int | None) -> str:
         return f"crashed (signal {-status})"
 
 
-def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
+def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> _Process:  # noqa: FBT001
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
     with suppress(OSError):  # fewer switches between the processes, where this size is allowed
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+    text = json.dumps({"entry": entry, "memory": memory, "prints": prints}).encode()
     server = fork_server(preload)
     try:
         try:
-            server.start(entry, memory, pipes, lasting=lasting)
-        except OSError:  # it has died since
-            server = fork_server(preload)
-            server.start(entry, memory, pipes, lasting=lasting)
+            socket.send_fds(server.control, [text], pipes)
+        except OSError:
+            socket.send_fds(fork_server(preload, dead=server).control, [text], pipes)
     finally:
         for pipe in pipes:
             os.close(pipe)
@@ -268,23 +263,22 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
     def exit_status() -> int | None:
         with suppress(OSError, ValueError):
             if select.select([status_end], [], [], STATUS_WAIT_S)[0]:
-                if code := status_end.read(STATUS_BYTES):
-                    return int.from_bytes(code, "big", signed=True)
-                server.lost = True  # it has died, or is dying
+                code = status_end.read(STATUS_BYTES)
+                return int.from_bytes(code, "big", signed=True) if code else None
         return None
 
-    # The fork server ends a child whose pipe is closed.
+    # The guard ends a child whose pipe is closed.
     return _Process(
         os.fdopen(requests[1], "wb"), os.fdopen(answers[0], "rb"), exit_status, status_end.close
     )
 
 
-def _spawned(entry: str, memory: int, _preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
+def _spawned(entry: str, memory: int, _preload: tuple[str, ...], prints: bool) -> _Process:  # noqa: FBT001
     process = subprocess.Popen(
-        command(spawned, entry=entry, memory=memory, lasting=lasting),
+        command(spawned, entry=entry, memory=memory, prints=prints),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        stderr=None if lasting else subprocess.DEVNULL,
+        stderr=None if prints else subprocess.DEVNULL,
         start_new_session=True,
     )
     requests, answers = process.stdin, process.stdout
@@ -299,12 +293,12 @@ def _spawned(entry: str, memory: int, _preload: tuple[str, ...], lasting: bool) 
 
 
 class ForkServer:
-    """The process with modules loaded that is forked, as the process that uses it sees it."""
+    """The process with modules loaded that is forked, and the socket for requests to it."""
 
     def __init__(self, preload: tuple[str, ...]) -> None:
-        self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         # A separate session: Ctrl-C in the terminal is for the process that asks.
-        self._process = subprocess.Popen(
+        process = subprocess.Popen(
             command(main, control=other.fileno(), preload=preload),
             pass_fds=[other.fileno()],
             stdin=subprocess.DEVNULL,
@@ -314,143 +308,73 @@ class ForkServer:
             env={"OPENBLAS_NUM_THREADS": "1", **os.environ},
         )
         other.close()
-        self._owner = os.getpid()
-        #: Whether it has died, as a failed request has shown.
-        self.lost = False
-        self.close = weakref.finalize(self, _close, self._control, self._process, self._owner)
-
-    @property
-    def alive(self) -> bool:
-        """Whether it runs, as far as is known; a fork of its owner may also use it."""
-        owned = self._owner == os.getpid()
-        return not self.lost and (not owned or self._process.poll() is None)
-
-    def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, lasting: bool) -> None:
-        """Fork a child with pipes for requests, answers and its status."""
-        text = json.dumps({"entry": entry, "memory": memory, "lasting": lasting}).encode()
-        try:
-            socket.send_fds(self._control, [text], list(pipes))
-        except OSError:
-            self.lost = True
-            raise
+        self.close = weakref.finalize(self, _close, self.control, process, os.getpid())
 
 
 def _close(control: socket.socket, process: subprocess.Popen[bytes], owner: int) -> None:
     control.close()
-    if os.getpid() == owner:
-        process.kill()  # it may be loading libraries; its children end with it
+    if os.getpid() == owner:  # and not a fork of it
+        process.kill()
         process.wait()
 
 
-def fork_server(preload: tuple[str, ...]) -> ForkServer:
-    """Return the server that has loaded these modules, started if necessary.
+def fork_server(preload: tuple[str, ...], dead: ForkServer | None = None) -> ForkServer:
+    """Return the server that has loaded these modules, another one than one that is ``dead``.
 
     Called early, it loads them in the background for children that will be started.
     """
     with _lock:
         server = _servers.get(preload)
-        if server is None or not server.alive:
+        if server is None or server is dead:
             server = _servers[preload] = ForkServer(preload)
         return server
 
 
 def main(control: int, preload: list[str]) -> NoReturn:
     """Load modules, or call ``"module:function"``, and fork children until the socket is closed."""
-    server = _Server(socket.socket(fileno=control))
     for entry in preload:
         module, _, function = entry.partition(":")
         with suppress(Exception):
             loaded = import_module(module)
             if function:
                 getattr(loaded, function)()
-        server.run(once=True)
     # Collections do not touch, and so copy, what children share.
     gc.collect()
     gc.freeze()
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for guards
+    requests = socket.socket(fileno=control)
     while True:
-        server.run()
-
-
-class _Server:
-    """The forking process itself."""
-
-    def __init__(self, control: socket.socket) -> None:
-        self._control = control
-        self._wakes, wakes = os.pipe()
-        os.set_blocking(wakes, False)
-        signal.set_wakeup_fd(wakes)
-        signal.signal(signal.SIGCHLD, lambda *_: None)
-        #: Pipes of the children's status, by their numbers, and when those that end are killed.
-        self._children: dict[int, int] = {}
-        self._ending: dict[int, float] = {}
-
-    def run(self, *, once: bool = False) -> None:
-        """Wait for a request or the end of a child, or with ``once`` not at all, and handle it."""
-        poll = select.poll()
-        poll.register(self._control, select.POLLIN)
-        poll.register(self._wakes, select.POLLIN)
-        for pid, status in self._children.items():
-            if pid not in self._ending:
-                poll.register(status, 0)  # reports when the other end is closed
-        soonest = min(self._ending.values(), default=math.inf) - time.monotonic()
-        wait = None if soonest == math.inf else 1000 * max(soonest, 0.0)
-        ready = dict(poll.poll(0 if once else wait))
-        if self._wakes in ready:
-            os.read(self._wakes, REQUEST_BYTES)
-            self._reap()
-        now = time.monotonic()
-        for pid, status in self._children.items():
-            if status in ready:
-                # Its other pipe is closed too, so it removes its temporary folders, and ends.
-                self._ending[pid] = now + ENDING_S
-            elif now >= self._ending.get(pid, math.inf):
-                os.kill(pid, signal.SIGKILL)
-                self._ending[pid] = math.inf
-        if self._control.fileno() in ready:
-            self._answer()
-
-    def _reap(self) -> None:
-        for pid in list(self._children):
-            done, status = os.waitpid(pid, os.WNOHANG)
-            if done:
-                pipe = self._children.pop(pid)
-                self._ending.pop(pid, None)
-                code = os.waitstatus_to_exitcode(status)
-                with suppress(OSError):
-                    os.write(pipe, code.to_bytes(STATUS_BYTES, "big", signed=True))
-                os.close(pipe)
-
-    def _answer(self) -> None:
-        text, pipes, _, _ = socket.recv_fds(self._control, REQUEST_BYTES, 3)
+        text, pipes, _, _ = socket.recv_fds(requests, REQUEST_BYTES, 3)
         if not text:
-            end = time.monotonic() + ENDING_S
-            while self._children and time.monotonic() < end:
-                self._reap()
-                time.sleep(ENDING_S / 100)
-            for pid in self._children:
-                os.kill(pid, signal.SIGKILL)
             os._exit(0)
-        reads, writes, status = pipes
-        if (pid := os.fork()) == 0:
-            self._become_child(json.loads(text), reads, writes, status)
-        self._children[pid] = status
-        os.close(reads)
-        os.close(writes)
+        if os.fork() == 0:
+            try:
+                requests.close()
+                _guard(json.loads(text), *pipes)
+            finally:
+                os._exit(1)
+        for pipe in pipes:
+            os.close(pipe)
 
-    def _become_child(
-        self, start: dict[str, Any], reads: int, writes: int, status: int
-    ) -> NoReturn:
-        code = 1
-        try:
-            if not start["lasting"]:
-                ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-            signal.set_wakeup_fd(-1)
-            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            self._control.close()
-            for pipe in (self._wakes, status, *self._children.values()):
-                os.close(pipe)
-            settle(start["memory"], lasting=start["lasting"])
-            serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
-            code = 0
-        finally:
-            os._exit(code)
+
+def _guard(start: dict[str, Any], reads: int, writes: int, status: int) -> None:
+    """Fork a child, end it soon after the other end of the pipe of its status, and write that."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    ended, alive = os.pipe()
+    if (pid := os.fork()) == 0:
+        os.close(ended)
+        os.close(status)
+        settle(start["memory"], prints=start["prints"])
+        serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
+    for pipe in (reads, writes, alive):
+        os.close(pipe)
+    poll = select.poll()
+    for pipe in (ended, status):
+        poll.register(pipe, 0)  # reports when the other end is closed
+    if (ended, select.POLLHUP) not in poll.poll():
+        # Its other pipes are closed too, so it removes its temporary folders, and ends.
+        poll.unregister(status)
+        if not poll.poll(1000 * ENDING_S):
+            os.kill(pid, signal.SIGKILL)
+    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    os.write(status, code.to_bytes(STATUS_BYTES, "big", signed=True))

@@ -53,17 +53,17 @@ def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
     return [sys.executable, "-I", "-c", _PROGRAM, start]
 
 
-def spawned(entry: str, memory: int, lasting: bool) -> None:  # noqa: FBT001 by name alone
+def spawned(entry: str, memory: int, prints: bool) -> None:  # noqa: FBT001 by name alone
     """Answer the requests that come on the standard input, in a separate process."""
     reads, writes = os.dup(0), os.dup(1)
-    settle(memory, lasting=lasting)
+    settle(memory, prints=prints)
     serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
 
 
-def settle(memory: int, *, lasting: bool) -> None:
-    """Limit memory, and let the system end it first; only ``lasting`` processes print errors."""
+def settle(memory: int, *, prints: bool) -> None:
+    """Limit memory, and let the system end it first; drop output unless it ``prints``."""
     device = os.open(os.devnull, os.O_RDWR)
-    for standard in (0, 1) if lasting else (0, 1, 2):  # output of C libraries is dropped
+    for standard in (0, 1) if prints else (0, 1, 2):  # output of C libraries is dropped
         os.dup2(device, standard)
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="utf-8")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, reduce
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,15 +14,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.formula.grammar import (
-    FUNCTIONS,
-    MOST_DEPTH,
-    FormulaError,
-    Tree,
-    Values,
-    evaluate,
-    parse,
-)
+from flowtex.field.formula.grammar import FormulaError, Tree, Values, evaluate, parse
 
 __all__ = ["Formula", "FormulaError", "Parameter"]
 
@@ -47,17 +39,6 @@ SURFACES: Mapping[str, tuple[tuple[str, str, str], Mapping[str, tuple[float, flo
     "cylinder": (("cos(u)", "sin(u)", "v"), {"u": _TURN, "v": (-1.5, 1.5)}),
 }
 COMPONENTS = 3  #: Components of a velocity in space.
-#: Operations for classes of sympy with other names.
-_NAMES = {
-    "Add": "+",
-    "Mul": "*",
-    "Pow": "^",
-    "StrictLessThan": "<",
-    "StrictGreaterThan": ">",
-    "LessThan": "<=",
-    "GreaterThan": ">=",
-    "ceiling": "ceil",
-}
 #: Derivatives of operations by their arguments a and b. Those of steps are zero between these.
 _RULES: Mapping[str, tuple[str, ...]] = {
     "neg": ("-1",),
@@ -133,10 +114,8 @@ class Expression:
     @classmethod
     def of(cls, source: Any, names: tuple[str, ...]) -> Expression:
         """Read a text, a number, an expression of sympy's or a function of some of the names."""
-        if isinstance(source, str) or is_number(source):
+        if isinstance(source, str) or is_number(source) or hasattr(source, "free_symbols"):
             tree = parse(str(source), names)
-        elif type(source).__module__.startswith("sympy.") and hasattr(source, "args"):
-            tree = tree_of(source, names)
         elif callable(source):
             return cls._function(source, names)
         else:
@@ -315,50 +294,6 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
             f"{name} is {ends!r}; expected two numbers, the lower one first, such as (-7, 7)"
         )
     return low, high
-
-
-def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
-    """Return the tree of an expression of sympy's with these names.
-
-    Raises a FormulaError for operations that formulas do not have.
-    """
-    kind = type(expression).__name__
-    if depth > MOST_DEPTH:
-        raise FormulaError(f"{kind} is nested more than {MOST_DEPTH} levels deep; simplify it")
-    if kind in ("Symbol", "Dummy"):
-        if expression.name in names:
-            return str(expression.name)
-        listed = ", ".join(sorted(names))
-        raise FormulaError(
-            f"{expression.name} is unknown; known are {listed}. Give a parameter its value, as in "
-            f"{expression.name}=1"
-        )
-    if not expression.args:
-        try:
-            return float(expression)
-        except (TypeError, ValueError) as error:
-            raise FormulaError(
-                f"the sympy expression {expression} is not a real number; expected one"
-            ) from error
-    if kind == "Piecewise":
-        pairs = [(p.args[0], p.args[1]) for p in expression.args]
-        values = [tree_of(value, names, depth + 1) for value, _ in pairs]
-        last: Tree = float("nan")
-        for value, (_, holds) in zip(values[::-1], pairs[::-1], strict=True):
-            always = type(holds).__name__ == "BooleanTrue"
-            last = value if always else ("where", tree_of(holds, names, depth + 1), value, last)
-        return last
-    name = _NAMES.get(kind, kind.lower())
-    if name not in (*_NAMES.values(), *FUNCTIONS):
-        functions = ", ".join(FUNCTIONS)
-        raise FormulaError(
-            f"the sympy function {kind} is not allowed in a formula; expected + - * / ^ and "
-            f"{functions}"
-        )
-    arguments = [tree_of(part, names, depth + 1) for part in expression.args]
-    if name == "^":
-        return reduce(lambda base, power: (name, base, power), arguments)
-    return (name, *arguments)
 
 
 def derivative(tree: Tree, name: str) -> Tree:

@@ -1,15 +1,18 @@
-"""The language of formulas: tokens, a parser by binding powers, and values in NumPy.
+"""The language of formulas: trees from texts in Python's syntax, and their values in NumPy.
 
 A formula becomes a tree of plain Python: a number, a name, or a tuple of an operation and its
-arguments, such as ``("+", "x", ("*", 2.0, ("sin", "y")))``. The grammar makes nothing else, and
-nothing in it is run as code. The tree goes to the browser as JSON, where ``client/src/formula.ts``
-computes the same values.
+arguments, such as ``("+", "x", ("*", 2.0, ("sin", "y")))``. Other nodes of Python's parser are
+refused, and nothing is run as code. The tree goes to the browser as JSON, where
+``client/src/formula.ts`` computes the same values.
 """
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Collection, Mapping
+import sys
+import unicodedata
+from collections.abc import Callable, Collection, Mapping
 from functools import reduce
 from typing import Any, NoReturn
 
@@ -51,20 +54,14 @@ OPERATIONS: dict[str, tuple[Any, int | None]] = {
 FUNCTIONS = tuple(name for name in OPERATIONS if name.isalnum() and name != "neg")
 CONSTANTS = {"pi": np.pi, "e": np.e}  #: Named numbers.
 
-#: Binding power of each operator to its right.
-BINDING = {
-    **dict.fromkeys(("<", ">", "<=", ">="), 1),
-    **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
-}
-SIGN_BINDING = 4  #: Binding power of a sign, which is weaker than a power.
 MOST_LETTERS = 2000  #: Greatest length of a formula.
 MOST_DEPTH = 60  #: Greatest depth of nesting.
-_TOKEN = re.compile(
-    r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)"
-    r"|(?P<sign>\*\*|<=|>=|[-+*/^(),<>]))"
-)
+#: Operations by the classes of Python; a difference is the sum with a negative term.
+_SIGNS = {ast.Add: "+", ast.Sub: "+", ast.Mult: "*", ast.Div: "/", ast.Pow: "^"}
+_COMPARISONS = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">="}
+_FOREIGN = re.compile(r"[^\w.+*/(),<>= -]")  #: Characters that no formula has.
 #: Typographic signs.
-_PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*"})
+_PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*", "^": "**"})
 
 
 class FormulaError(FieldError):
@@ -84,7 +81,7 @@ def parse(text: str, names: Collection[str]) -> Tree:
 
     Raises a FormulaError for other texts, which points at the place.
     """
-    return _Parser(text, names).whole()
+    return _Reader(text, names).whole()
 
 
 def evaluate(tree: Tree, values: Values) -> Any:
@@ -98,138 +95,103 @@ def evaluate(tree: Tree, values: Values) -> Any:
     return function(*arguments) if count else reduce(function, arguments)
 
 
-class _Parser:
-    """A parser of one formula after Pratt: each operator has a binding power."""
+class _Reader:
+    """A reader of one formula, whose nodes come from the parser of Python."""
 
     def __init__(self, text: str, names: Collection[str]) -> None:
-        self.text = re.sub(r"\s", " ", text).translate(_PRINTED)
-        self.names = names
-        if len(text) > MOST_LETTERS:
-            raise FormulaError(
-                f"the formula has {len(text)} characters; expected {MOST_LETTERS} at most"
-            )
-        #: Kind, text and place of each token; the last one is the end.
-        self.tokens: list[tuple[str, str, int]] = []
-        at, end = 0, len(self.text.rstrip())
-        while at < end:
-            match = _TOKEN.match(self.text, at)
-            if match is None:
-                at += len(self.text[at:]) - len(self.text[at:].lstrip())
-                self.fail(f"{self.text[at]!r} is not allowed in a formula", at)
-            kind = str(match.lastgroup)
-            self.tokens.append((kind, match[kind], match.start(kind)))
-            at = match.end()
-        self.tokens.append(("end", "", end))
-        self.next = 0
-        self.depth = 0
-
-    def fail(self, problem: str, at: int | None = None) -> NoReturn:
-        at = self.tokens[self.next][2] if at is None else at
-        raise FormulaError(f"{problem}\n  {self.text}\n  {' ' * at}^")
-
-    def take(self) -> tuple[str, str, int]:
-        token = self.tokens[self.next]
-        self.next = min(self.next + 1, len(self.tokens) - 1)
-        return token
-
-    def expect(self, sign: str, instead: str) -> None:
-        kind, text, _ = self.tokens[self.next]
-        if text != sign:
-            problem = "the formula ends" if kind == "end" else f"here is {text!r}"
-            self.fail(f"{problem} and {instead}")
-        self.take()
+        self.text = re.sub(r"\s", " ", text).strip().translate(_PRINTED)
+        # Python reads different forms of a letter as one.
+        self.names = {unicodedata.normalize("NFKC", name): name for name in names}
 
     def whole(self) -> Tree:
-        tree = self.expression(0)
-        kind, text, _ = self.tokens[self.next]
-        if kind == "sign":
-            self.fail(f"{text!r} is unexpected here")
-        if kind != "end":
-            self.fail(f"an operator is missing before {text!r}; write * for a product")
-        return tree
+        if len(self.text) > MOST_LETTERS:
+            raise FormulaError(
+                f"the formula has {len(self.text)} characters; expected {MOST_LETTERS} at most"
+            )
+        if match := _FOREIGN.search(self.text):
+            self.fail(f"{match[0]!r} is not allowed in a formula", match.start())
+        try:
+            return self.tree(ast.parse(self.text, mode="eval").body)
+        except SyntaxError as error:
+            self.fail(
+                f"the formula cannot be read ({error.msg}); expected numbers and names with "
+                "+ - * / ^ between them",
+                max((error.offset or 1) - 1, 0),
+            )
+        except (MemoryError, RecursionError):
+            self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it", 0)
 
-    def expression(self, binding: int) -> Tree:
-        """Read as long as operators bind more tightly than ``binding``."""
-        self.depth += 1
-        if self.depth > MOST_DEPTH:
-            self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it")
-        left = self.operand()
-        while BINDING.get(self.tokens[self.next][1], 0) > binding:
-            left = self.operation(left)
-        self.depth -= 1
-        return left
+    def fail(self, problem: str, at: ast.expr | int) -> NoReturn:
+        if isinstance(at, ast.expr):  # whose place is in bytes
+            at = len(self.text.encode()[: at.col_offset].decode())
+        raise FormulaError(f"{problem}\n  {self.text}\n  {' ' * at}^")
 
-    def operation(self, left: Tree) -> Tree:
-        _, sign, at = self.take()
-        if BINDING[sign] == 1 and isinstance(left, tuple) and BINDING.get(left[0]) == 1:
-            self.fail("a comparison can have only two sides; write (a < b)*(b < c)", at)
-        is_power = BINDING[sign] == BINDING["^"]
-        right = self.expression(BINDING[sign] - is_power)
-        if sign == "-":
-            sign, right = "+", ("neg", right)
-        if sign in ("+", "*") and isinstance(left, tuple) and left[0] == sign:
-            return self.checked((*left, right), at)
-        return self.checked(("^" if is_power else sign, left, right), at)
+    def tree(self, node: ast.expr, depth: int = 1) -> Tree:
+        if depth > MOST_DEPTH:
+            raise RecursionError
 
-    def checked(self, tree: tuple[Any, ...], at: int) -> Tree:
-        """Return a tree; refuse one that is too deep, as from many operators in a row."""
-        if _depth(tree) > MOST_DEPTH:
-            self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it", at)
-        return tree
+        def inner(part: ast.expr) -> Tree:
+            return self.tree(part, depth + 1)
 
-    def operand(self) -> Tree:
-        kind, text, at = self.take()
-        match kind, text:
-            case "number", _:
-                value = float(text)
-                if np.isinf(value):
-                    self.fail(f"{text} is too large", at)
-                return value
-            case "name", _:
-                return self.named(text, at)
-            case _, "+":
-                return self.expression(SIGN_BINDING)
-            case _, "-":
-                return self.checked(("neg", self.expression(SIGN_BINDING)), at)
-            case _, "(":
-                tree = self.expression(0)
-                self.expect(")", 'a ")" is missing')
-                return tree
-        problem = "the formula ends" if kind == "end" else f"here is {text!r}"
-        return self.fail(f"{problem} and a number, a name or a ( is missing", at)
+        match node:
+            case ast.Constant(value=int() | float() as number):
+                if number > sys.float_info.max:
+                    self.fail("the number is too large", node)
+                return float(number)
+            case ast.Name(id=name):
+                return self.named(name, node)
+            case ast.UnaryOp(op=ast.USub()):
+                return ("neg", inner(node.operand))
+            case ast.UnaryOp(op=ast.UAdd()):
+                return inner(node.operand)
+            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult()):
+                sign, parts = _SIGNS[type(node.op)], list[Tree]()
+                left: ast.expr = node
+                while isinstance(left, ast.BinOp) and _SIGNS.get(type(left.op)) == sign:
+                    part = inner(left.right)
+                    parts.append(("neg", part) if isinstance(left.op, ast.Sub) else part)
+                    left = left.left
+                return (sign, inner(left), *parts[::-1])
+            case ast.BinOp(op=ast.Div() | ast.Pow()):
+                return (_SIGNS[type(node.op)], inner(node.left), inner(node.right))
+            case ast.Compare(ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
+                return (_COMPARISONS[type(op)], inner(node.left), inner(right))
+            case ast.Call(func=ast.Name(id="Piecewise"), args=pairs):  # of sympy
+                result: Tree = float("nan")
+                for pair in reversed(pairs):
+                    match pair:
+                        case ast.Tuple(elts=[value, ast.Constant()]):
+                            result = inner(value)
+                        case ast.Tuple(elts=[value, holds]):
+                            result = ("where", inner(holds), inner(value), result)
+                return result
+            case ast.Call(func=ast.Name(id=name), keywords=[]):
+                return self.call(name, node, inner)
+        return self.fail("this is not allowed in a formula", node)
 
-    def named(self, name: str, at: int) -> Tree:
-        is_called = self.tokens[self.next][1] == "("
-        if name in self.names and not is_called:
-            return name
+    def named(self, name: str, node: ast.expr) -> Tree:
+        if name in self.names:
+            return self.names[name]
+        if name.lower() in CONSTANTS:
+            return CONSTANTS[name.lower()]
         if name in FUNCTIONS:
-            return self.call(name, at)
-        if is_called:
-            if name in (*self.names, *CONSTANTS):
-                self.fail(f"{name} is not a function; write {name}*( for a product", at)
-            self.fail(f"the function {name!r} does not exist; {near_names(name, FUNCTIONS)}", at)
-        if name in CONSTANTS:
-            return CONSTANTS[name]
+            self.fail(f"{name} is a function; write {name}(x)", node)
         if name == "t":
-            self.fail("t is the time; give times=, such as times=np.linspace(0, 10, 41)", at)
+            self.fail("t is the time; give times=, such as times=np.linspace(0, 10, 41)", node)
         names = ", ".join(sorted(self.names))
         return self.fail(
-            f"{name} is unknown; known are {names}. Give a parameter its value, as in {name}=1", at
+            f"{name} is unknown; known are {names}. Give a parameter its value, as in {name}=1",
+            node,
         )
 
-    def call(self, name: str, at: int) -> Tree:
-        count = OPERATIONS[name][1]
-        self.expect("(", f"{name} is a function; write {name}(x)")
-        arguments = [self.expression(0)]
-        while self.tokens[self.next][1] == ",":
-            self.take()
-            arguments.append(self.expression(0))
-        self.expect(")", f'a ")" of {name} is missing')
-        if len(arguments) != count if count else len(arguments) < 2:
-            expected = count or "two or more"
-            self.fail(f"{name} has {len(arguments)} arguments; expected {expected}", at)
-        return self.checked((name, *arguments), at)
-
-
-def _depth(tree: Tree) -> int:
-    return 1 + max(map(_depth, tree[1:])) if isinstance(tree, tuple) else 0
+    def call(self, name: str, node: ast.Call, inner: Callable[[ast.expr], Tree]) -> Tree:
+        """Read a function, also by the name that sympy gives it."""
+        function = name.lower().replace("ceiling", "ceil")
+        if function not in FUNCTIONS:
+            if name in (*self.names, *CONSTANTS):
+                self.fail(f"{name} is not a function; write {name}*( for a product", node)
+            self.fail(f"the function {name!r} does not exist; {near_names(name, FUNCTIONS)}", node)
+        count, found = OPERATIONS[function][1], len(node.args)
+        if found != count if count else found < 2:
+            self.fail(f"{name} has {found} arguments; expected {count or 'two or more'}", node)
+        return (function, *map(inner, node.args))

@@ -52,7 +52,7 @@ def process_opener(
     """
 
     async def open_session(*, again: bool = True) -> Session:
-        child = Child(entry, preload=preload, lasting=True)
+        child = Child(entry, preload=preload, prints=True)
         try:
             about, _ = await asyncio.to_thread(child.request, {"open": request}, timeout=OPENING_S)
         except ChildError as error:
