@@ -375,7 +375,6 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
     flowtex.critical_points(plane()).of_kind: [
         (["node"], "kind 'node' does not exist; expected one of saddle")
     ],
-    flowtex.critical_points(plane()).to_geojson: [([], "GeoJSON needs longitudes and latitudes")],
     flowtex.examples.double_gyre_velocity: [([POINTS[..., :1]], "points has shape (3, 4, 1)")],
     lambda mesh, margin=0.1, **given: flowtex.extent(mesh, margin=margin, **given): [
         *(([plane(), wrong], "margin is ... ; expected a number") for wrong in (-0.1, 0.5, "wide")),
@@ -499,8 +498,6 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "lags": (partial(flowtex.trace, field()), {"lags": None}),
     "positions": (lambda **given: slices().positions(**given), {"lag": 0.5, "step": 0}),
     "slices.downsample": (lambda **given: slices().downsample(**given), {"factor": 1}),
-    "save": (lambda **given: slices().save(**given), {"path": "a.npz"}),
-    "open": (TraceSlices.open, {"path": None}),
     "Camera": (Camera, {"position": (0, 0, 1), "focal_point": (0, 0, 0), "up": (0, 1, 0)}),
     "Settings": (flowtex.Settings, {name: row.default for name, row in TABLE.items()}),
     "Scene": (

@@ -8,25 +8,19 @@ the length of a streak does with every level of detail.
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_count, checked_number, checked_path
+from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.arrays import block_means
-from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket
 
-#: Format of every file; a reader refuses any other.
-FORMAT = "flowtex-slices-1"
 #: Arrays over the nodes, and the axis along which j runs in them.
 NODE_AXES = {
     "unit": 0,
@@ -92,9 +86,6 @@ class TraceSlices:
     >>> slices = flowtex.trace(field, lags=[1.0, 2.0, 4.0])
     >>> slices.positions(1.5).shape
     (21, 41, 2)
-    >>> slices.save("gyre.npz")
-    >>> flowtex.TraceSlices.open("gyre.npz").shape
-    (21, 41)
     """
 
     lags: Floats
@@ -207,40 +198,6 @@ class TraceSlices:
         expected = f"1 to {most}, the shorter side"
         factor = checked_count("factor", factor, 1, most, expected=expected)
         return self._mapped(lambda data, axis: block_means(data, factor, axis))
-
-    def save(self, path: str | Path) -> None:
-        """Write the slices to a compressed ``.npz`` file."""
-        arrays = {n: getattr(self, n) for n in self.__dataclass_fields__}
-        present = {n: a for n, a in arrays.items() if a is not None}
-        with whole_file(path) as file:
-            np.savez_compressed(file, format=np.array(FORMAT), **present)
-
-    @classmethod
-    def open(cls, path: str | Path) -> TraceSlices:
-        """Read slices that :meth:`save` wrote.
-
-        Raises
-        ------
-        FieldError
-            When the file does not contain slices. Nothing in the file is executed.
-        """
-        place = checked_path("path", path)
-        expected = (
-            f"{path} does not contain trace slices; expected a file written by TraceSlices.save"
-        )
-        try:
-            # Opened here: NumPy does not close a file that it cannot read.
-            with place.open("rb") as data, np.load(data, allow_pickle=False) as file:
-                arrays: dict[str, Any] = {name: file[name] for name in file.files}
-        except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
-            # TypeError: a plain .npy file holds one array, which is not a context manager.
-            raise FieldError(expected) from error
-        needed = set(cls.__dataclass_fields__) - {"forward", "forward_reach"}
-        names = set(arrays) - {"forward", "forward_reach"}
-        if str(arrays.pop("format", "")) != FORMAT or names != needed | {"format"}:
-            raise FieldError(expected)
-        arrays["parameter"] = str(arrays["parameter"])
-        return cls(**{"forward": None, "forward_reach": None, **arrays})
 
     def __repr__(self) -> str:
         rows, columns = self.shape

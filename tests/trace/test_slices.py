@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,70 +103,6 @@ def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSli
         rtol=1e-5,
     )
     np.testing.assert_array_equal(slices.downsample(1).displacement, slices.displacement)
-
-
-# --- files ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("two_sided", [True, False])
-def test_saved_slices_are_read_back(tmp_path: Path, two_sided: bool) -> None:
-    before = trace(double_gyre_field(shape=(6, 11)), two_sided=two_sided)
-    before.save(tmp_path / "slices.npz")
-    after = TraceSlices.open(tmp_path / "slices.npz")
-    for name in TraceSlices.__dataclass_fields__:
-        one, two = getattr(before, name), getattr(after, name)
-        if isinstance(one, np.ndarray):
-            assert one.dtype == two.dtype
-            np.testing.assert_array_equal(one, two)
-        else:
-            assert one == two
-
-
-class Trap:
-    """Writes a file when it is unpickled."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return Path.touch, (self.path,)
-
-
-def broken(path: Path, kind: str) -> None:
-    good = path.with_name("good.npz")
-    trace(double_gyre_field(shape=(6, 11))).save(good)
-    data = good.read_bytes()
-    if kind == "text":
-        path.write_text("lags,1,2")
-    elif kind == "empty":
-        path.write_bytes(b"")
-    elif kind == "cut":
-        path.write_bytes(data[: len(data) // 2])
-    elif kind == "array":
-        with path.open("wb") as file:
-            np.save(file, np.zeros(3))
-    elif kind == "other arrays":
-        np.savez(path, lags=np.zeros(3))
-    elif kind == "arrays missing":
-        np.savez(path, format=np.array("flowtex-slices-1"), lags=np.zeros(3))
-    elif kind == "damaged":
-        middle = len(data) // 2
-        path.write_bytes(data[:middle] + bytes(64) + data[middle + 64 :])
-    else:
-        trap = np.array([Trap(path.with_name("sprung"))], dtype=object)
-        np.savez(path, format=np.array("flowtex-slices-1"), lags=trap, allow_pickle=True)
-
-
-@pytest.mark.parametrize(
-    "kind", ["text", "empty", "cut", "array", "other arrays", "arrays missing", "damaged", "pickle"]
-)
-def test_files_of_another_kind_are_refused(tmp_path: Path, kind: str) -> None:
-    path = tmp_path / "slices.npz"
-    broken(path, kind)
-    expected = f"{path} does not contain trace slices; expected a file written by TraceSlices.save"
-    with pytest.raises(ValueError, match=f"^{re.escape(expected)}$"):
-        TraceSlices.open(path)
-    assert not (tmp_path / "sprung").exists()
 
 
 # --- arguments ------------------------------------------------------------------------------

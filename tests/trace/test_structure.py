@@ -8,8 +8,6 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.earth import EARTH_RADIUS, Projection
-from flowtex.trace.structure.critical_points import CriticalPoints
-from flowtex.trace.structure.separatrices import Separatrices
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {
@@ -121,8 +119,7 @@ def test_indices_on_a_sphere_sum_to_two(mesh: str, seed: int) -> None:
         left = matrix @ away + shift
         assert np.linalg.norm(left - (left @ away) * away) < 0.1
         assert point.lonlat == pytest.approx([float(x) for x in globe.lonlat(point.position)])
-    table = points.to_geojson()["features"]
-    assert [f["properties"]["kind"] for f in table] == [point.kind for point in points]
+    assert [row["lon"] for row in points.records()] == [p.lonlat and p.lonlat[0] for p in points]
 
 
 def test_the_double_gyre_has_saddles_on_its_border_and_lines_between_them() -> None:
@@ -140,7 +137,6 @@ def test_the_double_gyre_has_saddles_on_its_border_and_lines_between_them() -> N
         assert np.ptp(line.points[:, 1]) == pytest.approx(1.0, abs=1e-6)
     mesh = lines.to_pyvista()
     assert mesh.n_cells == len(lines) == len(lines.to_pandas())
-    assert Separatrices.to_pandas is CriticalPoints.to_pandas
     assert mesh.n_points == sum(len(line.points) for line in lines)
 
 

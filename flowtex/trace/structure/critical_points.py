@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections import UserList
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -49,40 +48,6 @@ SAME_POINT_CELLS = 1e-3
 REST_SHARE = 1e-12
 #: Share of a neighbour's velocity that replaces one that is zero.
 LEAST_SHARE = 1e-7
-
-
-class Records(ABC):
-    """Features that are rows of a table, with places on the Earth for a field there."""
-
-    @abstractmethod
-    def records(self) -> list[dict[str, Any]]:
-        """Return a dictionary of numbers and strings for each row."""
-
-    @abstractmethod
-    def _geometries(self) -> list[dict[str, Any] | None]:
-        """Return the GeoJSON geometry of each row, or ``None`` for those not on the Earth."""
-
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.DataFrame`` of :meth:`records`."""
-        return import_extra("pandas", "xarray").DataFrame(self.records())
-
-    def to_geojson(self) -> dict[str, Any]:
-        """Return a GeoJSON ``FeatureCollection``; lines are split where they cross 180 degrees.
-
-        Raises
-        ------
-        FieldError
-            When the field is not in coordinates of the Earth.
-        """
-        geometries, features = self._geometries(), []
-        if None in geometries:
-            raise FieldError(
-                "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
-            )
-        for geometry, row in zip(geometries, self.records(), strict=True):
-            properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
-            features.append({"type": "Feature", "geometry": geometry, "properties": properties})
-        return {"type": "FeatureCollection", "features": features}
 
 
 def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> Iterator[FlowField]:
@@ -143,7 +108,7 @@ class CriticalPoint:
         return [way for way, leaves in self.directions if leaves == forward]
 
 
-class CriticalPoints(Records, UserList[CriticalPoint]):
+class CriticalPoints(UserList[CriticalPoint]):
     """Critical points of a field, in the order of times and places.
 
     A sequence of records with ``position`` (3,), ``kind``, ``eigenvalues`` (2,), ``eigenvectors``
@@ -185,9 +150,9 @@ class CriticalPoints(Records, UserList[CriticalPoint]):
             rows.append(row)
         return rows
 
-    def _geometries(self) -> list[dict[str, Any] | None]:
-        places = (point.lonlat for point in self)
-        return [place and {"type": "Point", "coordinates": list(place)} for place in places]
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of :meth:`records`."""
+        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_pyvista(self) -> pv.PolyData:
         """Return a ``pyvista.PolyData`` of the points.

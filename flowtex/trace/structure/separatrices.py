@@ -12,12 +12,12 @@ import scipy
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
     CriticalPoint,
     CriticalPoints,
-    Records,
     critical_points,
     steady_parts,
 )
@@ -74,7 +74,7 @@ class Separatrix:
         return self.points if turn is None else self.points[: 2 * turn[1] - turn[0] + 1]
 
 
-class Separatrices(Records, list[Separatrix]):
+class Separatrices(list[Separatrix]):
     """Separatrices of a field, in the order of times and saddles.
 
     Examples
@@ -98,8 +98,9 @@ class Separatrices(Records, list[Separatrix]):
             rows.append(row)
         return rows
 
-    def _geometries(self) -> list[dict[str, Any] | None]:
-        return [None if line.lonlat is None else _split(line.lonlat) for line in self]
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of :meth:`records`."""
+        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_pyvista(self) -> pv.PolyData:
         """Return lines as a ``pyvista.PolyData``.
@@ -267,13 +268,6 @@ def _followed(
         positions[FIRST_POINTS:, away] = later.positions
         reach[away] = lags[FIRST_POINTS - 1] + later.reach
     return positions, reach
-
-
-def _split(lonlat: Floats) -> dict[str, Any]:
-    """Return the GeoJSON geometry of a line (N, 2), in parts where it crosses 180 degrees."""
-    jumps = np.flatnonzero(np.abs(np.diff(lonlat[:, 0])) > 180) + 1
-    parts = [part.tolist() for part in np.split(lonlat, jumps) if len(part) > 1]
-    return {"type": "MultiLineString", "coordinates": parts}
 
 
 def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None:
