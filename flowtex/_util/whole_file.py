@@ -1,15 +1,14 @@
 """Files for users, which replace the old ones once they are complete, and temporary folders.
 
 All code that writes a file for a user writes it here. The new file lies beside the old one until it
-is complete and on the disk. A process locks its files and temporary folders, and the system unlocks
-them when the process ends. The next process that writes the same file, or needs a folder, removes
-unlocked ones. Windows has no such locks.
+is complete and on the disk. A process locks its temporary folders, and the system unlocks them when
+the process ends. The next process that needs a folder removes unlocked ones. Windows has no such
+locks.
 """
 
 from __future__ import annotations
 
 import errno
-import glob
 import io
 import os
 import re
@@ -18,7 +17,7 @@ import shutil
 import stat
 import tempfile
 import weakref
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -37,41 +36,20 @@ NAME = re.compile(r"flowtex-\w{8}\.tmp")
 STEM_LENGTH = 40
 
 
-def claim(descriptor: int, path: Path) -> bool:
-    """Lock a new file or folder; return whether it is still at its path."""
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:  # another process removes it
-        return False
-    except OSError:  # a file system without locks, where nothing is taken for stale
-        return True
-    with suppress(FileNotFoundError):
-        return os.path.samestat(os.fstat(descriptor), path.lstat())
-    return False
-
-
-def remove_stale(paths: Iterable[Path], remove: Callable[[Path], object]) -> None:
-    """Remove files and folders of this user that no process has locked."""
+def remove_stale_folders() -> None:
+    """Remove temporary folders of this user that no process has locked."""
     if fcntl is None:
         return
-    for path in paths:
+    for path in Path(tempfile.gettempdir()).iterdir():
         with suppress(OSError):  # in use, of another user, or removed by another process
-            if path.lstat().st_uid != os.getuid():
+            if not NAME.fullmatch(path.name) or path.lstat().st_uid != os.getuid():
                 continue
             descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                remove(path)
+                shutil.rmtree(path)
             finally:
                 os.close(descriptor)
-
-
-def remove_stale_folders() -> None:
-    """Remove the temporary folders of processes that were killed."""
-    parent = Path(tempfile.gettempdir())
-    remove_stale((p for p in parent.iterdir() if NAME.fullmatch(p.name)), shutil.rmtree)
 
 
 class TemporaryFolder:
@@ -79,10 +57,13 @@ class TemporaryFolder:
 
     def __init__(self) -> None:
         remove_stale_folders()
-        descriptor = None
-        while descriptor is None:
-            self.path = Path(tempfile.mkdtemp(".tmp", "flowtex-"))
-            descriptor = _open_folder(self.path)
+        new = Path(tempfile.mkdtemp(prefix="flowtex-new-"))
+        self.path, descriptor = new.with_name(f"flowtex-{secrets.token_hex(4)}.tmp"), -1
+        if fcntl is not None:
+            descriptor = os.open(new, os.O_RDONLY)
+            with suppress(OSError):  # a file system without locks, where nothing is taken for stale
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        new.rename(self.path)  # locked before another process can take it for stale
         self._end = weakref.finalize(self, _remove_folder, self.path, descriptor, os.getpid())
         _folders.add(self)
 
@@ -104,20 +85,6 @@ def remove_folders() -> None:
         folder.close()
 
 
-def _open_folder(path: Path) -> int | None:
-    """Open and lock a new folder; ``None`` when another process took it for stale before."""
-    if fcntl is None:
-        return -1
-    try:
-        descriptor = os.open(path, os.O_RDONLY)
-    except FileNotFoundError:
-        return None
-    if claim(descriptor, path):
-        return descriptor
-    os.close(descriptor)
-    return None
-
-
 def _remove_folder(path: Path, descriptor: int, owner: int) -> None:
     if os.getpid() != owner:  # a fork of the owner
         return
@@ -137,38 +104,24 @@ class WholeFile:
     def __init__(self, path: str | Path) -> None:
         self._target = target = Path(os.path.realpath(checked_path("path", path)))
         old = _old_file(target)
-        stem = f".{target.stem[:STEM_LENGTH]}."
-        pattern = f"{glob.escape(stem)}????????.part{glob.escape(target.suffix)}"
-        remove_stale(target.parent.glob(pattern), Path.unlink)
+        name = f".{target.stem[:STEM_LENGTH]}.{secrets.token_hex(4)}.part{target.suffix}"
+        self.part = target.with_name(name)
+        # Before the file exists: a signal may come between any two lines.
+        opened: list[io.FileIO] = []
+        self._end = weakref.finalize(self, _remove, self.part, opened, os.getpid())
+        # The system applies the umask to the mode.
+        opener = partial(os.open, mode=0o666 if old is None else 0o600)
         try:
-            self._open(target, stem, 0o666 if old is None else 0o600)
+            self._raw = io.FileIO(str(self.part), "x+", opener=opener)
         except OSError as error:
             error.filename = str(path)
             raise
+        opened.append(self._raw)
         if old is not None:
             with suppress(OSError, AttributeError):  # without the right to, and on Windows
                 os.chown(self.part, old.st_uid, old.st_gid)
             self.part.chmod(stat.S_IMODE(old.st_mode) & 0o777)
         self.file: IO[bytes] = _File(self._raw)
-
-    def _open(self, target: Path, stem: str, mode: int) -> None:
-        """Make and lock the new file, under a name that is not taken."""
-        while True:
-            self.part = target.with_name(f"{stem}{secrets.token_hex(4)}.part{target.suffix}")
-            # Before the file exists: a signal may come between any two lines.
-            opened: list[io.FileIO] = []
-            self._end = weakref.finalize(self, _remove, self.part, opened, os.getpid())
-            try:
-                # The system applies the umask to the mode.
-                opener = partial(os.open, mode=mode)
-                self._raw = io.FileIO(str(self.part), "x+", opener=opener)
-            except FileExistsError:
-                self._end.detach()
-                continue
-            opened.append(self._raw)
-            if claim(self._raw.fileno(), self.part):
-                return
-            self._end()
 
     def keep(self) -> None:
         """Replace the old file by the new one."""

@@ -42,11 +42,6 @@ def pictures(count: int = 6) -> list[Any]:
     return list(noise.integers(0, 255, (count, 64, 64, 3), dtype=np.uint8))
 
 
-def save_slices(path: Path) -> None:
-    field = flowtex.examples.double_gyre_field(shape=(11, 21))
-    flowtex.trace(field, lags=[1.0]).save(path)
-
-
 def export_page(path: Path) -> None:
     flowtex.export(flowtex.examples.double_gyre_field(shape=(11, 21)), path, samples=5)
 
@@ -64,7 +59,6 @@ def save_movie(path: Path) -> None:
 
 
 WRITERS: dict[str, Callable[[Path], None]] = {
-    "slices.npz": save_slices,
     "page.html": export_page,
     "scene.js": embed_scene,
     "movie.gif": save_movie,
@@ -168,22 +162,3 @@ def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
         with pytest.raises(OSError, match=path.name):
             WholeFile(path)
     assert list(tmp_path.iterdir()) == [pipe]
-
-
-@posix
-def test_a_part_of_a_process_that_was_killed_is_removed_by_the_next(tmp_path: Path) -> None:
-    path, other = tmp_path / "movie.gif", tmp_path / "other.gif"
-    kill = (
-        "import os, signal, sys; from flowtex._util.whole_file import WholeFile\n"
-        "files = [WholeFile(name) for name in sys.argv[1:]]\n"
-        "os.kill(os.getpid(), signal.SIGKILL)"
-    )
-    subprocess.run([sys.executable, "-c", kill, str(path), str(other)], check=False)
-    left = sorted(tmp_path.iterdir())
-    assert [".movie." in file.name for file in left] == [True, False]
-    first, second = WholeFile(path), WholeFile(path)
-    # The two of this process, and that of the other file.
-    assert sorted(tmp_path.iterdir()) == sorted([first.part, second.part, left[1]])
-    first.drop()
-    del second
-    assert list(tmp_path.iterdir()) == [left[1]]
