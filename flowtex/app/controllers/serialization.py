@@ -69,12 +69,8 @@ FAULT_LENGTH = 250
 #: Names in a link that are no part of the state.
 IGNORED = ("secret",)
 
-#: Longest line of Python.
-LINE_LENGTH = 88
-#: Arguments of ``FlowField.from_file``.
+#: Arguments that select the part of a file.
 FILE_ARGUMENTS = ("vectors", "plane", "block")
-#: Their names for data of the Earth.
-OF_DATASETS = {"block": "projection"}
 #: Form of a plane in a link.
 PLANE = re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII)
 #: Form of the name of a colour map in a link.
@@ -182,64 +178,61 @@ def to_python(
     source: str | None = None,
     source_beside: str | None = None,
     size: tuple[int, int] = (1024, 768),
-    picture: str | None = None,
 ) -> str:
-    """Return the lines of Python that draw a state again, where its file is available.
+    """Return the lines of Python that draw a picture of each view where its file is available.
 
-    A window is opened, or a picture written to a file. ``source`` and ``source_beside`` are
-    expressions that make the fields of the two views where they are not those of files, such as
-    ``"flowtex.examples.cylinder_field()"``.
+    ``source`` and ``source_beside`` are expressions that make the fields of the two views where
+    they are not those of files, such as ``"flowtex.examples.cylinder_field()"``.
     """
-    fields = {"field": source or _from_file(state)}
-    panes: list[State] = [{}]
-    if (split := state.get("split") or "nothing") == ANOTHER_FILE:
-        if name := state.get("beside_file"):
-            beside = {"time": None, **(state.get("beside") or {})}
-            fields["field_beside"] = source_beside or _from_file({**beside, "file": name})
-            differences = {n: beside[n] for n in ("time", "scalars") if n in beside}
-            panes.append({**differences, "field": "field_beside"})
-    elif split != "nothing":
-        panes.append(comparison(split, state.get("time_beside") or 0.0))
-    window = [f"window_size={list(size)!r}"]
-    window += ["off_screen=True"] if picture is not None else []
-    window += ["shape=(1, 2)", "border=False"] if len(panes) > 1 else []
-    lines = ["import pyvista as pv", "", "import flowtex", ""]
-    lines += [f"{name} = {expression}" for name, expression in fields.items()]
-    lines += [_call("pl = pv.Plotter", window)]
-    for column, different in enumerate(panes):
-        lines += [f"pl.subplot(0, {column})"] if len(panes) > 1 else []
-        lines += _add_lines(state, different)
-    lines += ["pl.link_views()", "pl.subplot(0, 0)"] if len(panes) > 1 else []
-    background = str(state.get("background", DEFAULTS["background"]))
-    if background == DEFAULTS["background"]:
-        background = THEMES[str(state.get("theme", DEFAULTS["theme"]))]
-    lines.append(f"pl.set_background({_literal(background)})")
-    if camera := state.get("camera"):
-        lines.append(f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}")
-        for name in ("position", "focal_point", "up", "parallel_scale", "view_angle"):
-            value = camera[name]
-            plain = float(value) if isinstance(value, (int, float)) else tuple(map(float, value))
-            lines.append(f"pl.camera.{name} = {plain!r}")
-    lines.append("pl.show()" if picture is None else f"pl.screenshot({_literal(picture)})")
-    return "\n".join(lines) + "\n"
+    split, name = state.get("split") or "nothing", state.get("beside_file")
+    lines = ["import flowtex", "", f"picture = {_render(state, source, size)}"]
+    beside = comparison(split, state.get("time_beside") or 0.0)
+    if split == ANOTHER_FILE and name:
+        part = {**dict.fromkeys((*FILE_ARGUMENTS, "time")), **(state.get("beside") or {})}
+        beside, source = {**part, "file": name}, source_beside
+    if beside:
+        settings = {n: value for n, value in beside.items() if n in TABLE}
+        other = {**state, **beside, "settings": {**(state.get("settings") or {}), **settings}}
+        if "scalars" in beside:  # with its own range
+            other |= {"colour": beside["scalars"], "clim": None}
+        lines.append(f"beside = {_render(other, source, size)}")
+    return "\n".join([*lines, ""])
 
 
-def _from_file(state: State) -> str:
-    if not state.get("file"):
-        raise FieldError(
-            "the state has no file; pass the expression that makes its field as source"
-        )
+def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
+    """Return the call that draws a view, with values other than the defaults."""
+    values: dict[str, Any] = {}
+    if source is None:
+        if not state.get("file"):
+            raise FieldError("the state has no file; pass the expression that makes its field")
+        source, values = _literal(state["file"]), _part(state)
+    state = {**DEFAULTS, **{name: value for name, value in state.items() if value is not None}}
+    values |= {"size": size, "scalars": state["colour"] != PLAIN and state["colour"]}
+    values |= {n: state[n] for n in (*LOOK, "time", "clock") if state.get(n) != DEFAULTS.get(n)}
+    has_theme = state["background"] == DEFAULTS["background"]
+    values["background"] = THEMES[state["theme"]] if has_theme else state["background"]
+    values |= {"camera": state["camera"]} if "camera" in state else {}
+    settings = state.get("settings", {})
+    if settings.get("noise") != "image":  # the image is not in the state
+        values |= {k: v for k, v in settings.items() if v != TABLE[k].default}
+    arguments = [f"{name}={_literal(value)}" for name, value in values.items()]
+    return "\n".join(["flowtex.render(", *(f"    {each}," for each in (source, *arguments)), ")"])
+
+
+def _part(state: State) -> dict[str, Any]:
+    """Return the arguments that select the part of a file."""
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
     axis, _, number = values.get("plane", "").partition("=")
-    if is_dataset_file(Path(str(state["file"]))):
-        values.pop("plane", None)
-        values = {OF_DATASETS.get(name, name): value for name, value in values.items()}
-        values |= {"isel": {axis: int(number)}} if number.isdecimal() else {}
-    elif axis in ("x", "y", "z", OUTER):
-        plane = values.pop("plane")
-        values |= {} if axis == OUTER else {"slice": plane}
-    choices = [f"{name}={_literal(value)}" for name, value in values.items()]
-    return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
+    is_dataset = is_dataset_file(Path(str(state["file"])))
+    if is_dataset and "block" in values:
+        values["projection"] = values.pop("block")
+    if is_dataset or axis in ("x", "y", "z", OUTER):
+        plane = values.pop("plane", None)
+        if is_dataset:
+            values |= {"isel": {axis: int(number)}} if number.isdecimal() else {}
+        elif axis != OUTER:
+            values["slice"] = plane
+    return values
 
 
 def _literal(value: object) -> str:
@@ -247,36 +240,3 @@ def _literal(value: object) -> str:
     text = repr(value)
     plain = isinstance(value, str) and text[0] == "'" and '"' not in text and "\\" not in text
     return f'"{text[1:-1]}"' if plain else text
-
-
-def _call(function: str, arguments: list[str]) -> str:
-    """Return a call on one line, or with a line for each argument where it is long."""
-    line = f"{function}({', '.join(arguments)})"
-    if len(line) <= LINE_LENGTH:
-        return line
-    return "\n".join([f"{function}(", *(f"    {argument}," for argument in arguments), ")"])
-
-
-def _add_lines(state: State, different: State) -> list[str]:
-    """Return the lines that add the flow to a view, with settings other than the defaults."""
-    colour = state.get("colour", DEFAULTS["colour"])
-    appearance = {"scalars": False if colour == PLAIN else colour}
-    if colour != PLAIN:
-        appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
-    others = (name for name in LOOK if name not in ("cmap", "clim"))
-    appearance |= {n: state[n] for n in others if state.get(n) not in (None, DEFAULTS[n])}
-    if "scalars" in different:  # with its own range
-        appearance = {**appearance, "scalars": different["scalars"]}
-        appearance.pop("clim", None)
-    settings = {**(state.get("settings") or {}), **different}
-    state = {**state, "time": settings.pop("time", state.get("time"))}
-    settings.pop("scalars", None)
-    field = settings.pop("field", "field")
-    if settings.get("noise") == "image":  # the image is not in the state
-        del settings["noise"]
-    changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
-    arguments = [f"{name}={_literal(value)}" for name, value in {**appearance, **changed}.items()]
-    lines = [_call("handle = pl.flowtex.add", [field, *arguments])]
-    instants = [(name, state.get(name)) for name in ("time", "clock")]
-    changes = [(n, v) for n, v in instants if v is not None and v != DEFAULTS.get(n)]
-    return lines + [f"handle.{name} = {value!r}" for name, value in changes]

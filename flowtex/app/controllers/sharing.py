@@ -1,13 +1,7 @@
 """Exports of a page: pictures, movies, a link to the state, and lines of Python.
 
 A job draws a copy of the viewport a tile at a time, and lets the event loop continue between two
-tiles. Tracing and writing files is done in a thread::
-
-    job = Job(viewport, path, (8000, 6000))
-    task = asyncio.create_task(job.run())  # job.progress, job.cancel()
-    await task  # the path, or Stopped
-
-After a job that was cancelled or that failed there is no file.
+tiles. Tracing and writing files is done in a thread. A cancelled job leaves no file.
 """
 
 from __future__ import annotations
@@ -23,9 +17,10 @@ from typing import Any, TypeVar
 import numpy as np
 from PIL import Image
 
+from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
-from flowtex._util.progress import Stopped, check, stoppable
+from flowtex._util.progress import check, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data, FileBeside
@@ -36,22 +31,15 @@ from flowtex.app.streaming.stream import LINE_GREY
 from flowtex.app.streaming.viewport import GAP_PX, TILE_PX, Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.plotting.offscreen.encoders import (
-    DEFAULT_QUALITY,
-    MovieWriter,
-    check_movie,
-    default_fps,
-)
+from flowtex.plotting.offscreen.encoders import DEFAULT_QUALITY, MovieWriter, check_movie
 from flowtex.plotting.offscreen.movie import FrameTimes, frame_times
-from flowtex.scene.annotations import Layout, annotate
-from flowtex.settings import Settings, named_values
+from flowtex.scene.annotations import Layout, annotate_views
+from flowtex.settings import Settings
 
 T = TypeVar("T")
 
 #: Formats of files to save.
 FORMATS = ("PNG", "MP4", "GIF")
-#: Seconds between two reports of how far a job is.
-PROGRESS_INTERVAL_S = 0.15
 #: Names of numbers of the page in messages.
 LABELS = {
     "out_width": "the width",
@@ -67,8 +55,6 @@ MOST_PIXELS = 100_000_000
 MOST_MOVIE_PIXELS = 9_000_000
 #: Longest side of either.
 LONGEST_SIDE_PX = 30_000
-#: Pixels that may be drawn, along a side, for one of the result.
-MOST_SUPERSAMPLING = 4
 #: How fine a picture may be.
 MOST_DENSITY = 8.0
 
@@ -88,7 +74,6 @@ class Sharing(Controller):
         super().__init__(context)
         self.downloads = Downloads(context.routes)
         self._data, self._beside, self._restore_state = data, beside, restore_state
-        self._job: Job | None = None
         self._task: asyncio.Task[None] | None = None
         self.state.set(
             out_format=FORMATS[0],
@@ -108,41 +93,41 @@ class Sharing(Controller):
 
     def start(self) -> None:
         """Start the export that the page requests."""
+        before = self._task
         self.cancel()
         try:
             job = self._new_job()
         except (FieldError, ModuleNotFoundError, OSError) as error:
             self.context.complain(error)
             return
-        self._job = job
         if job.notice:
             self.context.complain(job.notice)
         self.state.set(out_progress=0.0, out_file=None)
-        self._task = asyncio.create_task(self._run(job, self._task))
+        self._task = asyncio.create_task(self._run(job, before))
 
     def cancel(self) -> None:
         """Cancel the export."""
-        if self._job is not None:
-            self._job.cancel()
-        self._job = None
+        if self._task is not None:
+            self._task.cancel()
         self.state.set(out_progress=None)
 
     def _new_job(self) -> Job:
-        get = self.state.get
-        kind = get("out_format")
+        get, kind = self.state.get, self.state.get("out_format")
         if kind not in FORMATS:
             raise ExportError(f"the format is {kind!r}; expected {', '.join(FORMATS)}")
         path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
         try:
-            size = (int(self._number("out_width")), int(self._number("out_height")))
-            options: dict[str, Any] = {
-                "supersampling": 2 if get("out_smooth") else 1,
-                "density": self._number("out_density"),
-                "annotations": bool(get("out_annotations")),
-            }
-            if kind != "PNG":
-                options |= {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
-            return Job(self.viewport, path, size, **options)
+            numbers = {name: self._number(name) for name in LABELS}
+            return Job(
+                self.viewport,
+                path,
+                (int(numbers["out_width"]), int(numbers["out_height"])),
+                supersampling=2 if get("out_smooth") else 1,
+                density=numbers["out_density"],
+                annotations=bool(get("out_annotations")),
+                seconds=numbers["out_seconds"],
+                fps=numbers["out_fps"],
+            )
         except BaseException:
             shutil.rmtree(path.parent, ignore_errors=True)
             raise
@@ -155,38 +140,29 @@ class Sharing(Controller):
         return checked
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
-        if before is not None:
-            # It was cancelled, and its window is closed before another one is opened.
-            await asyncio.wait([before])
-        if job.cancelled:
-            shutil.rmtree(job.path.parent, ignore_errors=True)
-            return
-        reporting = asyncio.create_task(self._report_progress(job))
+        """Do a job, once the window of the cancelled one before is closed."""
+
+        def report(share: float) -> None:
+            if (percent := round(100 * share)) != self.state.get("out_progress"):
+                self.state.send(out_progress=percent)
+
         path: Path | None = None
         try:
-            path = await job.run()
-        except Stopped:
-            return
+            if before is not None:
+                await asyncio.wait([before])
+            path = await job.run(report)
+            self.state.send(out_file={"name": path.name, "url": self.downloads.add(path)})
         except Exception as error:
             if not isinstance(error, (FieldError, OSError)):
                 _log.exception("%s could not be made", job.path.name)
             self.context.complain(
                 f"{job.path.name} could not be made: {str(error) or type(error).__name__}"
             )
-            return
         finally:
-            reporting.cancel()
             if path is None:
                 shutil.rmtree(job.path.parent, ignore_errors=True)
-            if job is self._job:
-                self._job = None
+            if self._task is asyncio.current_task():
                 self.state.send(out_progress=None)
-        self.state.send(out_file={"name": path.name, "url": self.downloads.add(path)})
-
-    async def _report_progress(self, job: Job) -> None:
-        while job is self._job:
-            self.state.send(out_progress=round(100 * job.progress, 1))
-            await asyncio.sleep(PROGRESS_INTERVAL_S)
 
     def present_state(self) -> dict[str, Any]:
         """Return the state of the page, named as in :mod:`.serialization`."""
@@ -205,7 +181,7 @@ class Sharing(Controller):
                 state,
                 source=python(self._data.name),
                 source_beside=python(beside) if beside else None,
-                size=self.viewport.size,
+                size=self.viewport.pane_size,
             ),
         )
 
@@ -220,10 +196,7 @@ class Sharing(Controller):
 
     def close(self) -> None:
         """End running tasks."""
-        if self._job is not None:
-            self._job.cancel()
-        if self._task is not None:
-            self._task.cancel()
+        self.cancel()
         self.downloads.close()
 
 
@@ -237,10 +210,9 @@ class Job:
     A picture of any size is drawn a tile at a time, through a window as large as a tile. The suffix
     of the file is the format: a picture as PNG, or a movie, which is a seamless loop of a steady
     flow, or all times of one that varies; an MP4 gets even sides. ``supersampling`` are the pixels
-    that are drawn, along each side, for one of the result, 1 to 4, and ``density`` those of the
-    result for one that the settings speak of: 2 has grains of twice as many pixels, for
-    high-resolution screens and print. Seconds, fps and quality are those of :func:`flowtex.movie`.
-    Raises an ExportError or a MovieError for invalid arguments.
+    that are drawn, along each side, for one of the result, and ``density`` those of the result for
+    one that the settings speak of: 2 has grains of twice as many pixels, for high-resolution
+    screens and print. Raises an ExportError or a MovieError for invalid arguments.
     """
 
     def __init__(
@@ -253,23 +225,21 @@ class Job:
         density: float = 1.0,
         annotations: bool = False,
         seconds: float | None = None,
-        fps: float | None = None,
+        fps: float = 30.0,
         quality: int = DEFAULT_QUALITY,
     ) -> None:
-        #: The file, how much is done, 0 to 1, and whether it has ended, in whatever way.
-        self.path, self.progress, self.done = Path(path), 0.0, False
-        suffix = self.path.suffix.lower()
+        self.path, self.done = path, False
+        suffix = path.suffix.lower()
         if suffix == ".mp4":
             size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
-        _check(size, supersampling, density, is_movie=suffix != ".png")
+        _check(size, density, MOST_PIXELS if suffix == ".png" else MOST_MOVIE_PIXELS)
         self._viewport, self._size, self._quality = viewport, size, quality
         self._supersampling, self._density = supersampling, density
         self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
-        self.cancelled = False  #: Whether it was cancelled before it was done.
         self.notice = ""  #: Why a movie hardly moves; empty where it does.
         self.frames: FrameTimes | None = None
+        self._report: Callable[[float], None] = lambda share: None
         if suffix != ".png":
-            fps = default_fps(path) if fps is None else fps
             check_movie(path, size, fps, quality)
             settings = _moving(viewport.handle.settings, viewport.field)
             self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
@@ -277,13 +247,10 @@ class Job:
             self.notice = self.frames.notice(settings, pixel * density)
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
-    def cancel(self) -> None:
-        """Cancel the job; :meth:`run` ends with ``Stopped`` and no file is left."""
-        self.cancelled = not self.done
-
-    async def run(self) -> Path:
-        """Draw and write the file, and return its path; raises ``Stopped`` when cancelled."""
+    async def run(self, report: Callable[[float], None]) -> Path:
+        """Draw and write the file, and return its path; ``report`` takes the share that is done."""
         viewport = self._viewport = self._viewport.copy()
+        self._report = report
         try:
             if self.frames is None:
                 await self._in_thread(viewport.trace)
@@ -295,7 +262,6 @@ class Job:
             self.done = True
             viewport.close()
             self._pool.shutdown(wait=False)
-        self.progress = 1.0
         return self.path
 
     def _write(self, picture: Bytes) -> None:
@@ -312,7 +278,6 @@ class Job:
         self._prepare()
         writer = MovieWriter(self.path, self._size, frames.fps, self._quality)
         try:
-            writing: asyncio.Future[None] | None = None
             for n in range(len(frames)):
                 if viewport.field.steady:
                     viewport.clock = frames.clocks[n]
@@ -320,18 +285,11 @@ class Job:
                     await self._in_thread(viewport.trace, frames.times[n])
                     viewport.set_time(frames.times[n])
                 picture = await self._draw(0.95 * n / len(frames), 0.95 / len(frames))
-                if writing is not None:
-                    await writing
-                # The next frame is drawn while this one is writing.
-                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
-                # Its error is read even if an error ends the drawing.
-                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
-            if writing is not None:
-                await writing
-            await self._in_thread(writer.finish, lambda: self.cancelled)
+                await self._in_thread(writer.add, picture)
+            await self._in_thread(writer.finish, lambda: self.done)
         finally:
-            # In the thread, after its present work.
             self.done = True
+            # In the thread, after its present work.
             await asyncio.wrap_future(self._pool.submit(writer.abandon))
 
     def _prepare(self) -> None:
@@ -357,38 +315,30 @@ class Job:
             raise ExportError(f"the size is {shown}; expected a pixel for each view")
         tiles = self._viewport.draw_tiles(rows, self._gap, side=TILE_PX // times, times=times)
         for drawn in tiles:
-            self.progress = before + share * drawn
-            # Other tasks of the event loop have their turn.
-            await asyncio.sleep(0)
-            if self.cancelled:
-                raise Stopped
+            self._report(before + share * drawn)
+            await asyncio.sleep(0)  # other tasks of the event loop have their turn
         if self._annotations:
             self._annotate(canvas)
         return canvas
 
     def _annotate(self, picture: Bytes) -> list[Layout]:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
-        viewport, layouts = self._viewport, []
-        views = np.array_split(picture, len(viewport.panes), axis=1)
-        for view, pane in zip(views, viewport.panes, strict=True):
-            values = dict(pane.scene.settings)
-            written = annotate(
-                view,
-                pane.scene,
-                viewport.camera,
-                flow_height=self._rows.stop - self._rows.start,
-                background=viewport.background,
-                label=named_values({n: values[n] for n in viewport.differences if n in values}),
-                legend=values["noise"] != "image",
-            )
-            layouts.append(written)
-        return layouts
+        viewport = self._viewport
+        return annotate_views(
+            picture,
+            [pane.scene for pane in viewport.panes],
+            viewport.camera,
+            viewport.differences,
+            flow_height=self._rows.stop - self._rows.start,
+            background=viewport.background,
+            legend=viewport.settings.noise != "image",
+        )
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
         """Call a function in the job's thread, where tracing can be stopped."""
 
         def stopping() -> T:
-            with stoppable(lambda: self.cancelled or self.done):
+            with stoppable(lambda: self.done):
                 return work(*arguments)
 
         return await asyncio.get_running_loop().run_in_executor(self._pool, stopping)
@@ -402,16 +352,11 @@ def _moving(settings: Settings, field: FlowField) -> Settings:
     return moving
 
 
-def _check(size: tuple[int, int], supersampling: int, density: float, *, is_movie: bool) -> None:
-    width, height = size
-    label = f"the {'movie' if is_movie else 'picture'} would be {width} x {height}"
-    most = MOST_MOVIE_PIXELS if is_movie else MOST_PIXELS
-    if not (1 <= width <= LONGEST_SIDE_PX and 1 <= height <= LONGEST_SIDE_PX):
-        raise ExportError(f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side")
-    if width * height > most:
-        raise ExportError(f"{label}; expected at most {most:,} pixels: choose a smaller size")
-    if supersampling not in range(1, MOST_SUPERSAMPLING + 1):
-        raise ExportError(f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}")
-    if not 1 / MOST_DENSITY <= density <= MOST_DENSITY:
-        span = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
-        raise ExportError(f"density is {density!r}; expected {span}")
+def _check(size: tuple[int, int], density: float, most: int) -> None:
+    if not all(1 <= side <= LONGEST_SIDE_PX for side in size) or size[0] * size[1] > most:
+        raise ExportError(
+            f"the size is {size[0]} x {size[1]}; expected 1 to {LONGEST_SIDE_PX:,} pixels along "
+            f"each side, and at most {most:,} in all"
+        )
+    expected = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
+    checked_number("density", density, 1 / MOST_DENSITY, MOST_DENSITY, expected=expected)
