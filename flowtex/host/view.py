@@ -120,13 +120,7 @@ class WebView:
             kinds = (kind for kind in MARK_PARTS.values() if is_flat or kind != "nullclines")
             marks = Marks(self.scene.structure, tuple(kinds))
         return ClientData(
-            textures,
-            colours,
-            self._times,
-            pyramid,
-            traces=True,
-            bodies=self._bodies,
-            marks=marks,
+            textures, colours, self._times, pyramid, traces=True, bodies=self._bodies, marks=marks
         )
 
     def show(self, field: FlowField) -> None:

@@ -14,13 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex.app.controllers.context import (
-    Context,
-    FlowOpener,
-    LoadRequest,
-    State,
-    without_folder,
-)
+from flowtex.app.controllers.context import Context, FlowOpener, LoadRequest, State, without_folder
 from flowtex.app.controllers.library import Choice
 from flowtex.app.server.files import Uploads
 from flowtex.app.server.page import clipped, name_among

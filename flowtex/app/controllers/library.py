@@ -267,9 +267,7 @@ class Library:
             source = self.source(name)
             with self._making[opener]:
                 field = source.field(
-                    vectors=choice.vectors or None,
-                    plane=choice.plane,
-                    block=choice.block or None,
+                    vectors=choice.vectors or None, plane=choice.plane, block=choice.block or None
                 )
             self._identities[field] = source.identity
             self._fields[opener, choice] = field

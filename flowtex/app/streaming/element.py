@@ -19,14 +19,7 @@ from typing import Any
 from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
-from flowtex.app.server.page import (
-    PageState,
-    mapping,
-    name_among,
-    number,
-    running_loop,
-    start_task,
-)
+from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop, start_task
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
