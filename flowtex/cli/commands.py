@@ -21,19 +21,18 @@ from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
+from cyclopts import App, CycloptsError
 
-from flowtex._util.arguments import closest, elsewhere
 from flowtex._util.child import FORKS, fork_server
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import Ended, ended_by_signals
-from flowtex.cli.console import announcer, complain, describe, require_app
+from flowtex.cli.console import announcer, complain, describe, require_app, say
 from flowtex.cli.doctor import doctor
 from flowtex.cli.info import info
 from flowtex.cli.options import ServeFlags, UsageError
 from flowtex.cli.serve import pyramid, serve
 from flowtex.cli.write import export, formula, movie, render
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
@@ -81,10 +80,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="replace")  # on Windows, files may have a limited encoding
     debug = "--debug" in words
     words = [word for word in words if word != "--debug"]
-    print_warning = warnings.showwarning
-    warnings.showwarning = _warn  # type: ignore[assignment]
     try:
-        with ended_by_signals():
+        with warnings.catch_warnings(), ended_by_signals():
+            _print_warnings()
             result = _run(words)
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
@@ -96,10 +94,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Other errors than these are defects of the program.
         if debug or not (is_of_system or isinstance(error, (CycloptsError, FieldError))):
             raise
-        complain(_explained(error))
+        complain(error)
         return 1 if is_of_system else 2
-    finally:
-        warnings.showwarning = print_warning
     return result if isinstance(result, int) else 0
 
 
@@ -112,7 +108,7 @@ def hosted() -> HostedSession:
     """Return a session that runs a command in its own process."""
     from flowtex.app.server.sessions.process import HostedSession
 
-    warnings.showwarning = _warn  # type: ignore[assignment]
+    _print_warnings()
     return HostedSession(partial(open_site, _run))
 
 
@@ -125,27 +121,17 @@ def _of_output(error: Exception) -> Exception:
     return UsageError(f"the output cannot be written ({error.strerror})")
 
 
-def _explained(error: Exception) -> Exception:
-    """Return an error of the parser with a remedy: the help of a missing flag, or a near name."""
-    if isinstance(error, MissingArgumentError) and error.argument is not None:
-        return UsageError(f"{error.argument.name} is missing: {error.argument.parameter.help}")
-    if not isinstance(error, UnknownOptionError):
-        return error
-    flag = (error.token.keyword or error.token.value).partition("=")[0]
-    off = "--no-" if flag.startswith("--no-") else "--"
-    names = [name for argument in error.argument_collection or () for name in argument.names]
-    words = [name.removeprefix(off) for name in names if name.startswith(off)]
-    name = flag.removeprefix(off)
-    near = " or ".join(off + word for word in closest(name, words))
-    command = " ".join(error.command_chain or ())
-    help_ = f"`{' '.join(['flowtex', *command.split()])} --help` lists all options"
-    hint = elsewhere(name, words) or (f"did you mean {near}?" if near else help_)
-    return UsageError(f"{command or 'flowtex'} has no option {flag}; {hint}")
+def _print_warnings() -> None:
+    warnings.simplefilter("always", Notice)
+    warnings.showwarning = _warn  # type: ignore[assignment]
 
 
-def _warn(message: Warning | str, *_: Any) -> None:
-    """Print a warning without the line of code that it came from."""
-    complain(message if isinstance(message, Warning) else UserWarning(message), "yellow")
+def _warn(message: Warning | str, category: type[Warning], *_: Any) -> None:
+    """Print a warning without the line of code that it came from, or a notice on the data."""
+    if issubclass(category, Notice):
+        say((str(message), "dim"))
+    elif not category.__module__.startswith("xarray."):  # how a file was written
+        complain(message if isinstance(message, Warning) else UserWarning(message), "yellow")
 
 
 def begin() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.arguments import checked_target
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import terminal
-from flowtex.cli.options import UsageError, arguments, flag_names
-from flowtex.errors import Notice, install_extra
+from flowtex.cli.options import UsageError, arguments
+from flowtex.errors import install_extra
 from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Options
@@ -35,27 +34,8 @@ LONG_WORD = re.compile(r"(\S{200})\S{200,}(\S{100})")
 
 def complain(error: Exception, colour: str = "red") -> None:
     """Print an error, or a warning, in one paragraph on stderr."""
-    text = in_flags(LONG_WORD.sub(r"\1…\2", str(error).strip())) or type(error).__name__
+    text = LONG_WORD.sub(r"\1…\2", str(error).strip()) or type(error).__name__
     say(("flowtex:", f"bold {colour}"), f" {text}", stderr=True)
-
-
-def in_flags(text: str) -> str:
-    """Return a message with arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
-    names = "|".join([*flag_names(), "fresh", "seconds", "fps", "quality", "memory"])
-
-    def flag(match: re.Match[str]) -> str:
-        found = match.groupdict()
-        quote = found.get("quote", "") if " " in found["value"] else ""
-        return f"--{found['name'].replace('_', '-')} {quote}{found['value']}{quote}"
-
-    text = re.sub(r"\b(i?sel)=\{'(\w+)': ([^{}]+)\}", r"--\1 \2=\3", text)
-    text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is |applies )", flag, text)
-    text = re.sub(
-        rf"\b(?P<name>{names})=True\b", lambda m: f"--{m['name'].replace('_', '-')}", text
-    )
-    start = rf"(?<!--beside )\b(?P<name>{names})="
-    text = re.sub(rf"""{start}(?P<quote>["'])(?P<value>[^"']+)(?P=quote)""", flag, text)
-    return re.sub(rf"""{start}(?P<value>[^\s"';,)]+)""", flag, text)
 
 
 def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
@@ -98,23 +78,8 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
         raise UsageError("no file is given; name one")
     options, mesh = dict(choice), files[0] if len(files) == 1 else files
     time = options.pop("time", None)
-    with waiting(f"Reading {files[0].name}"), notices():
+    with waiting(f"Reading {files[0].name}"):
         return read_field(mesh, FieldOptions(**options), time)
-
-
-@contextmanager
-def notices() -> Iterator[None]:
-    """Print notices on the choice of data, and pass on all other warnings."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", Notice)
-        yield
-    for warning in caught:
-        if issubclass(warning.category, Notice):
-            say((in_flags(str(warning.message)), "dim"))
-        elif not warning.category.__module__.startswith("xarray."):  # how a file was written
-            warnings.warn_explicit(
-                warning.message, warning.category, warning.filename, warning.lineno
-            )
 
 
 def check_picture_file(output: Path) -> None:

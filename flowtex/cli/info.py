@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal import terminal
-from flowtex.cli.console import in_flags, load_field
+from flowtex.cli.console import load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     if summary.arrays:
         console.print(_array_table(summary))
     if summary.problem and not options:
-        console.print(Text(f"To draw it: {in_flags(summary.problem)}", "yellow"))
+        console.print(Text(f"To draw it: {summary.problem}", "yellow"))
         return 0
     console.print(_field_table(load_field(files, options)))
     return 0

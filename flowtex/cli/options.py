@@ -22,8 +22,10 @@ from flowtex.scene.forms import FORMS
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.settings import TABLE, Setting
 
-FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
-PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
+FLOW = Group("The flow", sort_key=1)
+PICTURE = Group("The picture", sort_key=2)
+PAGE = Group("The page", sort_key=3)
+SETTINGS = Group("Settings", sort_key=4)
 
 FLAT = Parameter(name="*")
 FILE = Annotated[
@@ -207,12 +209,6 @@ def arguments(*groups: object) -> dict[str, Any]:
                     f"--{name.replace('_', '-')} is {text}; expected {error}"
                 ) from error
     return values
-
-
-def flag_names() -> list[str]:
-    """Return the names of all flags that are also arguments of Python functions."""
-    kinds = (FieldFlags, LookFlags, FrameFlags, ServeFlags, SettingFlags)
-    return [f.name for kind in kinds for f in fields(kind)]  # type: ignore[arg-type]
 
 
 def pixels(size: str) -> tuple[int, int]:

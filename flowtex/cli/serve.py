@@ -20,7 +20,6 @@ from flowtex.cli.console import (
     complain,
     describe,
     drawing,
-    notices,
     report,
     require_app,
     say,
@@ -208,7 +207,7 @@ def pyramid(
             "--output is missing; expected the folder or the URL of a store, such as -o flow.zarr"
         )
     start = time.perf_counter()
-    with waiting(f"Reading {files[0].name}"), notices():
+    with waiting(f"Reading {files[0].name}"):
         place: Any = files[0] if len(files) == 1 else files
         source = source_of(place, **arguments(flow))
     with writing(output):

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from flowtex import examples
 from flowtex._util.progress import waiting
 from flowtex.cli.commands import begin, serve_library, serve_processes
-from flowtex.cli.console import check_lines, drawing, load_field, notices
+from flowtex.cli.console import check_lines, drawing, load_field
 from flowtex.cli.options import (
     FLAT,
     SIZE,
@@ -170,7 +170,7 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     level = choice.pop("level", None)
     for name in ("projection", "globe"):
         choice.pop(name, None)
-    with waiting(f"Reading {files[0].name}"), notices():
+    with waiting(f"Reading {files[0].name}"):
         source = library.source(library.names[0])
         if level is not None:
             choice["plane"] = source.plane_of(level)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,7 +21,6 @@ from flowtex.cli.console import (
     drawing,
     load_field,
     report,
-    say,
     writing,
 )
 from flowtex.cli.options import (
@@ -38,19 +36,9 @@ from flowtex.cli.options import (
     arguments,
     pixels,
 )
-from flowtex.errors import FieldError
-from flowtex.field import FlowField
 
 #: Share of the flow that may leave the surface before the message has it.
 NOTABLE_LOSS = 0.01
-#: Patterns in messages for Python, and their forms for a shell.
-_IN_SHELL = (
-    (r"its value, as in (\w+)=1", r"its value, as in --set \1=1"),
-    (r"times=, such as times=np\.linspace\(0, 10, 41\)", "--times 0,10,41"),
-    (r"^(x|y|u|v|surface|times|resolution) is", r"--\1 is"),
-    (r"^(\w+) is (.*value, low)", r"--set \1 is \2"),
-    (r"such as \(([^)]*), ([^),]*)\)", r"such as \1,\2"),
-)
 
 
 def render(
@@ -87,7 +75,6 @@ def render(
     lost = f", {share:.0%} of the flow is normal to the surface" if share > NOTABLE_LOSS else ""
     seconds = time.perf_counter() - start
     report(output, f"{describe(field)}{lost}", f"{_size(options)}, {seconds:.1f} s")
-    _print_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -143,7 +130,6 @@ def movie(
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
     report(output, f"{describe(field)}{loop}", figures)
-    _print_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -198,21 +184,6 @@ def write_picture(picture: AnyArray, output: Path) -> None:
 
     with writing(output), whole_file(output) as file:
         Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
-
-
-def _print_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
-    from flowtex.scene.options import Options
-    from flowtex.scene.scene import make_scenes
-
-    scene = make_scenes(field, Options.split(**options))[0]
-    name = scene.scalar_name
-    if name is None or options.get("clim") is not None or not any(scene.beyond):
-        return
-    (low, high), (least, most) = scene.scalar_limits, scene.scalar_range(name)
-    say(
-        f"Colour range {low:.3g} to {high:.3g} clips {scene.title_of(name)} ({least:.3g} to "
-        f"{most:.3g}). Use --clim={least:.3g},{most:.3g} to show everything."
-    )
 
 
 def _drawing(look: LookFlags | None, frame: FrameFlags, settings: object) -> dict[str, Any]:
@@ -295,7 +266,9 @@ def formula(
         choice["times"] = np.linspace(first, last, int(min(max(count, 1), 10_000)))
     if resolution is not None:
         choice["resolution"] = resolution
-    field = _field(expressions, choice)
+    from flowtex.field.formula.make import formula as make
+
+    field = make(*expressions, **choice)
     if output is None:
         from flowtex import show
 
@@ -322,20 +295,3 @@ def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
         return numbers(*counts, expected=expected)(text)
     except UnreadableError as error:
         raise UsageError(f"--{name} is {text!r}; expected {error}") from error
-
-
-def _field(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
-    from flowtex.field.formula.make import formula as make
-
-    try:
-        return make(*expressions, **choice)
-    except FieldError as error:
-        for flag in (text for text in expressions if re.fullmatch(r"--[A-Za-z]\w*(=.*)?", text)):
-            name = flag[2:].partition("=")[0]
-            raise UsageError(
-                f"formula has no option {flag}; a parameter is set by --set {name}=1"
-            ) from error
-        text = str(error)
-        for before, after in _IN_SHELL:
-            text = re.sub(before, after, text)
-        raise UsageError(text) from error

@@ -145,7 +145,11 @@ def test_a_cancelled_job_leaves_nothing(plain: Viewport, tmp_path: Path, kind: s
     threads, processes = threading.active_count(), children()
 
     async def stop() -> None:
-        task = asyncio.create_task(job.run(lambda share: task.cancel() if share > 0.05 else None))
+        def report(share: float) -> None:
+            if share > 0.05:
+                task.cancel()
+
+        task = asyncio.create_task(job.run(report))
         with pytest.raises(asyncio.CancelledError):
             await task
 
