@@ -7,7 +7,6 @@ import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { PointPath } from "./pointpath.ts";
 import type { AxesKind, Value } from "./protocol.ts";
-import type { PathSample } from "./samples.ts";
 import type { Source } from "./sources/source.ts";
 import type { View } from "./viewstate.ts";
 
@@ -30,11 +29,8 @@ export interface Explainer {
 export interface Reading {
   point: Point;
   path?: PointPath;
-  samples?: PathSample[];
   /** Whether the path is that of one view alone, whose flow is another one. */
   alone?: boolean;
-  /** Labels of what is known about the samples, the values, and their units. */
-  words?: [label: string, value: string | number | null, unit: string][];
 }
 
 /** Reads a point: at a place of the view from -1 to 1, or one that was found. */

@@ -5,8 +5,8 @@ import { dom, numberText, shape, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
 import { velocityOnEarth } from "./onearth.ts";
-import type { Options, Reading } from "./options.ts";
-import { type Dot, type Line, pathShapes, type Place, samplesOf } from "./samples.ts";
+import type { Options } from "./options.ts";
+import { type Dot, type Line, pathShapes, type Place } from "./samples.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
 import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
@@ -89,7 +89,6 @@ export class PointCard {
   readonly overlay = shape("svg", {});
   private readonly host: CardHost;
   private readonly list = dom("dl");
-  private readonly samples = dom("div");
   private chosen: Found | null = null;
   /** The point that was read last, where a host reads them, and the number of what it was asked. */
   private read: Point | null = null;
@@ -104,7 +103,7 @@ export class PointCard {
     this.overlay.setAttribute("class", "path");
     const button = dom("button", { type: "button", class: "link" }, ["Close"]);
     button.addEventListener("click", () => this.close());
-    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.samples, this.list);
+    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.list);
   }
 
   /** Show the path through what is at (x, y), from -1 to 1, right and up, or none. */
@@ -142,11 +141,9 @@ export class PointCard {
     if (!found?.path) return this.close();
     if ("place" in at) options.onPoint?.(found.point);
     this.read = found.point;
-    const { point, path, samples, words = [] } = found;
-    this.tell(point, path, header, camera, words);
-    const position = point.position as Vector;
-    this.samples.replaceChildren(...(samples ? [samplesOf(samples, position, camera)] : []));
-    this.share(path, position, [], found.alone ? [{ card: this }] : this.host.together);
+    const { point, path } = found;
+    this.tell(point, path, header, camera);
+    this.share(path, point.position as Vector, [], found.alone ? [{ card: this }] : this.host.together);
   }
 
   /** Draw a path in views, by default in all. */
@@ -196,13 +193,7 @@ export class PointCard {
     this.share(path, position, samples);
   }
 
-  private tell(
-    point: Point,
-    { velocity }: PointPath,
-    header: Header,
-    camera: Camera,
-    words: NonNullable<Reading["words"]> = [],
-  ): void {
+  private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { unit } = header.speed;
     const { eastNorth } = point;
     // On a map this is the speed on the Earth, and not in the surface.
@@ -226,9 +217,6 @@ export class PointCard {
       lines.set(named.label, withUnit(numberText(value), named.unit));
     }
     if (point.mark) lines.set("critical point", point.mark);
-    for (const [word, value, itsUnit] of words) {
-      lines.set(word, typeof value === "string" ? value : withUnit(numberText(value ?? NaN), itsUnit));
-    }
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );

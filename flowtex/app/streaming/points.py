@@ -134,11 +134,10 @@ def values_of(point: PointValues, index: tuple[float, float]) -> Header:
 
 
 def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Header:
-    """Return the path through a point, its samples and a description, for the client.
+    """Return a point and the path through it for the client.
 
     ``path`` and ``sampled`` are points of the whole path and of the part with samples, downstream
-    where the flow has a sign; ``samples`` are dicts of ``position``, ``weight``, 1 for the
-    greatest, and ``colour``.
+    where the flow has a sign.
     """
     # Far beyond the samples the slices are too coarse to show, and no picture needs them.
     reach = float(np.fmax(np.abs(found.lags).max(), FEWEST_SAMPLES * abs(found.step)))
@@ -147,28 +146,14 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
     inside = (path_lags <= found.lags[0]) & (path_lags >= found.lags[-1])
     lags = np.concatenate([path_lags[inside], found.lags])
     _, order = np.unique(-lags, return_index=True)
-    sampled = np.concatenate([path[inside], found.points])[order]
-    weights = found.weights / found.weights.max()
-    # Greys, or the colours of a picture over white.
-    rgb = np.repeat(found.greys[:, None], 3, axis=1)
-    if found.noise.ndim == 2:
-        rgb = found.noise[:, :3] + 1.0 - found.noise[:, 3:]
-    whole = np.rint(255 * np.clip(rgb, 0, 1)).astype(int)
     return {
         "point": values_of(found.field_values, index),
         "path": {
             "path": path.tolist(),
-            "sampled": sampled.tolist(),
+            "sampled": np.concatenate([path[inside], found.points])[order].tolist(),
             "directed": not field.sign_free,
             "velocity": _in_surface(found, field).tolist(),
         },
-        "samples": [
-            {"position": position, "weight": weight, "colour": f"#{r:02x}{g:02x}{b:02x}"}
-            for position, weight, (r, g, b) in zip(
-                found.points.tolist(), weights.tolist(), whole.tolist(), strict=True
-            )
-        ],
-        "words": [list(line) for line in words_of(found)],
     }
 
 
@@ -182,30 +167,3 @@ def _in_surface(found: Probe, field: FlowField) -> Floats:
         return point.velocity
     velocity: Floats = point.speed * along / size
     return velocity
-
-
-def words_of(found: Probe) -> list[tuple[str, str | float | None, str]]:
-    """Return labels, values and units that describe the samples; a value may be unknown."""
-    length = found.field_values.length_unit
-    unit = length if found.parameter == "arclength" else found.field_values.time_unit
-    count, reasons = len(found.lags), []
-    if found.asked > found.setting + 1:
-        reasons.append(f"{found.setting} are set; motion doubles them")
-    elif found.asked > found.setting:
-        reasons.append(f"{found.setting} are set, plus one for the point itself")
-    if count < found.asked:
-        reasons.append("the path ends")
-    samples = f"{count} of {found.asked}" if count < found.asked else f"{count}"
-    lines: list[tuple[str, str | float | None, str]] = [
-        ("samples", f"{samples}: {'; '.join(reasons)}" if reasons else samples, ""),
-        ("level of detail", found.level, ""),
-        ("grain", found.grain, length),
-        ("grain on the screen", found.grain / found.pixel, "pixels"),
-        ("step", found.step if np.isfinite(found.step) else None, unit),
-        ("behind", max(0.0, float(found.lags[0])), unit),
-        ("ahead", max(0.0, -float(found.lags[-1])), unit),
-    ]
-    if isinstance(found.value, float):
-        mean = float(found.weights @ found.noise)
-        lines.append(("value", f"{mean:+.2f} × {found.gain:.2f} = {found.value:+.2f}", ""))
-    return lines

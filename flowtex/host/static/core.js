@@ -1600,21 +1600,7 @@ filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1
 "whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
 on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
 map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
-"point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5};function fitting2(places,aspect){let{width:wide,
-height:high,margin}=INSET,flat=([x,y])=>[x*aspect,-y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),
-[left,top]=[Math.min(...xs),Math.min(...ys)],[width,height]=[Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/
-(width||1e-9),(high-2*margin)/(height||1e-9)],scale3=Math.min(...ratios);return place=>{let[x,y]=flat(place);return[wide/
-2+(x-left-width/2)*scale3,high/2+(y-top-height/2)*scale3]}}function enlarged(samples,point,camera){let{width,height}=INSET,
-picture=shape("svg",{class:"inset",viewBox:`0 0 ${width} ${height}`,"aria-hidden":"true"}),seen=samples.flatMap(({position,
-...rest})=>{let place2=camera.project(position);return place2?[{place:place2,...rest}]:[]});if(!seen.length)return picture;
-let mapping=fitting2(seen.map(({place:place2})=>place2),camera.aspect),centres=seen.map(({place:place2})=>mapping(place2));
-seen.forEach(({weight,colour},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(
-.75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);picture.append(shape("circle",{cx,cy,r:most*(.35+.65*weight),fill:colour}))});
-let place=camera.project(point);if(place){let[cx,cy]=mapping(place);picture.append(shape("circle",{cx,cy,r:POINT_RADIUS,
-class:"point"}))}return picture}function samplesOf(samples,point,camera){let bars=samples.map(({weight,colour})=>{let bar=dom(
-"i");return bar.style.cssText=`height: ${100*weight}%; background: ${colour}`,bar});return dom("div",{class:"samples"},[
-enlarged(samples,point,camera),dom("div",{class:"bars",title:"Each bar is a sample: its height is the weight, its grey i\
-s the noise."},bars),dom("div",{class:"ends"},[dom("span",{},["behind"]),dom("span",{},["ahead"])])])}var TITLE="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
+"point")]}var TITLE="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
 DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.
 abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(
 ", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -1623,47 +1609,45 @@ height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");samples=dom("div");chosen=null;read=null;asked=0;later=null;drawn=null;constructor(host){
+"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chosen=null;read=null;asked=0;later=null;drawn=null;constructor(host){
 this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
 utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
-"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.samples,this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){
-let{lifetime,canPick,options}=this.host;if(lifetime.cancel(this.later),options.streamed)return this.close(),this.ask({place:[
-x,y]}),null;if(!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;
-let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),found&&options.reader?
-this.ask(found.point):(this.chosen=found,this.update()),found?.point??null}async ask(at){let{options,header}=this.host,number=this.
-asked+=1,found=await options.reader?.(at,!0).catch(()=>null),{camera}=this.host;if(number!==this.asked||header!==this.host.
-header||!header||!camera)return;if(!found?.path)return this.close();"place"in at&&options.onPoint?.(found.point),this.read=
-found.point;let{point,path,samples,words=[]}=found;this.tell(point,path,header,camera,words);let position=point.position;
-this.samples.replaceChildren(...samples?[samplesOf(samples,position,camera)]:[]),this.share(path,position,[],found.alone?
-[{card:this}]:this.host.together)}share(path,point,samples,views=this.host.together){for(let{card}of views)card.drawn={path,
-point,samples},card.draw()}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.
-later),this.chosen=this.drawn=this.read=null,this.asked+=1,this.element.hidden=!0,this.overlay.replaceChildren(),this.host.
-options.explainer?.clear()}update(){let{chosen}=this;if(this.read)return void this.ask(this.read);let{options,camera,shown,
-header,tiles,settings,stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,
-place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.position,exact=requests.
-trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now={...exact,sampled:[],directed:!0};
-return this.tell({...point,values:{}},now,header,camera),this.share(now,position,[])}let at={scene,moment:shown,place,position},
-path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(at,this.host.parts.get(
-"lonlat"))??void 0;this.tell({...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2},path,header,camera);let pixel={
+"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
+canPick,options}=this.host;if(lifetime.cancel(this.later),options.streamed)return this.close(),this.ask({place:[x,y]}),null;
+if(!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.
+host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),found&&options.reader?this.ask(found.
+point):(this.chosen=found,this.update()),found?.point??null}async ask(at){let{options,header}=this.host,number=this.asked+=
+1,found=await options.reader?.(at,!0).catch(()=>null),{camera}=this.host;if(number!==this.asked||header!==this.host.header||
+!header||!camera)return;if(!found?.path)return this.close();"place"in at&&options.onPoint?.(found.point),this.read=found.
+point;let{point,path}=found;this.tell(point,path,header,camera),this.share(path,point.position,[],found.alone?[{card:this}]:
+this.host.together)}share(path,point,samples,views=this.host.together){for(let{card}of views)card.drawn={path,point,samples},
+card.draw()}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
+this.drawn=this.read=null,this.asked+=1,this.element.hidden=!0,this.overlay.replaceChildren(),this.host.options.explainer?.
+clear()}update(){let{chosen}=this;if(this.read)return void this.ask(this.read);let{options,camera,shown,header,tiles,settings,
+stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.
+layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.position,exact=requests.trajectory(position);
+if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now={...exact,sampled:[],directed:!0};return this.
+tell({...point,values:{}},now,header,camera),this.share(now,position,[])}let at={scene,moment:shown,place,position},path={
+...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(at,this.host.parts.get("lonla\
+t"))??void 0;this.tell({...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2},path,header,camera);let pixel={
 at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{
-velocity},header,camera,words=[]){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.
-speed.label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.position,header,this.host.parts,
-camera,!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,
-VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(
-velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","\
-velocity").replaceAll("|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit3));for(let[
-name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
-lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark);for(let[
-word,value,itsUnit]of words)lines.set(word,typeof value=="string"?value:withUnit(numberText(value??NaN),itsUnit));this.list.
-replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.
-host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,
-clientHeight:height}=stage,placeOf2=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/
-2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf2))place?lines2[lines2.length-1].push(place):
-lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf2(drawn.point),
-{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(
-position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.
-length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(
-([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.
+label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.position,header,this.host.parts,camera,
+!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),
+unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,
+VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll(
+"|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.
+entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
+withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark),this.list.replaceChildren(...[
+...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==
+void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
+placeOf2=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
+let lines2=[[]];for(let place of points.map(placeOf2))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
+filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf2(drawn.point),{samples}=drawn,most=Math.max(
+...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(position);return place?
+[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
+sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>shape(
+tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1830,15 +1814,6 @@ dl {
 }
 dt { color: var(--quiet); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
-.samples { margin: 6px 4px 0 0; }
-.inset { display: block; width: 232px; height: 112px; border-radius: 6px; background: #2a3440; }
-.inset .point { fill: none; stroke: #fff; stroke-width: 2.4; }
-.bars { display: flex; align-items: flex-end; gap: 1px; height: 44px; margin-top: 6px; border-bottom: 1px solid var(--ed\
-ge); pointer-events: auto; }
-.bars i { flex: 1 1 0; min-width: 1px; outline: 0.5px solid var(--quiet); }
-.ends { display: flex; justify-content: space-between; color: var(--quiet); font-size: 11px; }
-.card:has(.samples) { width: 260px; overflow-y: auto; pointer-events: auto; }
-.card:has(.samples) dd { white-space: normal; }
 .path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
 .path :not(.dot) { fill: none; }
 .path * { stroke: #000; stroke-linejoin: round; }

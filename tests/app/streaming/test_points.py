@@ -1,4 +1,4 @@
-"""Points as a page shows them: values, paths, samples, and words on them."""
+"""Points as a page shows them: values and paths."""
 
 from __future__ import annotations
 
@@ -46,20 +46,10 @@ def test_a_path_can_be_sent() -> None:
     told = json.loads(json.dumps(path_of(found, at, view.field), allow_nan=False))
     assert told["point"]["position"] == pytest.approx([0.3, 0.1, 0.0])
     assert told["point"]["index"] == pytest.approx([23, 11])
-    assert len(told["samples"]) == 21 and max(s["weight"] for s in told["samples"]) == 1.0
-    assert told["samples"][10]["position"] == pytest.approx([0.3, 0.1, 0.0])
-    greys = [int(sample["colour"][1:3], 16) / 255 for sample in told["samples"]]
-    assert greys == pytest.approx(found.greys, abs=1 / 500)
     # The part with samples goes from the first of them to the last.
     ends = [told["path"]["sampled"][n] for n in (0, -1)]
     assert ends == [pytest.approx(found.points[n]) for n in (0, -1)]
     assert told["path"]["directed"] is True
-    words = {label: tuple(value) for label, *value in told["words"]}
-    assert words["samples"] == ("21", "")
-    assert words["grain"] == (pytest.approx(0.015), "m")
-    assert words["grain on the screen"] == (pytest.approx(1.5), "pixels")
-    assert words["step"] == (pytest.approx(0.0105, rel=1e-3), "m")
-    assert words["value"][0].endswith(f"= {found.value:+.2f}")
 
 
 def read(app: FlowApp, **at: Any) -> Any:
