@@ -405,7 +405,7 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     page.locator(".flowtex-text").nth(1).wait_for()
     link, python = page.locator(".flowtex-text").all_inner_texts()
     assert "file=series.pvd" in link and "cmap=magma" in link
-    assert "series.pvd" in python and "pl.flowtex.add" in python
+    assert "series.pvd" in python and "flowtex.render" in python
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_label("Copy the link").click()
     copied = page.evaluate("navigator.clipboard.readText()")
