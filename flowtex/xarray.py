@@ -9,20 +9,16 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 import flowtex
-from flowtex._util.arguments import brief, checked_number
-from flowtex._util.terminal import plain_text
+from flowtex._util.arguments import brief
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
-from flowtex.field.quantities import PointValues
-from flowtex.sources.datasets.read_datasets import recognised
 
 try:
     import xarray as xr
@@ -207,59 +203,6 @@ class FlowtexAccessor:
             figure = images[0].axes.figure
             figure.colorbar(images[0], ax=beside, **{"label": label, **(cbar_kwargs or {})})
         return images[0] if panels is None else panels
-
-    def info(self, buf: IO[str] | None = None) -> None:
-        """Write the velocity, grid and coordinates that are recognised, as ``flowtex info`` does.
-
-        Parameters
-        ----------
-        buf
-            File to write to; ``sys.stdout`` by default, as of ``ds.info()``.
-
-        Raises
-        ------
-        FieldError
-            When the dataset is not a flow.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> import flowtex.xarray
-        >>> flowtex.examples.weather().flowtex.info()  # doctest: +ELLIPSIS
-        velocity     ...
-        """
-        rows = recognised(self._dataset)
-        width = max(map(len, rows)) + 2
-        for name, words in rows.items():
-            (buf or sys.stdout).write(plain_text(f"{name:{width}}{words}\n"))
-
-    def probe(self, x: float, y: float, **options: Any) -> PointValues | None:
-        """Return the values of the flow at a point; ``None`` outside the data.
-
-        Parameters
-        ----------
-        x, y
-            Longitude and latitude in degrees; of data without them, coordinates of the data.
-        **options
-            As for :meth:`flowtex.FlowField.from_xarray`, such as ``level=500`` or
-            ``time="2000-01-02"``. By default the last time.
-
-        Raises
-        ------
-        FieldError
-            When ``x`` or ``y`` is not a finite number, or the dataset is not a flow.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> import flowtex.xarray
-        >>> values = flowtex.examples.weather().flowtex.probe(7.4, 46.9, level=250)
-        >>> f"{values.eastward:.0f} m/s to the east, {values.northward:.0f} m/s to the north"
-        '22 m/s to the east, -17 m/s to the north'
-        """
-        for name, value in (("x", x), ("y", y)):
-            checked_number(name, value, -1e300, 1e300, expected="a finite number")
-        return self.field(**options).at(x, y)
 
     def pyramid(self, store: str | Path, **options: Any) -> Built:
         """Build a pyramid of the flow, as :func:`flowtex.pyramid.build` does."""

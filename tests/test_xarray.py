@@ -63,27 +63,14 @@ def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:
     ds = winds(lon, lat)
     ds["u"][:], ds["v"][:] = 3.0 + 0.1 * ds["lon"], -1.0
     for place, tolerance in (((4.0, 50.0), 1e-6), ((5.0, 51.0), 0.02)):  # a node, and in a cell
-        at = ds.flowtex.probe(*place, projection="robinson")
+        at = ds.flowtex.field(projection="robinson").at(*place)
+        assert at is not None
         expected = (3.0 + 0.1 * place[0], -1.0)
         assert (at.eastward, at.northward) == pytest.approx(expected, abs=tolerance)
         assert at.lonlat == pytest.approx(place, abs=tolerance)
     for beside in ((50.0, 51.0), (5.0, 95.0)):
-        assert ds.flowtex.probe(*beside, globe=True) is None
-    with pytest.raises(FieldError, match="y is inf; expected a finite number"):
-        ds.flowtex.probe(5.0, np.inf)
+        assert ds.flowtex.field(globe=True).at(*beside) is None
     assert ds.flowtex.pyramid(tmp_path / "flow.zarr", progress=False).made > 0
-
-
-def test_what_is_recognised_of_a_dataset_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    ds = winds(np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0))
-    ds["u"].attrs["long_name"] = "wind\x1b[31m"
-    ds.flowtex.info()
-    told = capsys.readouterr().out
-    first, *others = told.splitlines()
-    assert first.startswith("velocity") and "u" in first and "\x1b" not in told
-    assert any(line.startswith("directions ") for line in others)
-    with pytest.raises(FieldError, match="velocity"):
-        ds[["u"]].flowtex.info()
 
 
 def few_winds() -> Any:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import math
 import os
 import stat
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -25,30 +24,10 @@ SYNONYMS = {
     **dict.fromkeys(("scalar", "color_by", "field"), "scalars"),
     **dict.fromkeys(("depth", "height", "lev", "altitude"), "level"),
     **dict.fromkeys(("fixed_points", "equilibria"), "critical_points"),
+    **dict.fromkeys(("colorbar", "cbar", "legend"), "show_scalar_bar"),
+    **dict.fromkeys(("length", "streak_length", "streaklength", "line_length"), "samples"),
+    "window_size": "size",
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
-}
-_LENGTH = "a streak has samples times spacing grains, as in samples=49, spacing=0.7"
-_LEGEND = (
-    "show_scalar_bar=True draws a legend of the colours, annotations=True one with scale and time; "
-    "on axes of matplotlib use plt.colorbar(image)"
-)
-_PART = "all times of the data are drawn; time=5 draws one of them"
-#: What is reached in another way than by an argument of the same kind.
-ELSEWHERE = {
-    **dict.fromkeys(("length", "streak_length", "streaklength", "line_length"), _LENGTH),
-    **dict.fromkeys(("colorbar", "cbar", "legend"), _LEGEND),
-    **dict.fromkeys(("start", "stop", "end"), _PART),
-    **dict.fromkeys(
-        ("quiet", "silent", "verbose"),
-        "in a shell send the output to /dev/null, in Python use warnings.simplefilter('ignore')",
-    ),
-    "group": "give the path of the group in the file, such as 'model.nc/ocean'",
-    "transform": (
-        "it is not needed: longitudes and latitudes in the data are recognised, and "
-        'projection="north" chooses the map'
-    ),
-    "duration": "the length of a movie is seconds=5",
-    "title": "pictures have none; on axes of matplotlib use ax.set_title",
 }
 #: Longest value that is written in a message, in letters.
 LONGEST_SHOWN = 100
@@ -152,17 +131,10 @@ def check_field(field: Any, kind: type) -> None:
 
 def closest(name: str, names: Sequence[str]) -> list[str]:
     """Return up to two names that a text stands for, begins, as "proj" does, or resembles."""
-    synonym = SYNONYMS.get(name.replace("-", "_"), "")
-    if synonyms := [each for each in names if each.replace("-", "_") == synonym]:
-        return synonyms
+    if synonym := SYNONYMS.get(name.replace("-", "_")):
+        return [each for each in names if each.replace("-", "_") == synonym]
     begun = [candidate for candidate in names if len(name) > 2 and candidate.startswith(name)]
     return begun[:2] or difflib.get_close_matches(name, names, n=2)
-
-
-def elsewhere(name: str, names: Sequence[str]) -> str:
-    """Return how else to reach what a name stands for, if none of these names is an argument."""
-    name = name.replace("-", "_")
-    return "" if SYNONYMS.get(name) in names else ELSEWHERE.get(name, "")
 
 
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
@@ -173,20 +145,3 @@ def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> st
     if examples:
         return f"expected one of {len(names)} names, such as {examples}"
     return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"
-
-
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def sized(function: Function) -> Function:
-    """Return a function whose ``size`` may be given as ``window_size``, as in PyVista."""
-
-    @functools.wraps(function)
-    def call(*args: Any, window_size: Any = None, **options: Any) -> Any:
-        if window_size is not None and "size" in options:
-            raise FieldError(
-                f"size is {options['size']!r} and window_size is {window_size!r}; omit one of them"
-            )
-        return function(*args, **options, **({"size": window_size} if window_size else {}))
-
-    return call  # type: ignore[return-value]

@@ -2,28 +2,9 @@
 
 Each has up to three functions: ``name()`` returns a ``pyvista.StructuredGrid`` with the point array
 ``velocity``, ``name_series()`` a list of them, one for each time of a time-varying flow, and
-``name_field()`` a :class:`~flowtex.FlowField`, which does not need PyVista.
-
-    cylinder     time-varying   O-grid          viscous vortex shedding, Reynolds number 100
-    vortex       time-varying   Cartesian       two-dimensional turbulence, periodic both ways
-    double_gyre  either         Cartesian       exact at any point and time
-    airfoil      steady         O-grid          exact, cells of very different sizes
-    delta_wing   steady         curved surface  a winged body, 52 x 62 nodes
-
-Two xarray datasets resemble the output of models, and need the extra ``xarray``: ``ocean()`` has
-eight days of currents with a coast, ``weather()`` global winds.
-
-Flows that take long to compute are included as files; in a clone ``tools/example_data/build.py``
-computes them again.
-
-The double gyre is two counter-rotating cells whose common border swings to and fro. Shadden, Lekien
-and Marsden, Physica D 212 (2005) 271-304, example 1: the streamfunction is
-``A sin(pi f(x, t)) sin(pi y)`` on [0, 2] x [0, 1] with ``f = a x^2 + (1 - 2 a) x`` and
-``a = epsilon sin(omega t)``.
-
-The circle of radius R around ``CENTER`` passes through 1, and ``z = s + 1 / s`` maps it to an
-airfoil with a cusped trailing edge, which the flow leaves smoothly (the Kutta condition). In the
-circle's plane, s = CENTER + R exp(eta + i phi), rings have constant eta.
+``name_field()`` a :class:`~flowtex.FlowField`, which does not need PyVista. Two xarray datasets
+resemble the output of models. Flows that take long to compute are included as files; in a clone
+``tools/example_data/build.py`` computes them again.
 """
 
 from __future__ import annotations
@@ -144,7 +125,7 @@ def double_gyre_field(
     time_varying: bool = False,  # noqa: FBT001, FBT002 - the one choice, and clear by its name
     shape: tuple[int, int] = (101, 201),
 ) -> FlowField:
-    """Return the double gyre of Shadden, Lekien and Marsden, exact at the nodes.
+    """Return the double gyre, two cells whose common border swings to and fro, exact at the nodes.
 
     Parameters
     ----------
@@ -158,6 +139,11 @@ def double_gyre_field(
     -------
     FlowField
         The scalar is ``vorticity``; all units are arbitrary.
+
+    Notes
+    -----
+    Shadden, Lekien and Marsden, Physica D 212 (2005) 271-304, example 1: the streamfunction is
+    ``A sin(pi f(x, t)) sin(pi y)`` with ``f = a x^2 + (1 - 2 a) x``, ``a = epsilon sin(omega t)``.
 
     Examples
     --------
@@ -561,8 +547,9 @@ CHORD = np.ptp((_CIRCLE + 1.0 / _CIRCLE).real)
 def airfoil_arrays(shape: tuple[int, int], extent: float) -> tuple[Floats, Floats]:
     """Return nodes (J, I, 2), outwards and around, and the velocity (J, I, 2) there.
 
-    They begin at the trailing edge, (1, 0), and go clockwise, along the lower side first; the last
-    column repeats the first. The outer ring is ``extent`` chords from the airfoil, roughly.
+    ``z = s + 1 / s`` maps the circle around ``CENTER`` through 1 to the airfoil. Nodes begin at the
+    trailing edge, (1, 0), and go clockwise, along the lower side first; the last column repeats the
+    first. The outer ring is ``extent`` chords from the airfoil, roughly.
     """
     rows, columns = shape
     angles = EDGE - np.linspace(0.0, 2.0 * np.pi, columns)

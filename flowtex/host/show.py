@@ -6,7 +6,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from flowtex._util.arguments import checked_size, sized
+from flowtex._util.arguments import checked_size
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.scene.fields import read_field
@@ -24,7 +24,6 @@ BACKEND = "flowtex"
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
-@sized
 def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
     """Show a flow as a widget in a notebook, otherwise in a window or on a page in the browser.
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.arguments import brief, checked_count, closest, elsewhere, is_number, near_names
+from flowtex._util.arguments import brief, checked_count, closest, is_number, near_names
 from flowtex._util.colours import (
     DEFAULT_CMAP,
     NORM_ENTRIES,
@@ -400,8 +400,8 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                near = elsewhere(name, known)
-                if not near and (close := closest(name, known)):
+                near = ""
+                if close := closest(name, known):
                     near = f"did you mean {' or '.join(map(repr, close))}?"
                 axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
                 several = mesh if isinstance(mesh, (list, tuple)) else [mesh]

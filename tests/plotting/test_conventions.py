@@ -10,7 +10,6 @@ import pytest
 import pyvista as pv
 
 import flowtex
-from flowtex import FieldError
 from flowtex.scene.scene import Scene
 
 pytestmark = [
@@ -72,13 +71,6 @@ def test_camera_of_a_plotter_shows_the_same_view() -> None:
         widget.close()
     assert (np.abs(seen - image).max(axis=-1) > 8).mean() < 0.03
     assert (seen < 250).any(axis=-1).mean() > 0.1
-
-
-def test_size_may_be_given_as_that_of_a_window() -> None:
-    assert flowtex.render(plane(), window_size=[160, 120], samples=1).shape == (120, 160, 3)
-    assert flowtex.extent(plane(), window_size=(160, 80)) == flowtex.extent(plane(), size=(160, 80))
-    with pytest.raises(FieldError, match=r"size is \(160, 120\) and window_size is \(9, 9\); omit"):
-        flowtex.render(plane(), window_size=(9, 9), **QUICK)
 
 
 def test_what_is_added_later_is_seen(plotter: Any) -> None:

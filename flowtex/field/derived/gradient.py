@@ -8,7 +8,7 @@ sphere as on a crooked grid, and no term for the curvature of coordinates is nee
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -17,9 +17,8 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import norm
 from flowtex.field.earth import GLOBE, Projection
-from flowtex.field.grids.poles import SAME_POINT_SHARE
+from flowtex.field.grids.poles import find_poles
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
@@ -100,7 +99,9 @@ def _grid_gradient(
     points: Floats, valid: Bools, periodic: tuple[bool, bool], offset: Floats
 ) -> NodeGradient:
     """Return differences between the nodes of a structured surface; axes are turned by offsets."""
-    poles = tuple(_poles(points, valid))
+    known = np.isfinite(points).all(axis=-1)
+    found = find_poles(points, known, known, periodic)
+    poles = tuple((1 - pole.component, pole.line) for pole in found or ())
     points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
 
     turns = [turn if is_closed else None for turn, is_closed in zip(offset, periodic, strict=True)]
@@ -253,19 +254,6 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
     rows, columns = near.row[apart], near.col[apart]
     order = np.argsort(rows, kind="stable")
     return rows[order].astype(np.intp), columns[order].astype(np.intp)
-
-
-def _poles(points: Floats, valid: Bools) -> Iterator[tuple[int, int]]:
-    """Find the axes, and their first or last lines, where all nodes (J, I, 3) are at one point."""
-    for axis in (0, 1):
-        lines, valid_lines = np.moveaxis(points, axis, 0), np.moveaxis(valid, axis, 0)
-        for line in (0, len(lines) - 1):
-            beside = abs(line - 1)
-            used = valid_lines[line] & valid_lines[beside]
-            if used.any():
-                apart = norm(lines[line, used] - lines[line, used].mean(axis=0)).max()
-                if apart < SAME_POINT_SHARE * norm(lines[beside, used] - lines[line, used]).min():
-                    yield axis, line
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:

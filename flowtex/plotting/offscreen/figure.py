@@ -18,7 +18,7 @@ from matplotlib.image import AxesImage
 from matplotlib.transforms import Affine2D
 from PIL import Image
 
-from flowtex._util.arguments import brief, checked_size, sized
+from flowtex._util.arguments import brief, checked_size
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
@@ -58,7 +58,6 @@ FIRST_SIZE = (600, 400)
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
-@sized
 def extent(
     mesh: Any,
     *,

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_number, sized
+from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import track
 from flowtex.errors import notify
@@ -186,7 +186,6 @@ class Movie:
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
-@sized
 def movie(
     mesh: Any,
     path: str | Path,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_size, sized
+from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
@@ -163,7 +163,6 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
-@sized
 def render(
     mesh: Any,
     *,
@@ -184,7 +183,7 @@ def render(
         PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
         of a file.
     size
-        Width and height in pixels, also as ``window_size``; each of two views has half the width.
+        Width and height in pixels; each of two views has half the width.
     time
         Time to show of a time-varying field, or a date such as ``"2000-01-02 12:00"`` if its times
         are dates; the first step by default.

@@ -13,8 +13,6 @@ from earth_data import winds
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.scene.options import Options
-from flowtex.settings import SettingsError
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.open_source import open_source
 
@@ -99,5 +97,3 @@ def test_groups_are_chosen_by_path(tmp_path: Path) -> None:
         FlowField.from_file(path)
     given = str(caught.value).rpartition(" as in ")[2]  # what it names can be opened
     assert same(whole, FlowField.from_file(ast.literal_eval(given)))
-    with pytest.raises(SettingsError, match=r"give the path of the group in the file"):
-        Options.split(group="ocean")
