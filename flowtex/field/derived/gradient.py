@@ -20,6 +20,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.grids.poles import find_poles
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
+from flowtex.field.validation import finite_nodes
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
@@ -99,7 +100,7 @@ def _grid_gradient(
     points: Floats, valid: Bools, periodic: tuple[bool, bool], offset: Floats
 ) -> NodeGradient:
     """Return differences between the nodes of a structured surface; axes are turned by offsets."""
-    known = np.isfinite(points).all(axis=-1)
+    known = finite_nodes(points)
     found = find_poles(points, known, known, periodic)
     poles = tuple((1 - pole.component, pole.line) for pole in found or ())
     points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
