@@ -487,11 +487,10 @@ def _stored(view: WebView) -> StoredPyramid:
             "one of them"
         )
     pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
-    if not isinstance(pyramid, StoredPyramid) or "fingerprint" not in pyramid.about:
-        place = pyramid.about["place"] if isinstance(pyramid, StoredPyramid) else "FILE"
+    if not isinstance(pyramid, StoredPyramid):
         raise FieldError(
             "store is given, but the flow is not read from a flowtex store, and only such a "
-            f"store has tiles for browsers. Build it with `flowtex pyramid {place} -o flow.zarr` "
+            "store has tiles for browsers. Build it with `flowtex pyramid FILE -o flow.zarr` "
             "and export that, or omit store for a page with as many levels as fit"
         )
     about = pyramid.about

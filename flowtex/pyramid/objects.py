@@ -8,13 +8,12 @@ the nodes, are kept as they came.
 from __future__ import annotations
 
 import asyncio
-import json
 import math
 import re
 import weakref
 import zlib
-from collections.abc import AsyncIterator, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from zarr import AsyncArray
@@ -22,7 +21,7 @@ from zarr.abc.codec import Codec
 from zarr.abc.store import ByteRequest, Store
 from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
 from zarr.core.array_spec import ArraySpec
-from zarr.core.buffer import Buffer, BufferPrototype, default_buffer_prototype
+from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.core.metadata import ArrayV3Metadata
 from zarr.storage import StorePath, WrapperStore
 
@@ -36,11 +35,6 @@ CACHE_BYTES = 200_000_000
 #: Files for a browser are read once, to check them.
 _FILES = re.compile(r"^\d+/(flow|values|surface)/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
-#: Usual names of arrays of a velocity.
-KNOWN_NAMES = (
-    *("u", "v", "U", "V", "u10", "v10", "uo", "vo", "ua", "va", "ugos", "vgos"),
-    *("water_u", "water_v", "uwnd", "vwnd"),
-)
 #: Parameters of the Blosc codec.
 BLOSC_NAMES = ("typesize", "cname", "clevel", "shuffle", "blocksize")
 #: The window of zlib for data with the header and the check sum of gzip.
@@ -59,14 +53,16 @@ class _Kept:
 class Objects(WrapperStore[Store]):
     """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`."""
 
-    #: Whether chunks of the fill value may be missing.
-    sparse = False
-
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, *, sparse: bool = False) -> None:
         super().__init__(store)
+        self._sparse = sparse  # whether chunks of the fill value may be missing
         self._kept: ByteCache[tuple[str, str], _Kept] = ByteCache(CACHE_BYTES)
         self._gates = weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock]()
         self._reads = asyncio.Semaphore(MOST_READS)
+
+    def __reduce__(self) -> tuple[Any, tuple[Store]]:
+        """Return a function and an argument with which another process makes it."""
+        return partial(Objects, sparse=self._sparse), (self._store,)
 
     async def get(
         self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
@@ -98,60 +94,9 @@ class Objects(WrapperStore[Store]):
                     if is_refused(error) and key != "zarr.json" and not _CHUNK.search(key):
                         return None
                     raise ReadFault(f"{key} {fault_words(error)}") from None
-        if result is None and not self.sparse and _CHUNK.search(key):
+        if result is None and not self._sparse and _CHUNK.search(key):
             raise ReadFault(f"{key} is missing", missing=True)
         return result
-
-
-class OthersObjects(Objects):
-    """A store of others; on the web, where nothing is listed, arrays are found by their names."""
-
-    sparse = True
-
-    def __init__(self, store: Store, names: tuple[str, ...] = ()) -> None:
-        super().__init__(store)
-        self._names = names
-
-    def __reduce__(self) -> tuple[type[OthersObjects], tuple[Store, tuple[str, ...]]]:
-        """Return the class and arguments with which another process makes it."""
-        return OthersObjects, (self._store, self._names)
-
-    async def list_dir(self, prefix: str) -> AsyncIterator[str]:
-        """Yield the members of a group: levels, or the velocity and coordinates of its axes."""
-        try:
-            listed = [name async for name in self._store.list_dir(prefix)]
-        except Exception:
-            listed = await self._found(prefix.strip("/"))
-        for name in listed:
-            yield name
-
-    async def _found(self, group: str) -> list[str]:
-        levels = level_names((await self._metadata(group)).get("attributes", {}))
-        arrays = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
-        axes = {str(n) for array in arrays.values() for n in array.get("dimension_names") or ()}
-        return list(arrays | await self._present(group, axes - {*arrays}))
-
-    async def _present(self, group: str, names: Iterable[str]) -> dict[str, dict[str, Any]]:
-        found = await asyncio.gather(*(self._metadata(f"{group}/{name}") for name in names))
-        return {name: metadata for name, metadata in zip(names, found, strict=True) if metadata}
-
-    async def _metadata(self, path: str) -> dict[str, Any]:
-        """Return the metadata of a group or an array; empty if it has none."""
-        key = f"{path}/zarr.json".lstrip("/")
-        buffer = await self.get(key, default_buffer_prototype())
-        metadata = {} if buffer is None else json.loads(buffer.to_bytes())
-        return metadata if isinstance(metadata, dict) else {}
-
-
-def level_names(attributes: Mapping[str, Any]) -> list[str]:
-    """Return the paths of levels, from the metadata of ndpyramid or of zarr-conventions."""
-    multiscales = attributes.get("multiscales")
-    if isinstance(multiscales, list):  # of the former there is one in a list
-        multiscales = multiscales[0] if multiscales else {}
-    if not isinstance(multiscales, dict):
-        return []
-    levels = [*multiscales.get("layout", []), *multiscales.get("datasets", [])]
-    return [str(item.get("asset", item.get("path"))) for item in levels if isinstance(item, dict)]
 
 
 class _BoundedGzip(GzipCodec):

@@ -268,17 +268,15 @@ def has_parts(place: object) -> bool:
 
 def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     """Return the datasets of a store of others that have a velocity, the finest first."""
-    from flowtex.pyramid.objects import OthersObjects, level_names
+    from flowtex.pyramid.objects import Objects
 
     xarray = import_extra("xarray", "xarray")
-    zarr = import_extra("zarr", "store")
     components = {name for name in two_names(options.vectors) if name}
     if not is_remote(place):
         with errors_of(place):
             inspect_file(Path(place))
     try:
-        store = OthersObjects(store_at(place), tuple(components))
-        attributes = zarr.open_group(store, mode="r").attrs
+        store = Objects(store_at(place), sparse=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
             groups = xarray.open_groups(store, engine="zarr", decode_timedelta=False)
@@ -291,10 +289,7 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
             "flowtex.pyramid.build, or give a Zarr group that xarray can open (on the web with "
             "consolidated metadata, see zarr.consolidate_metadata)"
         ) from None
-    names = [name.strip("/") for name in level_names(attributes)]
-    by_name = {name.strip("/"): dataset for name, dataset in groups.items()}
-    chosen = [by_name[name] for name in names if name in by_name] or list(by_name.values())
-    levels = [d for d in chosen if (components and components <= {*d}) or find_pairs([d])]
+    levels = [d for d in groups.values() if (components and components <= {*d}) or find_pairs([d])]
     if not levels:
         raise PyramidError(
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
