@@ -13,12 +13,12 @@ cover blanked cells and others, its block stays finer.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
-from flowtex._util.array_types import Bools, Floats, Indices, Ints
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices, Ints
 from flowtex._util.arrays import dot, norm
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, block_places
@@ -38,19 +38,6 @@ MAX_SIDE_HEIGHTS = 2.0
 LEAST_DISTANCE = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class _Blocks:
-    """Along one axis: the first node of each block, and the number of its cells."""
-
-    first: Ints
-    cells: Ints
-
-    @classmethod
-    def of(cls, nodes: int) -> _Blocks:
-        first = np.arange(0, max(nodes - 1, 1), BLOCK_CELLS, dtype=np.int64)
-        return cls(first, np.minimum(nodes - 1 - first, BLOCK_CELLS))
-
-
 class MeshLevels:
     """The levels of a surface's mesh, and the triangles that a view needs.
 
@@ -67,16 +54,17 @@ class MeshLevels:
         slide: float = 0.1,
         height: float = 1.0,
     ) -> None:
-        rows, columns = points.shape[:2]
-        self._slide, self._height = slide, height
-        self._shape = (rows, columns)
+        self._shape: tuple[int, int] = points.shape[0], points.shape[1]
         self._cells, self._periodic = cells, periodic
-        self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
+        self._slide, self._height = slide, height
         points = np.where(np.isfinite(points), points, 0.0)
         #: Greatest distance of a node from the triangles of each level, (L, rows, columns) of
         #: blocks; of its outline, and along the surface, shares of it.
-        self.error = self._errors(points, _directions(points))
-        self.error[self._mixed_levels()] = np.inf
+        self.error = self._errors(points)
+        # No coarse cell covers blanked cells and others.
+        mixed = _in_blocks(cells, BLOCK_CELLS, BLOCK_CELLS)
+        mixed &= _in_blocks(~cells, BLOCK_CELLS, BLOCK_CELLS)
+        self.error[1:, mixed] = np.inf
         #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
 
@@ -120,12 +108,13 @@ class MeshLevels:
         return np.concatenate(parts or [np.empty((0, 3), np.intp)])
 
     def _triangles_of(self, blocks: tuple[Indices, ...], level: int, border: Ints) -> Indices:
-        step, (j, i) = 1 << level, blocks
+        step = 1 << level
         places = np.arange(BLOCK_CELLS // step + 1) * step
-        rows = np.minimum(places, self._rows.cells[j][:, None])
-        columns = np.minimum(places, self._columns.cells[i][:, None])
+        first_row, first_column = (BLOCK_CELLS * at for at in blocks)
+        rows = np.minimum(places, (self._shape[0] - 1 - first_row)[:, None])
+        columns = np.minimum(places, (self._shape[1] - 1 - first_column)[:, None])
         row, column = (
-            np.broadcast_to(a, (len(j), len(places), len(places))).copy()
+            np.broadcast_to(a, (len(rows), len(places), len(places))).copy()
             for a in (rows[:, :, None], columns[:, None, :])
         )
         below, above, left, right = (border[side][blocks] for side in range(4))
@@ -133,7 +122,6 @@ class MeshLevels:
         column[:, -1] = _snapped(columns, above)
         row[:, :, 0] = _snapped(rows, left)
         row[:, :, -1] = _snapped(rows, right)
-        first_row, first_column = self._rows.first[j], self._columns.first[i]
         width = self._shape[1]
         node = (row + first_row[:, None, None]) * width + column + first_column[:, None, None]
         drawn = self._cells[
@@ -148,89 +136,55 @@ class MeshLevels:
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
 
-    def _errors(self, values: Floats, directions: Floats) -> Floats:
-        """Return the greatest error of the values (J, I, C) in each block at each level, (L, ., .).
+    def _errors(self, values: Floats) -> Floats:
+        """Return the greatest error of nodes (J, I, 3) in each block at each level, (L, ., .).
 
         A level leaves out every second line of the one before. Its error is at most that of the
-        one before plus the deviation of the omitted lines from their neighbours. Errors along the
-        normals have the greatest weight, and the outline is separate.
+        one before plus the deviation of the omitted lines from their neighbours.
         """
-        count = BLOCK_CELLS.bit_length()
-        errors = np.zeros((2, count, len(self._rows.first), len(self._columns.first)))
+        directions, per_block = _directions(values), [BLOCK_CELLS, BLOCK_CELLS]
         lines = [np.arange(n) for n in self._shape]
-        for level in range(1, count):
-            errors[:, level] = errors[:, level - 1]
+        errors = [np.zeros(_in_blocks(self._cells, *per_block).shape)]
+        while max(per_block) > 1:
+            error = errors[-1]
             for axis in (0, 1):
-                # Only lines that are left out have an error.
-                omitted = slice(1, len(lines[axis]) - 1, 2)
-                index = (slice(None), *(slice(None),) * axis, omitted)
-                deviation = _deviation(values, lines[axis], axis)
-                size = self._size(deviation, directions[index], border=1 - axis)
-                parts = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
-                errors[:, level] += self._greatest(size, *parts)
-                last = len(lines[axis]) - 1
-                kept = np.append(np.arange(0, last, 2), last)
+                off = self._weighted(_deviation(values, lines[axis], axis), directions, 1 - axis)
+                error = error + _in_blocks(_at_cells(off), *per_block)
+                kept = np.append(np.arange(0, len(lines[axis]) - 1, 2), len(lines[axis]) - 1)
                 values, lines[axis] = values.take(kept, axis), lines[axis][kept]
                 directions = directions.take(kept, axis + 1)
+                per_block[axis] //= 2
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
-            size = self._size(twist / 4, directions[:, :-1, :-1])
-            errors[:, level] += self._greatest(size, lines[0][:-1], lines[1][:-1])
-        return np.asarray(errors.max(axis=0))
+            off = self._weighted(twist / 4, directions[:, :-1, :-1])
+            errors.append(error + _in_blocks(off, *per_block))
+        return np.stack(errors)
 
-    def _size(self, error: Floats, directions: Floats, *, border: int | None = None) -> Floats:
-        """Return the weighted sizes of errors (J, I, C) and of the outline, (2 or 1, J, I)."""
-        size = norm(error)
-        if not size.size:
-            return size[None]
-        weighted = np.zeros((2, *size.shape))
-        height = self._height * np.abs(dot(error, directions[0]))
-        np.maximum(height, self._slide * size, out=weighted[0])
+    def _weighted(self, error: Floats, directions: Floats, border: int | None = None) -> Floats:
+        """Return the weighted sizes (J, I) of errors (J, I, 3), on two sides of the outline too."""
+        sizes = self._height * np.abs(dot(error, directions[0]))
+        np.maximum(sizes, self._slide * norm(error), out=sizes)
         if border is not None:
             ends = (slice(None),) * border + ([0, -1],)
             along = dot(error[ends], directions[1 + border][ends])
-            aside = np.sqrt(np.maximum(size[ends] ** 2 - along**2, 0))
-            weighted[1][ends] = OUTLINE_SHARE * aside
-        return weighted
+            aside = np.sqrt(np.maximum(norm(error[ends]) ** 2 - along**2, 0))
+            sizes[ends] = np.maximum(sizes[ends], OUTLINE_SHARE * aside)
+        return sizes
 
-    def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
-        """Return the greatest value in each block, of lines of nodes; borders belong to both."""
-        if not values.size:
-            return np.zeros((len(self._rows.first), len(self._columns.first)))
-        for axis, lines, blocks in ((-2, rows, self._rows), (-1, columns, self._columns)):
-            first = np.searchsorted(lines, blocks.first)
-            last = np.searchsorted(lines, blocks.first + blocks.cells, side="right") - 1
-            # A short block at the end may have none of the lines.
-            lacking = int((first == len(lines)).sum())
-            first, last = first[: len(first) - lacking], last[: len(last) - lacking]
-            inner = np.maximum.reduceat(values, first, axis=axis)
-            values = np.maximum(inner, np.take(values, last, axis=axis))
-            if lacking:
-                values = np.pad(values, [(0, lacking * (a - 3 == axis)) for a in range(3)])
-        return values
 
-    def _mixed_levels(self) -> Bools:
-        """Return the levels at which a cell of a block would cover blanked and other cells."""
-        shape = (BLOCK_CELLS.bit_length(), len(self._rows.first), len(self._columns.first))
-        mixed = np.zeros(shape, dtype=bool)
-        if self._cells.all() or not self._cells.size:
-            return mixed
-        for level in range(1, len(mixed)):
-            rows, columns = (np.arange(0, n - 1, 1 << level) for n in self._shape)
-            drawn = np.add.reduceat(np.add.reduceat(self._cells.astype(int), rows, 0), columns, 1)
-            ends = zip((rows, columns), self._shape, strict=True)
-            whole = np.outer(*(np.diff([*lines, count - 1]) for lines, count in ends))
-            in_blocks = ((drawn > 0) & (drawn < whole)).astype(float)
-            for axis, lines, blocks in ((0, rows, self._rows), (1, columns, self._columns)):
-                first = np.searchsorted(lines, blocks.first)
-                in_blocks = np.maximum.reduceat(in_blocks, first, axis)
-            mixed[level] = mixed[level - 1] | (in_blocks > 0)
-        return mixed
+def _at_cells(values: Floats) -> Floats:
+    """Return the greatest of the values (J, I) at the corners of each cell."""
+    values = np.maximum(values[1:], values[:-1])
+    return np.maximum(values[:, 1:], values[:, :-1])
+
+
+def _in_blocks(values: AnyArray, rows: int, columns: int) -> AnyArray:
+    """Return the greatest value (J, I) of cells in each block of so many rows and columns."""
+    values = np.maximum.reduceat(values, np.arange(0, len(values), rows), axis=0)
+    return np.asarray(np.maximum.reduceat(values, np.arange(0, values.shape[1], columns), axis=1))
 
 
 def _directions(points: Floats) -> Floats:
     """Return normals and directions of lines at nodes, (3, J, I, 3), zero where missing."""
-    if min(points.shape[:2]) < 2:
-        return np.zeros((3, *points.shape))
     # Only directions count, so no number is too large to be squared.
     points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
     along_i, along_j = np.gradient(points, axis=1), np.gradient(points, axis=0)
@@ -241,12 +195,13 @@ def _directions(points: Floats) -> Floats:
 
 def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
     """Return how every second line of values, except the ends, differs from its neighbours."""
-    count = (len(lines) - 1) // 2
-    pick = [slice(first, first + 2 * count - 1, 2) for first in (0, 1, 2)]
-    numbers = [lines[part] for part in pick]
-    share = (numbers[1] - numbers[0]) / (numbers[2] - numbers[0])
-    low, left, high = (values[(slice(None),) * axis + (part,)] for part in pick)
-    return np.asarray(left - low - np.expand_dims(share, (1 - axis, 2)) * (high - low))
+    result, at = np.zeros_like(values), (slice(None),) * axis
+    low, left, high = (slice(n, len(lines) - 2 + n, 2) for n in range(3))
+    share = (lines[left] - lines[low]) / (lines[high] - lines[low])
+    across = values[(*at, high)] - values[(*at, low)]
+    omitted = values[(*at, left)] - values[(*at, low)]
+    result[(*at, left)] = omitted - np.expand_dims(share, (1 - axis, 2)) * across
+    return result
 
 
 #: Marks blocks that are not drawn: more doublings than any block has.
@@ -275,13 +230,8 @@ def join(
     nodes = np.full(blocks, NOT_DRAWN)
     for part in parts:
         _put(nodes, part, np.full_like(part.levels, part.step))
-    finest = nodes.copy()
-    for axis in (0, 1):
-        width = [(int(a == axis),) * 2 for a in (0, 1)]
-        padded = np.pad(nodes, width, mode="wrap" if periodic[axis] else "edge")
-        for offset in (0, 2):
-            beside = np.take(padded, range(offset, offset + blocks[axis]), axis=axis)
-            finest = np.minimum(finest, beside)
+    edges: Any = ["wrap" if closed else "nearest" for closed in periodic]
+    finest = scipy.ndimage.minimum_filter(nodes, 3, mode=edges)
     strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
     for part in parts:
         limit = _least(finest, part) + BLOCK_CELLS.bit_length() - 1 - part.step

@@ -97,7 +97,7 @@ def test_pictures_and_the_shell(
         pictures = [flowtex.render(one, **view) for one in (store, url)]
         assert main(["render", url, "-o", str(tmp_path / "a.png"), "--size", "100x80"]) == 0
         assert main(["info", url]) == 0
-    assert np.array_equal(*pictures) and pictures[0].std() > 10
+    assert np.array_equal(pictures[0], pictures[1]) and pictures[0].std() > 10
     said = capsys.readouterr().out
     assert f"{COLUMNS // 2} × {ROWS // 2} nodes" in said and url in said
     with pytest.raises(FieldError) as told:
