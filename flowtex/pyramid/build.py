@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import uuid
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -29,7 +28,7 @@ from flowtex.pyramid.layout import (
     sealed,
     tiles_of,
 )
-from flowtex.pyramid.levels import SAMPLES, Levels, create_samples, ranges_of
+from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import (
     DOCUMENT,
     ChangedError,
@@ -159,9 +158,7 @@ def build(
     A build continues where an interrupted one stopped: it checks the existing parts, and builds
     only those that are missing or corrupt.
 
-    A store identifies its source by the paths, sizes and modification times of the files. If these
-    differ, or if the source is a dataset or a field in memory, the data are read again and compared
-    with the checksums of all parts in the store.
+    The data of the source are read again and compared with the checksums of all parts in the store.
 
     Each task reads one region, of 512 by 1,024 nodes of a time step, if the source is a dataset on
     one-dimensional coordinates that is drawn on a globe, a plate carree or a Mercator map. Neither
@@ -190,11 +187,11 @@ def build(
         raise FieldError(
             f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
         )
-    identity, threads = about["source"], Threads(memory)
+    threads = Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
     with plain_faults(), closing(workers), building(place):
         group, arrays, about, new = _prepared(place, about, data, fresh=fresh)
-        run, depth = _Run(place, group, arrays, about, identity, progress), about["depth"]
+        run, depth = _Run(place, group, arrays, about, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
             units = sorted({u for name in run.arrays for u in _existing_units(run, name)}, key=repr)
@@ -295,8 +292,6 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
     """Write the metadata that follow from ``about``; return the axes of the arrays by name."""
     zarr = import_extra("zarr", "store")
     group = described(about)
-    if not about["ranges"]:
-        create_samples(group, about)
 
     async def copy() -> None:
         kind = zarr.core.buffer.default_buffer_prototype()
@@ -312,7 +307,7 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
 def _remove(store: Store) -> None:
     """Remove a pyramid, coarse levels first; the metadata that identify it are the last to go."""
     levels = sorted(filter(str.isdecimal, listed(store.list_dir)), key=int, reverse=True)
-    for name in (*levels, SAMPLES):
+    for name in levels:
         sync(store.delete_dir(name))
     sync(store.delete(DOCUMENT))
 
@@ -325,7 +320,6 @@ class _Run:
     group: Any
     arrays: Mapping[str, Sequence[str]]
     about: dict[str, Any]
-    source: str
     progress: bool
     name: str = field(default_factory=lambda: uuid.uuid4().hex)
     made: int = 0
@@ -404,10 +398,8 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
         run.update(levels_done=False)
     at_start, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
     run.work(workers, make_finest, at_start, "Level 0", PART_BYTES, source)
-    if not run.source or run.source != run.about["source"]:
-        text = "Comparing with the source"
-        run.work(workers, compare_finest, existing, text, PART_BYTES, source, new=False)
-        run.update(source=run.source)
+    text = "Comparing with the source"
+    run.work(workers, compare_finest, existing, text, PART_BYTES, source, new=False)
     run.work(workers, make_finest, later, "Level 0", PART_BYTES, source)
     if run.about["axes"]:
         first = np.array([0])
@@ -415,19 +407,8 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
             rows, columns = (level_lines(n, level) for n in source.shape)
             run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
             run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
-    if source.identity() != run.source:
-        run.update(source="")
-        raise ChangedError(f"the source of {run.place} changed while it was read; build again")
-    levels = Levels(run.place)
-    if not run.about["ranges"]:
-        ranges = ranges_of(levels.whole(SAMPLES), run.about)
-        if not ranges:
-            raise FieldError(
-                f"none of the {math.prod(source.shape):,} nodes has data; check the selected "
-                "variables"
-            )
-        run.update(ranges=ranges)
-    fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
+    digests = Levels(run.place).whole(f"0/{DIGESTS}")
+    fingerprint = digest(digests, words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         raise ChangedError(
             f"{run.place} was built from an earlier version of the field; build with fresh=True "

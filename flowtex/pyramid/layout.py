@@ -12,7 +12,6 @@
         flow               (time, tile row, tile column, byte)
         values             (time, tile row, tile column, scalar, byte)
         digests            (time, part row, part column, byte), of the values of each part
-    samples                of the values at level 0
 
 Velocities and scalars are float32, positions float64; of velocities the first 13 bits are kept.
 Whoever draws makes tiles of a region of a level, with the halo that their paths need, and traces
@@ -184,7 +183,6 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
         "units": dict(field.units),
         "long_names": dict(field.long_names),
         "fingerprint": "",
-        "source": source.identity(),
     }
 
 
@@ -380,8 +378,7 @@ def is_scalar_name(name: str) -> bool:
 _ENDS = _list(_list(_number, 2), 2)
 #: Required entries of the description of a pyramid; more are allowed.
 _ABOUT: dict[str, Check] = {
-    **dict.fromkeys(("name", "length_unit", "time_unit", "version"), _text),
-    **dict.fromkeys(("fingerprint", "source"), _text),
+    **dict.fromkeys(("name", "length_unit", "time_unit", "version", "fingerprint"), _text),
     **dict.fromkeys(("axes", "late", "has_position"), _flag),
     "levels_done": _or_none(_flag),
     "nodes": _list(_whole(2, MOST_NODES), 2),

@@ -12,39 +12,31 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.arrays import norm
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
-from flowtex.field.steps import LazySteps, Nodes, typical_steps
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.layout import (
     DIGESTS,
     FILE_CHUNK,
     FLOW,
-    SHARD_CHUNKS,
     SURFACE,
-    TILE_CELLS,
     VALUES,
-    About,
-    Arrays,
     Part,
     check_about,
-    create_array,
     described,
     empty_field,
     part_digest,
-    parts_along,
     value_names,
 )
 from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.sources.datasets.axes import as_slice
 from flowtex.textures.tiles.pyramid import TileKey, level_shape
-from flowtex.textures.tiles.shared import ends_of
 
 if TYPE_CHECKING:
-    from zarr import AsyncArray, Group
+    from zarr import AsyncArray
     from zarr.core.metadata import ArrayV3Metadata
 
 T = TypeVar("T")
@@ -59,9 +51,6 @@ NUMBER_BYTES = 8
 NODE_BYTES = 24
 #: Most bytes of steps in memory; a longer series is read step by step.
 KEPT_BYTES = 64_000_000
-SAMPLES = "samples"
-#: Nodes of a sample of one quantity at one time.
-MOST_SAMPLES = 1 << 20
 
 
 class _Piece(NamedTuple):
@@ -105,10 +94,7 @@ class Levels:
         top = name.partition("/")[0]
         with self._lock:
             if top not in self._arrays:
-                group = described(self.about, [] if top == SAMPLES else [int(top)])
-                if top == SAMPLES:
-                    create_samples(group, self.about)
-                members: Any = group.members(max_depth=None)
+                members: Any = described(self.about, [int(top)]).members(max_depth=None)
                 self._arrays[top] = {
                     path: bounded(array.metadata, self._objects, path)
                     for path, array in members
@@ -353,69 +339,3 @@ def _wait(reading: Coroutine[Any, Any, T]) -> T:
             task.cancel()
 
     return sync(watched())
-
-
-def create_samples(group: Group, about: About) -> None:
-    """Create the array of samples, from which the ranges of colours are found.
-
-    Each task keeps the least and the greatest value of its part, for whole ranges, and those of
-    every 2^n-th row and column, for percentiles.
-    """
-    parts = parts_along((about["nodes"][0], about["nodes"][1]))
-    size = (len(_quantities(about)), 2 + math.prod(_shape(about)))
-    each = zip(("time", "row", "column"), (len(_steps(about)), *parts), strict=True)
-    whole = zip(("quantity", "value"), size, strict=True)
-    axes = {**{axis: (n, 1) for axis, n in each}, **{axis: (n, n) for axis, n in whole}}
-    create_array(group, SAMPLES, "float64", axes)
-
-
-def write_samples(array: Arrays, about: About, part: Part, nodes: Nodes) -> None:
-    """Add the values of a part of level 0, if ranges are taken from its step."""
-    if part.step not in _steps(about):
-        return
-    step, shape = _spacing(about), _shape(about)
-    values = {**nodes.scalars}
-    if "speed" not in values:
-        values["speed"] = norm(nodes.velocity) * empty_field(about).speed_scale
-    result = np.full((len(values), 2 + math.prod(shape)), np.nan)
-    for row, name in zip(result, _quantities(about), strict=True):
-        known_values: Floats = np.where(nodes.valid, values[name], np.nan)
-        row[:2] = ends_of(known_values, robust=False) or (np.nan, np.nan)
-        sample = known_values[::step, ::step]
-        row[2:].reshape(shape)[: sample.shape[0], : sample.shape[1]] = sample
-    array(SAMPLES)[_steps(about).index(part.step), part.row, part.column] = result
-
-
-def ranges_of(samples: AnyArray, about: About) -> dict[str, list[tuple[float, float]]]:
-    """Return the ends of scalars and of the speed, the whole range and the robust one."""
-    ranges = {}
-    for number, name in enumerate(_quantities(about)):
-        values = samples[:, :, :, number]
-        whole = ends_of(values[..., :2], robust=False)
-        robust = ends_of(values[..., 2:], robust=True)
-        if whole is not None:
-            ranges[name] = [whole, whole if robust is None else robust]
-    return ranges
-
-
-def _quantities(about: About) -> list[str]:
-    return list(dict.fromkeys([*about["scalars"], "speed"]))
-
-
-def _steps(about: About) -> list[int]:
-    """Return the steps that ranges are taken from."""
-    return typical_steps(len(about["times"]))
-
-
-def _spacing(about: About) -> int:
-    """Return the rows and columns from one node of a sample to the next, a power of two."""
-    step = 1
-    while math.prod(about["nodes"]) > MOST_SAMPLES * step * step and step < TILE_CELLS:
-        step *= 2
-    return step
-
-
-def _shape(about: About) -> tuple[int, int]:
-    """Return rows and columns of the sample of a part."""
-    rows, columns = (chunks * TILE_CELLS // _spacing(about) for chunks in SHARD_CHUNKS)
-    return rows, columns

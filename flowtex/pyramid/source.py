@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -13,12 +12,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.cache import digest
+from flowtex._util.arrays import norm
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
 from flowtex.field.field_arrays import FieldArrays
 from flowtex.field.options import FieldOptions
-from flowtex.field.steps import LazySteps, Nodes
+from flowtex.field.steps import LazySteps, Nodes, typical_steps
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.pyramid.places import (
     PyramidError,
@@ -35,7 +34,7 @@ from flowtex.sources.datasets.select import find_pairs, two_names
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.maps import Lines
-from flowtex.sources.opening.dataset_files import dataset_paths, file_and_group, is_dataset_file
+from flowtex.sources.opening.dataset_files import dataset_paths, is_dataset_file
 from flowtex.sources.read_files import errors_of, read_files
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of
@@ -43,6 +42,8 @@ from flowtex.trace.store import chosen_lines, judged_lines
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
+#: Nodes of a sample of one time, from which the ranges of colours are found.
+MOST_SAMPLES = 1 << 20
 
 
 class FieldSource:
@@ -96,10 +97,6 @@ class FieldSource:
         """Return the source with an uncertainty of its direction, see :func:`with_uncertainty`."""
         return FieldSource(with_uncertainty(self.field, value))
 
-    def identity(self) -> str:
-        """Return an empty hash, because only its values identify a field."""
-        return ""
-
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
         """Return ends of scalars and of the speed, whole and robust."""
         field, typical = self.field, self.field.typical
@@ -112,15 +109,13 @@ class FieldSource:
 
 
 class RegionSource:
-    """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened.
+    """A dataset of which each task reads a region.
 
     Its ``field`` has the names, the times and the map, but no nodes.
     """
 
     travels = True
     has_position = None
-    files: Sequence[Path] = ()
-    choice: str = ""
 
     def __init__(self, regions: Regions) -> None:
         lines, steps = regions.lines, len(regions.words["times"])
@@ -141,7 +136,7 @@ class RegionSource:
         """Return positions of nodes."""
         return self.regions.lines.points(rows, columns)
 
-    def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
+    def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read the data of some nodes."""
         return self.regions.nodes(step, rows, columns, valid)
 
@@ -171,21 +166,23 @@ class RegionSource:
         self.field = replace(field, scalars={})
         return self
 
-    def identity(self) -> str:
-        """Return a hash of the paths, sizes and times of change of the files."""
-        infos = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
-        return digest(words=(*infos, self.choice)).hex() if infos else ""
-
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
-        """Return no ranges, because samples of the store determine them."""
-        return {}
-
-    def _members(self) -> Iterator[tuple[Path, os.stat_result]]:
-        """Yield the files that the dataset was opened from, also those of folders."""
-        for path in self.files:
-            inside = (p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
-            for file in sorted(inside):
-                yield file.resolve(), file.stat()
+        """Return ends of a sample of scalars and of the speed, whole and robust."""
+        every = math.ceil(math.sqrt(math.prod(self.shape) / MOST_SAMPLES))
+        rows, columns = (np.arange(0, n, every) for n in self.shape)
+        found: dict[str, list[Floats]] = {}
+        for step in typical_steps(len(self.field.times)):
+            nodes = self.nodes(step, rows, columns)
+            speed = norm(nodes.velocity) * self.field.speed_scale
+            for name, values in {"speed": speed, **nodes.scalars}.items():
+                found.setdefault(name, []).append(np.where(nodes.valid, values, np.nan))
+        both = {
+            k: [ends_of(np.stack(v), robust=r) for r in (False, True)] for k, v in found.items()
+        }
+        ranges = {name: ends for name, ends in both.items() if None not in ends}
+        if not ranges:
+            raise FieldError("no node has data; check the selected variables")
+        return ranges
 
 
 #: Sources of a pyramid.
@@ -227,19 +224,13 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
         place = place_text(files)
         finest, *_ = datasets_at(place, options)
         arrays = read_datasets(finest, options, name=Path(place).stem, regions=regions)
-        source = _source_from(arrays)
-        paths = [] if is_remote(files) else [Path(place)]
-    else:
-        with errors_of(files):
-            time = None
-            if not dataset_paths(files):
-                time = given.pop("time", None)
-                options = FieldOptions(**given)
-            source = _source_from(read_files(files, options, time=time, regions=regions))
-        paths = [file_and_group(path)[0] for path in dataset_paths(files)]
-    if isinstance(source, RegionSource):
-        source.files, source.choice = paths, repr(options)
-    return source
+        return _source_from(arrays)
+    with errors_of(files):
+        time = None
+        if not dataset_paths(files):
+            time = given.pop("time", None)
+            options = FieldOptions(**given)
+        return _source_from(read_files(files, options, time=time, regions=regions))
 
 
 def _source_from(arrays: FieldArrays | Regions) -> NodeSource:

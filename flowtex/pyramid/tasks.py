@@ -42,7 +42,7 @@ from flowtex.pyramid.layout import (
     to_write,
     value_names,
 )
-from flowtex.pyramid.levels import Levels, write_samples
+from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import (
     ChangedError,
     DamageError,
@@ -92,8 +92,6 @@ def make_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
     """Make a part of level 0 from the source; the first step determines the valid nodes."""
     levels, array = _levels(place, run), _writable(place, run)
     nodes = _source_nodes(levels, source, part)
-    if not levels.about.get("ranges"):
-        write_samples(array, levels.about, part, nodes)
     write_part(array, levels.about, part, part.lines(source.shape), _as_written(nodes))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
-from flowtex.pyramid import build, open_store, verify
+from flowtex.pyramid import build, open_store
 from flowtex.pyramid.layout import FILE_CHUNK, sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError, PyramidError
@@ -83,13 +82,12 @@ CASES: dict[str, tuple[Any, dict[str, Any]]] = {
 
 def assert_same(one: Path, other: Path) -> None:
     first, second = contents(one), contents(other)
-    first.pop("samples", None), second.pop("samples", None)
     assert first.keys() == second.keys()
     for name, values in first.items():
         assert values == second[name], name
     about = [{**Levels(store).about} for store in (one, other)]
     for some in about:
-        some.pop("source"), some.pop("seal")
+        some.pop("seal")
     assert about[0] == about[1]
 
 
@@ -203,32 +201,7 @@ def corrected(data: Any, step: int = 0) -> Any:
     return other
 
 
-def test_a_file_is_known_by_path_size_and_time_of_change(tmp_path: Path, reads: list[int]) -> None:
-    file, store = tmp_path / "flow.nc", tmp_path / "a.zarr"
-    more: dict[str, Any] = {"progress": False, "lines": "streamlines"}
-    small(2).to_netcdf(file)
-    made = build(file, store, **more).made
-    reads.clear()
-    assert build(file, store, **more).made == 0
-    assert reads == []
-    # It was touched: its values are read, and are the same.
-    os.utime(file, ns=(0, 0))
-    assert build(file, store, **more).made == 0
-    assert reads == [0, 1]
-    build(file, store, **more)
-    assert reads == [0, 1]
-    # The old file may still be open, and HDF5 locks it.
-    corrected(small(2), 1).to_netcdf(tmp_path / "new.nc")
-    (tmp_path / "new.nc").replace(file)
-    for _ in range(2):
-        with pytest.raises(ChangedError, match=r"columns 0-35 differ at step 1\. .* fresh=True"):
-            build(file, store, **more)
-    assert build(file, store, **more, fresh=True).made == made
-    assert verify(store, progress=False) == []
-    assert build(file, store, **more).made == 0
-
-
-def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path) -> None:
+def test_another_source_is_refused(tmp_path: Path) -> None:
     store, data = tmp_path / "a.zarr", small(2)
     build(data, store, progress=False)
     assert build(data, store, progress=False).made == 0
@@ -243,28 +216,10 @@ def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path) -> None:
         open_store(store)
 
 
-def test_a_file_that_changes_while_it_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file, store, nodes = tmp_path / "flow.nc", tmp_path / "a.zarr", Regions.nodes
-    small().to_netcdf(file)
-
-    def touching(self: Regions, *given: Any) -> Any:
-        os.utime(file, ns=(0, len(given)))
-        return nodes(self, *given)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(RegionSource, "nodes", lambda self, *given: touching(self.regions, *given))
-        with pytest.raises(ChangedError, match="changed while it was read"):
-            build(file, store, progress=False)
-    build(file, store, progress=False)
-    assert verify(store, progress=False) == []
-
-
 def test_robust_ranges_of_large_data_are_those_of_a_sample(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.pyramid.levels.MOST_SAMPLES", 1000)
+    monkeypatch.setattr("flowtex.pyramid.source.MOST_SAMPLES", 1000)
     field = FlowField.from_xarray(around())
     build(around(), tmp_path / "a.zarr", progress=False)
     ranges = Levels(tmp_path / "a.zarr").about["ranges"]
@@ -272,7 +227,9 @@ def test_robust_ranges_of_large_data_are_those_of_a_sample(
     for name, (whole, robust) in ranges.items():
         values = np.asarray(field.scalars[name])[:, field.valid]
         values = values[np.isfinite(values)]
-        assert whole == [values.min(), values.max()]
+        assert np.abs(np.subtract(whole, [values.min(), values.max()])).max() < 0.05 * np.ptp(
+            values
+        )
         away = np.abs(np.percentile(values, (2, 98)) - robust).max()
         assert 0 < away < 0.02 * np.ptp(values)
 
@@ -296,7 +253,7 @@ def test_a_mesh_makes_the_pyramid_of_its_field(tmp_path: Path) -> None:
 
 def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:
     data = around()
-    with pytest.raises(FieldError, match=r"none of the .* nodes has data"):
+    with pytest.raises(FieldError, match="no node has data"):
         build(data.where(data.u > 9), tmp_path / "a.zarr", progress=False, u="u", v="v")
     field, times = FlowField.from_xarray(data), np.arange(2.0)
     refused: dict[str, Any] = {"globe": True, "level": 0, "name": "flow", "times": times}
