@@ -13,7 +13,7 @@ from flowtex._util.arguments import checked_number
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
 from flowtex.plotting.bars import FlowBar
-from flowtex.plotting.overlay import MapOverlay, Overlay, StructureOverlay
+from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.flow_mapper import Ends
@@ -95,14 +95,12 @@ class FlowHandle(AppearanceAttributes):
         self.scene, self.actor, self.bar = scene, actor, bar
         self._plotter, self._renderer, self._forget = plotter, renderer, forget
         self._surface, self._shown_time, self._end = surface, scene.time, end
-        self._overlays: dict[type[Overlay], Overlay] = {}
-        #: Called in a thread when more data are ready; ``None`` if drawing waits for all data.
-        self._notify: Callable[[], None] | None = None
         self._shown: Appearance | None = None
         #: What the flow was read from, and how, and the state in which that was.
         self._source: tuple[Any, FieldOptions] | None = None
         self._state: tuple[int, ...] = ()
-        self._show_overlays(MapOverlay, StructureOverlay)
+        self._map = MapOverlay(actor, renderer, scene, surface)
+        self._structure = StructureOverlay(actor, renderer, scene, surface)
         self._show_appearance()
         drawn: list[tuple[Any, str, Callable[[], None], float]] = [
             (renderer, "StartEvent", self._before_frame, FIRST),
@@ -180,9 +178,7 @@ class FlowHandle(AppearanceAttributes):
         tiles that it needs.
         """
         self._surface.load_in_background(notify)
-        self._notify = notify
-        for overlay in self._overlays.values():
-            overlay.notify = notify
+        self._structure.notify = notify
 
     @property
     def mesh(self) -> pv.PolyData:
@@ -201,7 +197,7 @@ class FlowHandle(AppearanceAttributes):
     @property
     def busy(self) -> bool:
         """Whether tiles or the structure of the last picture are still being computed."""
-        return self._surface.busy or any(each.busy for each in self._overlays.values())
+        return self._surface.busy or self._structure.busy
 
     def set_surface(self, mesh: Any, **options: Any) -> None:
         """Draw the flow on another surface, such as a cutting plane that has moved.
@@ -253,7 +249,8 @@ class FlowHandle(AppearanceAttributes):
         self._end()
         self._surface.show(textures, scene.pyramid, scene.moment)
         self._surface.set_moment(*scene.moment)
-        self._show_overlays(MapOverlay, StructureOverlay)
+        self._map.show(scene)
+        self._structure.show(scene)
         self._show_appearance("lighting")
         self._show_colours()
         self._show_bar()
@@ -261,15 +258,6 @@ class FlowHandle(AppearanceAttributes):
         self._end = scene.observe(self._changed)
         if render:
             self._draw()
-
-    def _show_overlays(self, *kinds: type[Overlay]) -> None:
-        """Draw what lies above and below the flow, where the scene has any."""
-        for kind in kinds:
-            if (overlay := self._overlays.get(kind)) is not None:
-                overlay.show(self.scene)
-            elif kind.is_needed(self.scene):
-                place = self.actor, self._renderer, self.scene, self._surface
-                self._overlays[kind] = kind(*place, self._notify)
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
@@ -287,8 +275,8 @@ class FlowHandle(AppearanceAttributes):
             subject.RemoveObserver(tag)
         self._end()
         self.scene.close()
-        for overlay in self._overlays.values():
-            overlay.close()
+        self._map.close()
+        self._structure.close()
         self._surface.close()
         self.bar.remove()
         plotter.remove_actor(self.actor, render=False)
@@ -307,7 +295,7 @@ class FlowHandle(AppearanceAttributes):
             self.remove(render=False)
 
     def _changed(self, affects: Change) -> None:
-        self._show_overlays(StructureOverlay)
+        self._structure.show(self.scene)
         if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
             if not self.field.steady and self._shown_time != self.scene.time:
                 self._shown_time = self.scene.time
@@ -317,7 +305,7 @@ class FlowHandle(AppearanceAttributes):
             self._show_appearance()
         else:
             self._surface.set_textures(self.scene.textures, self.scene.pyramid)
-            self._show_overlays(MapOverlay)
+            self._map.show(self.scene)
         self._draw()
 
     def _show_appearance(self, *anew: str) -> None:
@@ -341,7 +329,7 @@ class FlowHandle(AppearanceAttributes):
             for name, value in LIGHT.items():
                 setattr(prop, name, value if is_lit else getattr(theme_lighting, name))
         if old is not None and differs("coastlines", "graticule", "land", "lighting", "opacity"):
-            self._show_overlays(MapOverlay)
+            self._map.show(self.scene)
         if differs("color"):
             prop.color = new.color
         if differs("scalars", "cmap", "log_scale", "norm", *COLOURS):

@@ -81,31 +81,14 @@ class Overlay:
     """
 
     def __init__(
-        self,
-        actor: pv.Actor,
-        renderer: pv.Renderer,
-        scene: Scene,
-        surface: FlowSurface,
-        notify: Callable[[], None] | None = None,
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
     ) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
-        #: Called in a thread at the end of a search; ``None`` if drawing waits for the search.
-        self.notify = notify
         self._parts: list[Part] = []
         callback = weak_callback(self._before_frame)
         self._observed = renderer.AddObserver("StartEvent", callback, LAST)
         self.show(scene)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a search still runs in the background."""
-        return False
-
-    @staticmethod
-    def is_needed(scene: Scene) -> bool:
-        """Return whether a scene has anything to draw."""
-        raise NotImplementedError
 
     def show(self, scene: Scene) -> None:
         """Follow the appearance, the settings and the time of a scene."""
@@ -214,21 +197,15 @@ class MapOverlay(Overlay):
     _field: Any = None  #: Of which the lines were made.
     _radius: float | None = None
 
-    @staticmethod
-    def is_needed(scene: Scene) -> bool:
-        """Return whether a field is on a map or the globe."""
-        return scene.field.projection is not None
-
     def show(self, scene: Scene) -> None:
         """Follow the appearance, and the coarsest level of a large field."""
         if self._field is not scene.whole:
             self._field = scene.whole
             self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._clear()
-        if not self.is_needed(scene):
-            self._radius = None
-            return
         self._scene, self._radius, appearance = scene, None, scene.appearance
+        if scene.field.projection is None:
+            return
         if appearance.land is not None:
             self._add_land(appearance.land)
         for option, stroke in STROKES.items():
@@ -315,11 +292,8 @@ class StructureOverlay(Overlay):
     _shown: tuple[object, ...] = ()
     _request: tuple[object, ...] = ()
     _found: Future[None] | None = None
-
-    @staticmethod
-    def is_needed(scene: Scene) -> bool:
-        """Return whether the settings request any of it."""
-        return any(getattr(scene.settings, name) for name in STRUCTURE)
+    #: Called in a thread at the end of a search; ``None`` if drawing waits for the search.
+    notify: Callable[[], None] | None = None
 
     @property
     def busy(self) -> bool:
@@ -344,20 +318,21 @@ class StructureOverlay(Overlay):
     def show(self, scene: Scene) -> None:
         """Follow the settings and the time of a scene."""
         self._scene = scene
-        if self._shown != self._key:
-            self._clear()
-            self._shown = ()
-            self._show()
+        self._update()
 
     def _before_frame(self) -> None:
-        if self._shown != self._key:
-            self._clear()
-            self._show()
+        self._update()
         super()._before_frame()
 
-    def _show(self) -> None:
-        """Draw the requested structure, or find it in the background first."""
+    def _update(self) -> None:
+        """Draw the requested structure if it changes, or find it in the background first."""
+        if self._shown == self._key:
+            return
+        self._clear()
+        self._shown = ()
         scene, settings = self._scene, self._scene.settings
+        if not any(getattr(settings, name) for name in STRUCTURE):
+            return
         request = (scene.step, settings.critical_points, settings.separatrices)
         if any(request[1:]) and self.notify is not None and not scene.structure.has(*request):
             if self._request != (scene.structure, request):

@@ -74,16 +74,11 @@ class Probe:
         fades out beyond the last slice.
     slice_lags
         Absolute lags of the trace slices at this point, (M + 1,), the first one 0.
-    slice_level
-        Mip level of the trace slices.
     weights
         Weight of each sample in the mean, (K,); their sum is 1.
     noise
         Noise at each sample, (K,), with mean 0 and standard deviation 1; for an image instead of
         noise, red, green and blue times opacity, and opacity, (K, 4).
-    noise_coordinates
-        Positions of the samples in an image instead of noise, (K, 2) as (u, v), 0 to 1 across it;
-        ``None`` for noise.
     level
         Level of detail; each level is twice as coarse as the previous one. For an image, its mip
         level.
@@ -125,10 +120,8 @@ class Probe:
     slices: Indices
     shares: Floats
     slice_lags: Floats
-    slice_level: float
     weights: Floats
     noise: Floats
-    noise_coordinates: Floats | None
     level: float
     pixel: float
     grain: float
@@ -247,7 +240,7 @@ class _Pixel:
         lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
         order = np.argsort(-lags)
         lags = lags[order] + 0.0
-        points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
+        points, coordinates = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         first_slice, shares = bracket(knots, np.abs(lags), side="left")
         certainty = self._summing.certainty(self._fragments.place, self._level)
@@ -269,10 +262,8 @@ class _Pixel:
             slices=np.stack([first_slice, first_slice + 1], axis=-1),
             shares=shares,
             slice_lags=knots * self._unit,
-            slice_level=float(self._level[0]),
             weights=recorder.weights[order],
             noise=recorder.noise[order],
-            noise_coordinates=noise,
             level=float(recorder.level[0]),
             pixel=pixel,
             grain=grain,
@@ -304,13 +295,11 @@ class _Pixel:
             displacements.append(moved)
         lag = np.concatenate(lags)
         order = np.argsort(-lag)
-        points, _, _ = self._places(np.concatenate(displacements)[order], coordinates=False)
+        points, _ = self._places(np.concatenate(displacements)[order], coordinates=False)
         return lag[order], points
 
-    def _places(
-        self, displacement: Floats, *, coordinates: bool = True
-    ) -> tuple[Floats, Floats, Floats | None]:
-        """Return points, coordinates as (j, i), and image coordinates of displacements (N, 3)."""
+    def _places(self, displacement: Floats, *, coordinates: bool = True) -> tuple[Floats, Floats]:
+        """Return points, and coordinates as (j, i), of displacements (N, 3)."""
         geometry, image = self._textures.geometry, self._textures.image
         place = self._fragments.image
         # Relative to the place in double precision, as renderers have the nodes in single.
@@ -318,11 +307,10 @@ class _Pixel:
         if image is None or place is None:
             points = start + displacement @ geometry.frame
             nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
-            return points, nearest, None
-        coordinate = place.value + displacement[:, :2]
-        first, index = (image.index(places) for places in (place.value, coordinate))
+            return points, nearest
+        first, index = map(image.index, (place.value, place.value + displacement[:, :2]))
         points = start + surface.at(index) - surface.at(first)
-        return points, surface.wrap(index)[:, ::-1], coordinate
+        return points, surface.wrap(index)[:, ::-1]
 
     def _sizes(self) -> tuple[float, float]:
         """Return the longer side of the pixel, and the size of a grain."""

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from flows import gyre, swinging, torus
-from scipy import ndimage
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -116,7 +115,6 @@ def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Gener
         got = probe(view, at, pixel=shot, size=SIZE, clock=clock)
         assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
         assert got.level == pytest.approx(picture.noise_level[y, x], abs=1e-6)
-        assert got.slice_level == pytest.approx(picture.slice_level[y, x], abs=1e-6)
         assert got.field_values.position == pytest.approx(picture.position[y, x], abs=1e-6)
         # And it is the sum of what is told about it.
         assert got.gain * (got.weights @ got.noise) == pytest.approx(got.value, abs=1e-9)
@@ -217,28 +215,6 @@ def test_each_doubling_of_the_pixel_is_a_level() -> None:
     assert far.grain / near.grain == pytest.approx(2)
     assert far.step / near.step == pytest.approx(2, rel=1e-3)
     assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
-
-
-def test_an_image_is_looked_up_where_the_slices_lead() -> None:
-    """Figure 2 of the paper: the slice at (i, j) gives (a, b), and the image there is met."""
-    view = view_of(gyre(), **LAID, lod=False, samples=9)
-    image = view.textures.image
-    assert image is not None
-    got = probe(view, (14.0, 33.0), pixel=0.01)
-    assert (got.level, got.slice_level) == (0.0, 0.0)
-    at = got.noise_coordinates
-    assert at is not None
-    # The first look-up, in the traces themselves: half precision apart.
-    slices, (j, i) = view.store.at(0), (14, 33)
-    for lag, where in zip(got.lags, got.coordinates, strict=True):
-        held = abs(lag) / slices.unit[j, i]
-        traced = slices.positions(held, forward=bool(lag < 0))[j, i][::-1]
-        assert where == pytest.approx(traced, abs=5e-3)
-        assert image.at(where[None, ::-1])[0] == pytest.approx(at[np.argmax(got.lags == lag)])
-    # The second one, in the texture.
-    texel = (at[:, ::-1] * image.texels.shape[:2] - 0.5).T
-    met = [ndimage.map_coordinates(c, texel, order=1) for c in np.moveaxis(image.texels, -1, 0)]
-    assert got.noise == pytest.approx(np.stack(met, axis=-1), abs=2e-2)
 
 
 def test_a_picture_is_met_in_its_colours() -> None:
