@@ -317,7 +317,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"depth": 10}, "did you mean 'level'?"),
         ({"colorbar": True}, "did you mean 'show_scalar_bar'?"),
         ({"window_size": 5}, "exist; help(flowtex.render)"),
-        ({"mesh": "era5.nc", "longitude": -30}, "use sel={'longitude': -30}"),
+        ({"longitude": -30}, "use sel={'longitude': -30}"),
         ({"opacity": 2}, "opacity is 2; expected a number from 0 to 1"),
         ({"clim": (1, 2, 3)}, "clim is (1, 2, 3); expected two numbers, (low, high)"),
         ({"clim": "ab"}, "clim is 'ab'; expected two numbers, (low, high), the lower one"),

@@ -102,7 +102,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
     from flowtex.scene.scene import make_scenes
 
     bar_options = options.pop("scalar_bar_args", None)
-    arguments, size = Options.split(mesh=mesh, **options), checked_size(size)
+    arguments, size = Options.split(**options), checked_size(size)
     scenes = make_scenes(mesh, arguments)
     plotter, _ = open_plotter(scenes, arguments.view, size, scalar_bar_args=bar_options)
     plotter.show()
@@ -119,7 +119,7 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
         raise FieldError(
             "two views need a window, but there is no display; use flowtex.render to draw both"
         )
-    field = read_field(mesh, Options.split(mesh=mesh, **options).field)
+    field = read_field(mesh, Options.split(**options).field)
     from flowtex.app import serve
 
     serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})

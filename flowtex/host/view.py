@@ -197,7 +197,7 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
     """
     pyvista = sys.modules.get("pyvista")
     if pyvista is None or not isinstance(mesh, pyvista.BasePlotter):
-        return mesh, Options.split(mesh=mesh, **options)
+        return mesh, Options.split(**options)
     field, look, bodies = mesh.flowtex.for_browser()
     arguments = {name: value for name, value in options.items() if value is not None}
     return field, replace(Options.split(**{**look, **arguments}), bodies=bodies)

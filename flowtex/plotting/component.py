@@ -30,8 +30,6 @@ from flowtex.textures.images import as_image
 COLOURS = "flowtex colours"
 #: A view of the whole surface.
 WHOLE = ViewOptions()
-#: VTK's shape of labels without a plate.
-NO_PLATE = 0
 
 
 @pv.register_plotter_component("flowtex")
@@ -110,7 +108,7 @@ class FlowtexComponent:
         >>> plotter.close()
         """
         options |= {"vectors": vectors, "scalars": scalars, "cmap": cmap}
-        chosen = Options.split("field", "appearance", mesh=mesh, **options)
+        chosen = Options.split("field", "appearance", **options)
         (scene,) = make_scenes(mesh, chosen)
         actor: dict[str, Any] = {
             "name": name,
@@ -138,7 +136,9 @@ class FlowtexComponent:
     ) -> FlowHandle:
         """Draw a scene; the parameters are those of :meth:`add`."""
         first = not self._plotter.renderer.actors
-        handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args, **actor_options)
+        handle = FlowHandle(
+            self._plotter, scene, self._handles.remove, scalar_bar_args, **actor_options
+        )
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
             point_camera(self._plotter, scene.whole.surface)
@@ -201,10 +201,6 @@ class FlowtexComponent:
             handle.remove(render=False)
         if render:
             self._plotter.render()
-
-    def _forget(self, handle: FlowHandle) -> None:
-        if handle in self._handles:
-            self._handles.remove(handle)
 
     def __plotter_close__(self) -> None:
         """Free the graphics card when the plotter closes."""
@@ -286,10 +282,6 @@ def open_plotter(
     return plotter, handles
 
 
-class _NotDrawnError(Exception):
-    """An actor is left out; the text is the reason."""
-
-
 def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, list[str]]:
     """Return the other objects of a scene, and those left out with the reasons.
 
@@ -304,12 +296,12 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
     for name, actor in _actors(plotter, shown):
         try:
             if actor not in renderer.actors.values():
-                raise _NotDrawnError("in another part of the window")
+                raise FieldError("in another part of the window")
             if isinstance(actor, pv.Actor) or actor.IsA("vtkActor"):
                 bodies = [body for body in _bodies(actor) if len(body.points)]
                 size = sum(len(body.points) for body in bodies)
                 if size > room:
-                    raise _NotDrawnError(
+                    raise FieldError(
                         f"{size:,} vertices exceed the {room:,} that are left of "
                         f"{MOST_VERTICES:,} in all; decimate the mesh, or extract a part"
                     )
@@ -317,7 +309,7 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
                 meshes += bodies
             else:
                 labels += _labels(actor)
-        except _NotDrawnError as reason:
+        except FieldError as reason:
             left_out.append(f"{name!r} ({reason})")
     if len(labels) > MOST_LABELS:
         left_out.append(f"{len(labels) - MOST_LABELS:,} labels beyond the limit of {MOST_LABELS}")
@@ -350,9 +342,9 @@ def _bodies(actor: Any) -> Iterator[Body]:
     elif data is not None and data.IsA("vtkDataSet"):
         blocks = [pv.wrap(data)]
     else:
-        raise _NotDrawnError(f"drawn by {mapper.GetClassName()}, which cannot be sent to a browser")
+        raise FieldError(f"drawn by {mapper.GetClassName()}, which cannot be sent to a browser")
     if actor.GetTexture() is not None:
-        raise _NotDrawnError("coloured by a texture")
+        raise FieldError("coloured by a texture")
     matrix = pv.array_from_vtkmatrix(actor.GetMatrix())
     for block in blocks:
         yield from _parts_of(_coloured(block, mapper, prop).transform(matrix, inplace=False), prop)
@@ -439,7 +431,7 @@ def _bytes(colour: ArrayLike) -> Bytes:
 def _labels(actor: Any) -> Iterator[Label]:
     mapper = actor.GetMapper() if actor.IsA("vtkActor2D") else None
     if mapper is None or not mapper.IsA("vtkLabelPlacementMapper"):
-        raise _NotDrawnError(f"{actor.GetClassName()}, neither a mesh nor a point label")
+        raise FieldError(f"{actor.GetClassName()}, neither a mesh nor a point label")
     hierarchy = source = mapper.GetInputAlgorithm()
     name, look = hierarchy.GetLabelArrayName(), hierarchy.GetTextProperty()
     while source.IsA("vtkPointSetToLabelHierarchy") or source.IsA("vtkSelectVisiblePoints"):
@@ -447,7 +439,8 @@ def _labels(actor: Any) -> Iterator[Label]:
     source.Update()
     points = pv.wrap(source.GetOutputDataObject(0))
     texts = points.GetPointData().GetAbstractArray(name)
-    opacity = 0.0 if mapper.GetShape() == NO_PLATE else mapper.GetBackgroundOpacity()
+    has_plate = mapper.GetShape() != mapper.NONE
+    opacity = mapper.GetBackgroundOpacity() if has_plate else 0.0
     for n, position in enumerate(points.points):
         yield Label(
             str(texts.GetVariantValue(n).ToString()),

@@ -162,11 +162,6 @@ class FlowHandle(AppearanceAttributes):
         self._draw()
 
     @property
-    def pixel(self) -> float:
-        """Length that a pixel of the settings covers at the focus, in the mesh's units."""
-        return self._surface.view.pixel * self._surface.view.density
-
-    @property
     def closed(self) -> bool:
         """Whether the texture has been removed."""
         return self._plotter is None

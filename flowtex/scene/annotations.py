@@ -23,10 +23,8 @@ from flowtex._util.colours import ColourScale, distinct_texts, is_light, rgb
 from flowtex.field.dates import UNIT_LENGTH, time_text
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.marks import (
-    DOT_PX,
     KIND_MARKS,
     LINE_COLORS,
-    LINE_PX,
     MIDDLE_COLOR,
     NULLCLINE_COLORS,
     RIM_COLOR,
@@ -71,11 +69,7 @@ TIME_WIDTH = 0.4
 #: Widest legend with all of its values, as a share of the width of the picture.
 LEGEND_WIDTH = 0.6
 METRES_PER_KM = 1000
-#: Diameter of a dot in a legend, in lines of text.
-DOT_SHARE = 0.6
-#: Height of a line in a legend, in lines of text.
-LINE_SHARE = 0.3
-#: Supersampling factor of dots and lines in a legend.
+#: Supersampling factor of the tips of a legend.
 SMOOTH = 4
 
 
@@ -293,7 +287,7 @@ class _Writer:
         paths = structure.paths(step, saddles) if saddles else {}
         rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
         rows |= NULLCLINE_COLORS if settings.nullclines else {}
-        width, side = max(map(self._width, rows), default=0) + self._line, SMOOTH * self._line
+        width = max(map(self._width, rows), default=0) + self._line
         forms = (2, 3, len(rows)) if self.small else (len(rows), 2, 1)
         for lines in dict.fromkeys(min(form, len(rows)) for form in forms if rows):
             wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
@@ -301,20 +295,15 @@ class _Writer:
             for n, (name, look) in enumerate(rows.items()):
                 x, y = (width + self._line) * (n // lines), self._line * (n % lines)
                 self._write(draw, x + self._line, y, name)
-                mark = Image.new("RGBA", (side, side))
                 if isinstance(look, str):
-                    for thick, color in zip(LINE_PX, (RIM_COLOR, look), strict=True):
-                        high = LINE_SHARE * side * thick / LINE_PX[0] / 2
-                        box = (side / 5 - high, side / 2 - high, side * 0.7 + high, side / 2 + high)
-                        ImageDraw.Draw(mark).rectangle(box, color)
+                    marks = [("━", look)]
                 else:
-                    colors = [RIM_COLOR, look.color, MIDDLE_COLOR][: 3 if look.turns else 2]
-                    for diameter, color in zip(DOT_PX, colors, strict=False):
-                        size = DOT_SHARE * diameter / DOT_PX[0] * side / 2
-                        low, high = side / 2 - size, side / 2 + size
-                        ImageDraw.Draw(mark).ellipse((low, low, high, high), color)
-                place = (self._pad + x - self._line // 8, self._pad + y)
-                image.alpha_composite(mark.resize((self._line,) * 2, Image.Resampling.BOX), place)
+                    marks = [("●", look.color), ("·", MIDDLE_COLOR)][: 1 + look.turns]
+                left, top = self._pad + x + 0.4 * self._line, self._pad + y + self._line / 2
+                for rim, (mark, color) in zip((RIM_COLOR, MIDDLE_COLOR), marks, strict=False):
+                    stroke: Any = {"stroke_width": self._thin, "stroke_fill": rim}
+                    draw.text((left, top), mark, color, self.font, "mm", **stroke)
+                    top += self._thin / 2  # the middle of a large dot is lower
             yield image
 
     def _legend(

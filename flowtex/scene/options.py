@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +33,6 @@ from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
 from flowtex.scene.fields import ARRAY, DATA
 from flowtex.settings import TABLE, Settings, SettingsError
-from flowtex.sources.datasets import is_dataset
 
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies
@@ -381,11 +379,10 @@ class Options:
         return Settings(**values)
 
     @classmethod
-    def split(cls, *kinds: str, mesh: Any = None, **values: Any) -> Options:
+    def split(cls, *kinds: str, **values: Any) -> Options:
         """Sort fields of the option classes, and settings, by name.
 
         Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
-        The mesh is what is drawn, whose axes may be named by mistake.
         Raises a SettingsError for an unknown argument, with the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
@@ -404,12 +401,7 @@ class Options:
                 if close := closest(name, known):
                     near = f"did you mean {' or '.join(map(repr, close))}?"
                 axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
-                several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
-                has_axis = any(name in getattr(one, "dims", ()) for one in several)
-                if has_axis and is_dataset(mesh) and "sel" in known:
-                    near = axis
-                of_file = f"; {axis}" if isinstance(mesh, (str, Path)) else ""
-                near = near or f"help(flowtex.render) has all of them{of_file}"
+                near = near or f"help(flowtex.render) has all of them; {axis}"
                 raise SettingsError(f"the setting or argument {name!r} does not exist; {near}")
         if is_array:  # which is read with the mesh, and is no argument of its own
             object.__setattr__(parts["field"], ARRAY, array)

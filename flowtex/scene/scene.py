@@ -106,7 +106,7 @@ class Scene:
         These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings. Raises a
         FieldError, SettingsError or ImageError where one does not fit.
         """
-        return make_scenes(mesh, Options.split("field", "appearance", mesh=mesh, **options))[0]
+        return make_scenes(mesh, Options.split("field", "appearance", **options))[0]
 
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
         """Return a second scene of the same field, or of another one, that differs in changes.

@@ -20,7 +20,6 @@ from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
-from flowtex.settings import SettingsError
 
 
 def test_each_argument_goes_where_it_belongs() -> None:
@@ -128,18 +127,6 @@ def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
 def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
     options: dict[str, Any] = {"zoom": 50, "scalars": False, "color": "black", "strength": 0.0}
     assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0
-
-
-def test_the_axis_of_a_dataset_is_selected_along() -> None:
-    data = pytest.importorskip("xarray").Dataset(
-        {"u": (("number", "lat", "lon"), np.ones((2, 3, 3)))}
-    )
-    with pytest.raises(SettingsError, match=r"along an axis, use sel={'number': 1}$"):
-        Scene.of(data, number=1)
-    with pytest.raises(SettingsError, match=r"has all of them$"):
-        Scene.of(data, member=1)
-    with pytest.raises(SettingsError, match=r"along an axis, use sel={'longitude': -30}$"):
-        Options.split(mesh="era5.nc", longitude=-30)
 
 
 def test_no_land_has_two_names() -> None:

@@ -100,8 +100,6 @@ class Sharing(Controller):
         except (FieldError, ModuleNotFoundError, OSError) as error:
             self.context.complain(error)
             return
-        if job.notice:
-            self.context.complain(job.notice)
         self.state.set(out_progress=0.0, out_file=None)
         self._task = asyncio.create_task(self._run(job, before))
 
@@ -236,15 +234,12 @@ class Job:
         self._viewport, self._size, self._quality = viewport, size, quality
         self._supersampling, self._density = supersampling, density
         self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
-        self.notice = ""  #: Why a movie hardly moves; empty where it does.
         self.frames: FrameTimes | None = None
         self._report: Callable[[float], None] = lambda share: None
         if suffix != ".png":
             check_movie(path, size, fps, quality)
             settings = _moving(viewport.handle.settings, viewport.field)
             self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
-            pixel = viewport.handle.pixel * viewport.size[1] / size[1]
-            self.notice = self.frames.notice(settings, pixel * density)
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
     async def run(self, report: Callable[[float], None]) -> Path:

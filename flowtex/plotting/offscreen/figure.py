@@ -99,7 +99,7 @@ def extent(
     >>> flowtex.extent(field, size=(200, 100), margin=0)
     (0.0, 2.0, 0.0, 1.0)
     """
-    chosen, size = Options.split(mesh=mesh, **options), checked_size(size)
+    chosen, size = Options.split(**options), checked_size(size)
     if chosen.view.beside is not None:
         raise FieldError("beside makes two views, which do not have one common extent; omit it")
     surface = make_scenes(mesh, chosen)[0].whole.surface
@@ -174,7 +174,7 @@ def axes(
             f"ax is {brief(ax)}; expected rectilinear or polar matplotlib axes, such as those of "
             "plt.subplots(), or axes of cartopy"
         )
-    chosen = Options.split("field", "appearance", mesh=mesh, **options)
+    chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
     image.set_clip_path(ax.patch)

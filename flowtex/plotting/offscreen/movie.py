@@ -20,7 +20,6 @@ import numpy as np
 from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import track
-from flowtex.errors import notify
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.encoders import (
@@ -41,8 +40,6 @@ from flowtex.settings import TABLE, Settings
 STEP_S = 0.25
 #: Limits of the seconds of a whole run.
 RUN_S = (5.0, 30.0)
-#: Fewest frames that show in which direction the flow goes.
-LEAST_FRAMES = 4
 #: Most frames of a movie.
 MAX_FRAMES = 36_000
 #: Most frames in a second.
@@ -67,26 +64,6 @@ class FrameTimes:
     def __len__(self) -> int:
         """Count the frames."""
         return len(self.times) or len(self.clocks)
-
-    def notice(self, settings: Settings, pixel: float) -> str:
-        """Return why the movie hardly moves, and the remedy; empty where it does.
-
-        ``pixel`` is the length that a pixel covers, in the mesh's units.
-        """
-        if len(self) < LEAST_FRAMES:
-            needed, remedy = LEAST_FRAMES / self.fps, f"fps={LEAST_FRAMES / self.seconds:g}"
-            reason = f"it has {len(self)} of the {LEAST_FRAMES} frames that show a direction"
-        else:
-            wave = WAVE_PIXELS * (1.0 if settings.speed_in == "pixels" else pixel)
-            needed = wave / max(self.speed, 1e-30)
-            if self.times or self.seconds >= needed * (1 - 1e-9):
-                return ""
-            reason = f"speed is {self.speed:g} {settings.speed_in} per second"
-            remedy = f"speed={wave / self.seconds:.3g}"
-        return (
-            f"the movie of {self.seconds:g} seconds hardly moves, because {reason}; expected at "
-            f"least seconds={needed:.3g}, or {remedy}"
-        )
 
 
 def frame_times(
@@ -215,9 +192,8 @@ def movie(
     seconds
         Duration of the movie, 0.1 to 600. A steady flow repeats after this time; the default is the
         setting ``period``. With the default ``speed`` a short movie streams faster, 96 pixels in
-        its duration; for another one that is too slow, a notice gives the duration needed. The
-        default for a time-varying field is a quarter of a second per step, but at least 5 and at
-        most 30 seconds.
+        its duration. The default for a time-varying field is a quarter of a second per step, but at
+        least 5 and at most 30 seconds.
     fps
         Frames per second; 30 by default, and 20 in a GIF.
     quality
@@ -295,7 +271,7 @@ def frames(
 def _prepare(
     mesh: Any, words: dict[str, Any], fps: float, seconds: float | None, **drawing: Any
 ) -> tuple[FrameTimes, Generator[Bytes, None, None]]:
-    options = Options.split(mesh=mesh, **words)
+    options = Options.split(**words)
     field = read_field(mesh, options.field)
     settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
@@ -309,11 +285,8 @@ def _prepare(
         with closing(OffscreenPlotter(scenes, options.view, **drawing)) as plotter:
             for number in range(len(shown)):
                 if shown.times:
-                    picture = plotter.picture(time=shown.times[number])
+                    yield plotter.picture(time=shown.times[number])
                 else:
-                    picture = plotter.picture(clock=shown.clocks[number])
-                if not number and (text := shown.notice(settings, plotter.handles[0].pixel)):
-                    notify(text)
-                yield picture
+                    yield plotter.picture(clock=shown.clocks[number])
 
     return shown, draw()

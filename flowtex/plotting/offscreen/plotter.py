@@ -228,7 +228,7 @@ def render(
     >>> flowtex.render(field, size=(160, 120), zoom=4, samples=9).shape
     (120, 160, 3)
     """
-    chosen = Options.split(mesh=mesh, **options)
+    chosen = Options.split(**options)
     if scalar_bar_args and (annotations or not chosen.appearance.show_scalar_bar):
         case = "without annotations" if annotations else "with show_scalar_bar=True"
         notify(f"scalar_bar_args is given, but this bar is drawn only {case}; it is not used")

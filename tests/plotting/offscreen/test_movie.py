@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import re
 import sys
 import threading
 import warnings
@@ -19,7 +18,6 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.progress import Stopped
 from flowtex.cli import main
-from flowtex.errors import Notice
 from flowtex.plotting.offscreen.encoders import MovieError, check_movie, write_movie
 from flowtex.plotting.offscreen.movie import Movie, frame_times, frames
 from flowtex.settings import Settings
@@ -233,30 +231,6 @@ def test_short_movies_move_without_a_seam(seconds: float, fps: float, opengl: ob
     shares = changed(drawn)
     assert len(drawn) == round(seconds * fps)
     assert shares.min() > 0.1 and shares[-1] == pytest.approx(shares[:-1].mean(), rel=0.25)
-
-
-@pytest.mark.parametrize(
-    ("options", "needed"),
-    [
-        ({"seconds": 1.0, "speed": 20.0}, 4.8),  # 96 pixels
-        ({"seconds": 1.0, "speed": 2.0, "speed_in": "units"}, None),
-        ({"seconds": 0.4, "fps": 5.0}, 0.8),  # four frames
-    ],
-)
-def test_a_movie_that_hardly_moves_states_the_needed_duration(
-    options: dict[str, Any], needed: float | None, opengl: object
-) -> None:
-    options = {"size": SIZE, "fps": 10.0, "samples": 9, **options}
-    with pytest.warns(Notice, match="hardly moves") as caught:
-        list(frames(shear(), **options))
-    match = re.search(r"at least seconds=([\d.]+)", str(caught[0].message))
-    assert match and (needed is None or float(match[1]) == pytest.approx(needed))
-    # With that duration it moves.
-    options["seconds"] = float(match[1]) * 1.01
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        moving = list(frames(shear(), **options))
-    assert changed(moving).min() > 0.05
 
 
 def test_a_field_without_a_sign_does_not_stream() -> None:

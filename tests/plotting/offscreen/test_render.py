@@ -136,7 +136,7 @@ def test_arrows_are_opaque_or_absent() -> None:
     look: dict[str, Any] = {"scalars": False, "strength": 0.0, "samples": 3, "arrows": 40}
     views: list[dict[str, Any]] = [{"zoom": zoom} for zoom in (1, 1.2, 1.5, 1.8)]
     for view in (*views, {"uncertainty": doubtful}):
-        options = Options.split(mesh=field, **look, **view)
+        options = Options.split(**look, **view)
         scenes = make_scenes(field, options)
         with closing(OffscreenPlotter(scenes, options.view, size=(320, 200))) as plotter:
             moving = plotter.picture()  # the frame of a movie
