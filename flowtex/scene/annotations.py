@@ -112,6 +112,21 @@ def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> La
     return result
 
 
+def annotate_views(
+    picture: Bytes,
+    scenes: Sequence[Scene],
+    camera: Camera,
+    changes: Mapping[str, Any],
+    **options: Any,
+) -> list[Layout]:
+    """Write on a picture of scenes side by side, in place; labels say how they differ."""
+    views = np.array_split(picture, len(scenes), axis=1)
+    return [
+        annotate(view, scene, camera, label=difference_text(scene, changes), **options)
+        for view, scene in zip(views, scenes, strict=True)
+    ]
+
+
 def layout(
     scene: Scene,
     size: tuple[int, int],

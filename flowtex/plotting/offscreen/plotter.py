@@ -16,7 +16,7 @@ from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.component import WHOLE, open_plotter, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
-from flowtex.scene.annotations import Layout, annotate, difference_text
+from flowtex.scene.annotations import Layout, annotate_views
 from flowtex.scene.fields import TracedFlow
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, make_scenes
@@ -133,19 +133,15 @@ class OffscreenPlotter:
             point_camera(self._plotter, surface, self._view, self._margin)
 
     def _annotate(self, canvas: Bytes) -> list[Layout]:
-        views = np.array_split(canvas, len(self.handles), axis=1)
-        return [
-            annotate(
-                view,
-                handle.scene,
-                read_camera(self._plotter.camera),
-                label=difference_text(handle.scene, self._view.beside or {}),
-                background=self._view.ground,
-                legend=self._legend,
-                flow_height=self._rows.stop - self._rows.start,
-            )
-            for view, handle in zip(views, self.handles, strict=True)
-        ]
+        return annotate_views(
+            canvas,
+            [handle.scene for handle in self.handles],
+            read_camera(self._plotter.camera),
+            self._view.beside or {},
+            background=self._view.ground,
+            legend=self._legend,
+            flow_height=self._rows.stop - self._rows.start,
+        )
 
     def close(self) -> None:
         """Free the graphics card."""
