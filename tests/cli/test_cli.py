@@ -145,7 +145,7 @@ def test_a_picture_is_drawn_along_the_flow(
         ("render {gyre} -o {tmp}/a.png --samples x", "--samples"),
         ("render {gyre} -o {tmp}/a.png --size 10", "expected width x height"),
         ("render {gyre} -o {tmp}/a.png --zoom 0", "zoom is 0"),
-        ("render {block} -o {tmp}/a.png --plane z=2", 'as in plane="k=2"'),
+        ("render {block} -o {tmp}/a.png --plane z=2", "a whole number N within"),
         ("render {gyre} -o {tmp}/a.png --camera 1,2", "camera is '1,2'; expected nine numbers"),
         ("render {gyre} -o {tmp}/a.png --isel number=x", "--isel is number=x; expected an axis"),
         ("render {gyre} -o {tmp}/a.png --isel number=2", "isel applies to datasets, but this"),

@@ -256,9 +256,15 @@ def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
             level = _level_text(line[drawn], array, dim)
         axes.append(Axis(kind, dim, line, drawn))
     choice.check({*kinds, *kinds.values()}, set(horizontal_dims(array)))
-    if times is None:
-        times = _time_beside(array)
-    level = level or _level_beside(array)
+    # What was selected before is a scalar.
+    single = {str(name): c for name, c in array.coords.items() if not c.dims}
+    dates = [c for c in single.values() if is_dates(c)]
+    if times is None and dates:
+        named = [c for c in dates if c.attrs.get("standard_name") == "time"] or dates
+        times = np.atleast_1d(named[0].values)
+    for name, c in single.items() if not level else ():
+        if c.dtype.kind in "fiu" and axis_kind(array, name) == LEVEL:
+            level = level or _level_text(c.values[()], array, name)
     return Drawn(tuple(axes), times, unit, level)
 
 
@@ -293,15 +299,6 @@ def _steps(
     return times[keep], unit, numbers if isinstance(drawn, list) else numbers[0]
 
 
-def _level_beside(array: xr.DataArray) -> str:
-    """Return the text of a level that was selected before, whose coordinate is a scalar."""
-    for name, coordinate in array.coords.items():
-        is_number = not coordinate.dims and coordinate.dtype.kind in "fiu"
-        if is_number and axis_kind(array, str(name)) == LEVEL:
-            return _level_text(coordinate.values[()], array, str(name))
-    return ""
-
-
 def _level_text(value: Any, array: xr.DataArray, dim: str) -> str:
     """Return a level as text, with the name of its axis where it has no unit."""
     text = _value_text(value, array, dim)
@@ -322,21 +319,17 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
 
 def axis_direction(array: xr.DataArray, dim: str) -> int:
     """Return 1 where the coordinate of a dimension grows with its indices, or -1."""
-    coordinate = coordinate_of(array, dim)
-    if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
-        return 1
-    first, last = (float(coordinate.values[n]) for n in (0, -1))
-    return -1 if last < first else 1
+    line = coordinate_of(array, dim)
+    return -1 if line is not None and line.dtype.kind in "fiu" and line[-1] < line[0] else 1
 
 
 def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
     """Return the dates along an axis, if a coordinate has them."""
-    for name, coordinate in array.coords.items():
-        if coordinate.dims == (dim,) and is_dates(coordinate):
-            # Other dates, such as those of forecasts, may run along the same axis.
-            named = name == dim or coordinate.attrs.get("standard_name") in ("time", None)
-            if named:
-                return np.asarray(coordinate.values)
+    for name, c in array.coords.items():
+        # Other dates, such as those of forecasts, may run along the same axis.
+        named = name == dim or c.attrs.get("standard_name") in ("time", None)
+        if named and c.dims == (dim,) and is_dates(c):
+            return np.asarray(c.values)
     return None
 
 
@@ -363,13 +356,6 @@ def line_of(array: xr.DataArray, dim: str) -> AnyArray | None:
         alike = [c for c in array.coords.values() if c.dims == (dim,)]
         coordinate = alike[0] if len(alike) == 1 else None
     return None if coordinate is None else np.asarray(coordinate.values)
-
-
-def _time_beside(array: xr.DataArray) -> AnyArray | None:
-    """Return the single date of a variable without a time axis."""
-    dates = [c for c in array.coords.values() if c.ndim == 0 and is_dates(c)]
-    named = [c for c in dates if c.attrs.get("standard_name") == "time"] or dates
-    return np.atleast_1d(named[0].values) if named else None
 
 
 def _drawn(
@@ -410,14 +396,11 @@ def _drawn(
         number, reason = _at_surface(line, coordinate_of(array, dim)), "the nearest to the surface"
     else:
         number, reason = 0, "the first"
-    value = None if line is None else line[number]
-    description = f"number {number}" if value is None else _value_text(value, array, dim)
-    other_number = 0 if number else count - 1
-    if line is None:
-        example = f"isel={{{dim!r}: {other_number}}}"
-    else:
-        other_value = line[other_number]
-        text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
+    other = 0 if number else count - 1
+    description, example = f"number {number}", f"isel={{{dim!r}: {other}}}"
+    if line is not None:
+        description = _value_text(line[number], array, dim)
+        text = f"{line[other]:g}" if line.dtype.kind in "fiu" else repr(str(line[other]))
         example = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
     record(
         "select",

@@ -30,13 +30,13 @@ LATITUDE = re.compile(
 )
 ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
-#: Words of data of the Earth.
-EARTHLY = re.compile(r"east|north|lon|lat|wind|ocean|sea|zonal|xi_|eta_|nav_|west", re.I)
 #: Names of polar coordinates: the distance from the centre, and the angle.
 RADII = re.compile(r"^(r|rho|radius|radial\w*|range)$", re.I)
 ANGLES = re.compile(r"^(phi|theta|azimuth|angle|az|polar_angle)$", re.I)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
+#: Parts of the names of two coordinates that belong together.
+SWAPS = (("lon", "lat"), ("long", "lat"), ("lam", "phi"), ("x", "y"), ("xi", "eta"))
 #: Spans of longitude and latitude without a unit that are those of the Earth in radians.
 RADIANS = (6.0, 2 * np.pi + 1e-3), (3.0, np.pi + 1e-3)
 #: Share of a cell by which positions may move in time, as by rounding.
@@ -119,7 +119,7 @@ def find_places(
         if unset.sum() > 1:  # where a model leaves out land
             a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
         is_line = lon.ndim == 1
-        a, b = _over_nodes(np.unwrap(a, period=360.0) if is_line else a, b)
+        a, b = np.broadcast_arrays(np.unwrap(a, period=360.0) if is_line else a, b)
         places = Places(
             a, b, is_earth=True, is_line=is_line, why=f"{lon.name} and {lat.name}{turned}"
         )
@@ -138,18 +138,12 @@ def find_places(
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
-    if not EARTHLY.search(f"{array.attrs} {array.name} {dims} {list(array.coords)}"):
-        lacking = [d for d, line in zip(dims, lines, strict=True) if line is None]
-        raise FieldError(
-            f"{array.name!r} has no coordinates along {' and '.join(lacking)}; add them, as in "
-            f"ds.assign_coords({lacking[0]}=...), or open the file that has them with this one"
-        )
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     raise FieldError(
-        f"{array.name!r} with the dimensions {', '.join(dims)} has neither longitude and latitude "
-        f"nor x and y; the coordinates are {', '.join(names) or 'none'}. Add them, as in "
-        f"ds.assign_coords(lon=({dims!r}, ...), lat=({dims!r}, ...)), or open the file that has "
-        "them together with this one"
+        f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
+        f"are {', '.join(names) or 'none'}. Add lines, as in ds.assign_coords({dims[0]}=..., "
+        f"{dims[1]}=...), or positions along both dimensions, or open the file that has them "
+        "together with this one"
     )
 
 
@@ -241,18 +235,12 @@ def _pairs(
         return 0 if set(c.dims) <= set(dims) else 1, kind, middle if c.ndim > 1 else 0
 
     for a in sorted(candidates[0], key=lambda c: (order(c), firsts[id(c)])):
-        partners = _partner_names(str(a.name))
+        name = str(a.name).lower()
+        partners = {name.replace(one, other) for one, other in SWAPS if one in name}
         for b in sorted(candidates[1], key=lambda c: str(c.name).lower() not in partners):
             of_axes = a.dims == (dims[1],) and b.dims == (dims[0],)
             if a.ndim == b.ndim and (of_axes or str(b.name).lower() in partners):
                 yield a, b
-
-
-def _partner_names(name: str) -> set[str]:
-    """Return the names that the second coordinate may have, by that of the first."""
-    low = name.lower()
-    swaps = (("lon", "lat"), ("long", "lat"), ("lam", "phi"), ("x", "y"), ("xi", "eta"))
-    return {low.replace(a, b) for a, b in swaps if a in low}
 
 
 def _at_nodes(
@@ -363,12 +351,6 @@ def _in_degrees(
     return a, b
 
 
-def _over_nodes(a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return coordinates (J, I), of lines (1, I) and (J, 1) as views of these."""
-    shape = np.broadcast_shapes(a.shape, b.shape)
-    return np.broadcast_to(a, shape), np.broadcast_to(b, shape)
-
-
 def _own_line(array: xr.DataArray, dim: str, datasets: Sequence[xr.Dataset]) -> Any:
     """Return the coordinate of a dimension that is numbers, of any name; ``None`` without one."""
     for holder in (array.coords, *datasets):
@@ -387,14 +369,10 @@ def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
         degrees = units.parsed(unit) is None and np.ptp(turn) > RADIANS[0][1]
         turn = turn * (units.factor("degree" if degrees else unit, "radian") or 1.0)
         unit = str(radius.attrs.get("units", ""))
-        return Places(
-            *_over_nodes(r * np.cos(turn), r * np.sin(turn)),
-            is_earth=False,
-            is_line=False,
-            why=f"{radius.name} and {angle.name}",
-            unit=units.symbol(unit) if units.parsed(unit) is not None else "",
-            angle=_over_nodes(r, turn)[1],
-        )
+        unit = units.symbol(unit) if units.parsed(unit) is not None else ""
+        a, b, turn = np.broadcast_arrays(r * np.cos(turn), r * np.sin(turn), turn)
+        why = f"{radius.name} and {angle.name}"
+        return Places(a, b, is_earth=False, is_line=False, why=why, unit=unit, angle=turn)
     return _plane(x, y, a, b)
 
 
@@ -414,16 +392,16 @@ def _plane(
             geodetic = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
             a, b = (c * (units.factor(u, "degree") or 1.0) for c, u in ((a, one), (b, other)))
         change = pyproj.Transformer.from_crs(source, geodetic, always_xy=True)
-        lon, lat = change.transform(*_over_nodes(a, b), errcheck=False)
+        lon, lat = change.transform(*np.broadcast_arrays(a, b), errcheck=False)
         bad = ~(np.isfinite(lon) & np.isfinite(lat))
         places = np.where(bad, np.nan, lon), np.where(bad, np.nan, lat)
         words = f"{why} by {crs.get('grid_mapping_name', 'its CRS')}"
         return Places(*places, is_earth=True, is_line=False, why=words)
     if one != other and (factor := units.factor(other, one)) is not None:
         b = b * factor
-    places = _over_nodes(a, b)
+    a, b = np.broadcast_arrays(a, b)
     unit = units.symbol(one) if units.parsed(one) is not None else ""
-    return Places(*places, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
+    return Places(a, b, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:

@@ -59,7 +59,7 @@ from flowtex.sources.datasets.select import (
     two_names,
     velocity_unit,
 )
-from flowtex.sources.datasets.staggered import Grid, find_grid, unrepeated
+from flowtex.sources.datasets.staggered import find_grid, unrepeated
 from flowtex.sources.datasets.values import (
     Component,
     Values,
@@ -99,10 +99,6 @@ class Orientation(NamedTuple):
         return f"{DIRECTIONS[self.along]} ({self.why})"
 
 
-#: Directions before the names and the grid are known.
-EASTWARD = Orientation("earth", "")
-
-
 def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float]]:
     """Return the unit of a velocity, and the factors of its variables to it.
 
@@ -130,35 +126,32 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     return one, (1.0, factor)
 
 
-def orientation(
-    pair: Pair, places: Places, *, staggered: bool, wanted: str | None, record: Record
-) -> Orientation:
+def orientation(flow: Flow, wanted: str | None) -> Orientation:
     """Return the directions of components by the rules of this module."""
     if wanted is not None and wanted not in DIRECTIONS:
         expected = ", ".join(f"{key!r} ({words})" for key, words in DIRECTIONS.items())
         raise FieldError(f"components is {wanted!r}; expected {expected}")
-    found = _orientation(pair, places, staggered=staggered, wanted=wanted)
-    if not places.is_earth and found.along == "earth":
+    found = _orientation(flow) if wanted is None else Orientation(wanted, f"components={wanted!r}")
+    if not flow.places.is_earth and found.along == "earth":
         found = Orientation("plane", "positions in a plane")
-    if places.is_earth and found.along == "plane":
+    if flow.places.is_earth and found.along == "plane":
         raise FieldError(
             "components is 'plane', but the positions are longitude and latitude; expected 'earth' "
             "or 'grid'"
         )
-    record("components", str(found))
+    flow.record("components", str(found))
     return found
 
 
-def _orientation(pair: Pair, places: Places, *, staggered: bool, wanted: str | None) -> Orientation:
-    if wanted is not None:
-        return Orientation(wanted, f"components={wanted!r}")
+def _orientation(flow: Flow) -> Orientation:
+    pair, places = flow.pair, flow.places
     if pair.kind != CARTESIAN:
         return Orientation("plane" if pair.kind == POLAR else "earth", pair.why)
     if len(places.a) == 1 and places.is_earth:
         return Orientation("earth", "nodes without rows and columns")
     # Components on the sides of cells are across these, whatever a long name says.
     by_words = "standard_name" not in pair.u.attrs
-    if staggered and (by_words or pair.along != "earth"):
+    if flow.staggered and (by_words or pair.along != "earth"):
         return Orientation("grid", "values on the sides of cells")
     if not places.is_earth:
         named = "grid" in str(pair.u.attrs.get("standard_name", pair.u.name)).split("_")
@@ -185,7 +178,7 @@ class Flow:
     datasets: Datasets
     record: Record
     unit: str = ""  #: Unit of the components; empty where unknown.
-    orientation: Orientation = EASTWARD
+    orientation: Orientation = Orientation("earth", "")  # noqa: RUF009
     ahead: tuple[int, int] = (1, 1)  #: Directions of rows and columns, 1 or -1.
     trimmed: tuple[slice, ...] = ()  #: Rows and columns that repeat no others.
     mesh: Mesh | None = None
@@ -282,14 +275,11 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     if drawn.level:
         record("select", f"level: {drawn.level}", caption=drawn.level)
     pair = replace(pair, u=one, v=two)
-    flow = (
-        _on_rows(pair, datasets, drawn, record)
-        if mesh is None
-        else _on_faces(mesh, pair, datasets, drawn, record)
-    )
-    found = orientation(
-        pair, flow.places, staggered=flow.staggered, wanted=options.components, record=record
-    )
+    if mesh is None:
+        flow = _on_rows(pair, datasets, drawn, record)
+    else:
+        flow = _on_faces(mesh, pair, datasets, drawn, record)
+    found = orientation(flow, options.components)
     if found.why == UNKNOWN and _is_turned(flow):
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
         record("components", text + "north; components='earth' if they are not", notable=True)
@@ -306,29 +296,25 @@ def _is_turned(flow: Flow) -> bool:
 def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
     """Return a velocity on rows and columns, whose values are not known yet."""
     beside = Beside(datasets, drawn, record)
-    grid: Grid = find_grid(pair.u, pair.v, beside, along_earth=pair.along == "earth")
+    grid = find_grid(pair.u, pair.v, beside, along_earth=pair.along == "earth")
     rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
     places = grid.places
     trimmed = unrepeated(places)
     places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
     kind = "rows and columns" if places.is_line else "curvilinear"
     record("coordinates", places.why)
-    bare = (Component(part.variable, 1.0) for part in (grid.u, grid.v))
+    bare = Component(grid.u.variable, 1.0), Component(grid.v.variable, 1.0)
+    angle = places.angle if pair.kind == POLAR else None
+    values = Values(bare, pair.kind, angle=angle, rows=grid.rows, columns=grid.columns)
     return Flow(
-        pair=replace(pair, u=grid.u, v=grid.v),
-        drawn=drawn,
-        grid=f"{grid.words}, {kind}",
-        places=places,
-        values=Values(
-            (next(bare), next(bare)),
-            pair.kind,
-            angle=places.angle if pair.kind == POLAR else None,
-            rows=grid.rows,
-            columns=grid.columns,
-        ),
-        cells=(rows, columns),
-        datasets=datasets,
-        record=record,
+        replace(pair, u=grid.u, v=grid.v),
+        drawn,
+        f"{grid.words}, {kind}",
+        places,
+        values,
+        (rows, columns),
+        datasets,
+        record,
         ahead=(axis_direction(pair.u, rows), axis_direction(pair.v, columns)),
         trimmed=trimmed,
         staggered=grid.staggered,
@@ -338,28 +324,15 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
 def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
     """Return a velocity at the nodes or in the faces of a mesh, whose values are not known yet."""
     (dim,) = horizontal_dims(pair.u)
-    places = Places(
-        mesh.a[None],
-        mesh.b[None],
-        is_earth=mesh.is_earth,
-        is_line=False,
-        why=mesh.coordinates,
-        unit="" if mesh.is_earth else mesh.unit,
-    )
-    record("coordinates", mesh.coordinates)
+    is_earth, why = mesh.is_earth, mesh.coordinates
+    unit = "" if is_earth else mesh.unit
+    places = Places(mesh.a[None], mesh.b[None], is_earth, is_line=False, why=why, unit=unit)
+    record("coordinates", why)
     record("surface", mesh.words, notable=mesh.kind == POINTS)
     bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
-    return Flow(
-        pair=pair,
-        drawn=drawn,
-        grid=f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}",
-        places=places,
-        values=Values(bare, pair.kind, axes=1),
-        cells=(dim,),
-        datasets=datasets,
-        record=record,
-        mesh=mesh,
-    )
+    values = Values(bare, pair.kind, axes=1)
+    grid = f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}"
+    return Flow(pair, drawn, grid, places, values, (dim,), datasets, record, mesh=mesh)
 
 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
@@ -373,14 +346,14 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     masks = []
     for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
         part_of = flow.beside(mask.array)
-        if part_of is None and wanted is None:
+        if part_of is None:
+            if wanted is not None:
+                raise FieldError(f"mask is {wanted!r}, which lies elsewhere than the velocity")
             text = f"{mask.array.name} lies at other positions or times, and is not used as a mask"
             record("mask", text, notable=mask.array.ndim > 1)
-        if part_of is None and wanted is not None:
-            raise FieldError(f"mask is {wanted!r}, which lies at other positions than the velocity")
-        if flow.mesh is not None and part_of is not None and flow.cells[0] not in part_of.dims:
-            continue
-        if part_of is not None and _applies(flow, mask, part_of, wanted):
+        elif (flow.mesh is None or flow.cells[0] in part_of.dims) and _applies(
+            flow, mask, part_of, wanted
+        ):
             masks.append((part_of.variable, mask))
     flow = replace(flow, values=replace(flow.values, masks=tuple(masks)))
     return _without_land(flow) if flow.staggered else flow

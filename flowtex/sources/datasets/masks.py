@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -92,8 +92,9 @@ def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> 
     values = np.atleast_1d(array.attrs.get("flag_values", range(len(meanings)))).tolist()
     flags = dict(zip(meanings, values, strict=False))
     if is_flag or standard.endswith(("status_flag", "quality_flag")):
-        bad = [word for word in flags if BAD_WORDS.search(word)]
-        return _marked(array, name, bad, flags, is_flag=True)
+        bad = {word: float(flag) for word, flag in flags.items() if BAD_WORDS.search(word)}
+        text = f"{name} is {' or '.join(bad)}"
+        return Mask(array, text, tuple(bad.values()), is_flag=True) if bad else None
     if name in WET:
         return Mask(array, f"{name} == {1 - WET[name]}", bad=(1.0 - WET[name],))
     if not (standard in STANDARD or SEA.match(name) or LAND.match(name) or is_wanted):
@@ -101,19 +102,14 @@ def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> 
     land = [word for word in flags if LAND_WORDS.search(word)]
     if land or any(map(SEA_WORDS.search, flags)):
         land = land or [word for word in flags if not SEA_WORDS.search(word)]
-        return _marked(array, name, land, flags, is_land=True)
+        values = tuple(float(flags[word]) for word in land)
+        text = f"{name} is {' or '.join(land)}"
+        return Mask(array, text, values, is_land=True) if land else None
     if name.lower() == "xland":
         return Mask(array, f"{name} == 1", bad=(1.0,), is_land=True)
     if STANDARD.get(standard, not LAND.match(name)):
         return Mask(array, f"{name} == 0", is_land=standard in STANDARD)
     return Mask(array, f"{name} == 1", reverse=True, is_land=True)
-
-
-def _marked(
-    array: xr.DataArray, name: str, words: Sequence[str], flags: Mapping[str, float], **marks: bool
-) -> Mask | None:
-    bad = tuple(float(flags[word]) for word in words)
-    return Mask(array, f"{name} is {' or '.join(words)}", bad, **marks) if bad else None
 
 
 def moves_over_land(array: xr.DataArray) -> bool:

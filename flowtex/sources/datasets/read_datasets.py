@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -54,6 +54,8 @@ from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Nodes on a map or in a plane.
+Placed: TypeAlias = MapNodes | MeshMap | PlaneNodes
 #: Longest name that fits beside a colour bar.
 LONGEST_NAME = 40
 #: Most values of an axis that are listed.
@@ -101,11 +103,10 @@ def read_datasets(
         scalars = _scalars(flow)
         caption = ", ".join(filter(None, (name, record.reading.caption)))
         words: dict[str, Any] = {"name": caption, **_scalar_texts(scalars)}
-        arrays: GridArrays | TriangleArrays | Regions | None = None
-        if regions and flow.mesh is None and spread is None:
-            arrays = _regions(flow, scalars, projection, words)
-        if arrays is None:
-            arrays = _whole(flow, scalars, projection, words, spread, uncertainty)
+        by_regions = regions and flow.mesh is None and spread is None
+        arrays: GridArrays | TriangleArrays | Regions | None
+        arrays = _regions(flow, scalars, projection, words) if by_regions else None
+        arrays = arrays or _whole(flow, scalars, projection, words, spread, uncertainty)
     record.notify()
     datasets.close()
     return arrays
@@ -121,10 +122,7 @@ def _whole(
 ) -> GridArrays | TriangleArrays:
     """Build the surface of all nodes, whose steps are read when they are drawn."""
     count, record = flow.drawn.steps, flow.record
-    nodes: MapNodes | MeshMap | PlaneNodes
-    nodes, arguments = (
-        _on_grid(flow, projection) if flow.mesh is None else _on_mesh(flow, projection)
-    )
+    nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
     read = LazySteps(count, flow.components)
     own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
@@ -147,26 +145,17 @@ def _whole(
     velocity = read.map(partial(_vectors, nodes, scale))
     if count > 1:
         _note_rest(read, flow)
-    make: Any = GridArrays if flow.mesh is None else TriangleArrays
-    arrays: GridArrays | TriangleArrays = make(
-        points=nodes.points,
-        velocity=velocity if count > 1 else velocity[0],
-        times=flow.drawn.times,
-        scalars=extra,
-        cell_scalars=on_cells,
-        projection=nodes.projection,
-        reading=record.reading,
-        **arguments,
-        **words,
-    )
-    return arrays
+    arguments |= {"points": nodes.points, "velocity": velocity if count > 1 else velocity[0]}
+    arguments |= {"times": flow.drawn.times, "scalars": extra, "cell_scalars": on_cells}
+    arguments |= {"projection": nodes.projection, "reading": record.reading, **words}
+    return GridArrays(**arguments) if flow.mesh is None else TriangleArrays(**arguments)
 
 
-def _speed(nodes: MapNodes | MeshMap | PlaneNodes, components: Floats) -> Floats:
+def _speed(nodes: Placed, components: Floats) -> Floats:
     return np.asarray(np.hypot(*map(nodes.at, components)))
 
 
-def _vectors(nodes: MapNodes | MeshMap | PlaneNodes, scale: float, components: Floats) -> Floats:
+def _vectors(nodes: Placed, scale: float, components: Floats) -> Floats:
     return nodes.vectors(*map(nodes.at, components)) * scale
 
 
@@ -215,25 +204,25 @@ def _averaged(
         ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
     ]
     kept = Datasets(others, datasets.closers)
-    changes: dict[str, Any] = {"mean": partial(_mean, sums), "drawn": drawn, "datasets": kept}
+    changes: dict[str, Any] = {
+        "mean": sums.map(itemgetter(slice(2))).step,
+        "drawn": drawn,
+        "datasets": kept,
+    }
     return replace(members[0], **changes), partial(_spread, sums)
 
 
-def _on_grid(flow: Flow, projection: str | None) -> tuple[MapNodes | PlaneNodes, dict[str, Any]]:
-    """Return drawn nodes of rows and columns, and further arguments of a field."""
-    places = flow.places
-    if places.is_earth:
-        nodes = on_map(places, projection)
-        return nodes, {"periodic": nodes.periodic, **_units(flow)}
-    return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
-
-
-def _on_mesh(flow: Flow, projection: str | None) -> tuple[MeshMap | PlaneNodes, dict[str, Any]]:
-    """Return drawn nodes of a mesh, and further arguments of a field."""
-    mesh: Any = flow.mesh
+def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]:
+    """Return drawn nodes, and further arguments of a field."""
+    places, mesh = flow.places, flow.mesh
+    if mesh is None:
+        if not places.is_earth:
+            return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
+        on_grid = on_map(places, projection)
+        return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:
         return PlaneNodes(mesh.positions), {"triangles": mesh.triangles, **_units(flow)}
-    nodes = mesh_on_map(mesh, flow.places, projection)
+    nodes = mesh_on_map(mesh, places, projection)
     if nodes.lost:
         flow.record(
             "surface",
@@ -294,14 +283,12 @@ def _regions(
 
 def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
     """Return units, and long names that are short enough, of variables."""
-    attributes = {key: scalar.array.attrs for key, scalar in scalars.items()}
-    words = {
-        ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
-        for ours, theirs in (("units", "units"), ("long_names", "long_name"))
-    }
-    long_names = words["long_names"].items()
-    words["long_names"] = {key: text for key, text in long_names if len(text) <= LONGEST_NAME}
-    return words
+    units_of, names = (
+        {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
+        for word in ("units", "long_name")
+    )
+    names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
+    return {"units": units_of, "long_names": names}
 
 
 class _Scalar(NamedTuple):
@@ -372,10 +359,6 @@ def _sums(members: Sequence[Callable[[int], Floats]], step: int) -> Floats:
         u, v = read(step)
         total = total + np.stack([u, v, u * u + v * v])
     return total / len(members)
-
-
-def _mean(sums: LazySteps, step: int) -> Floats:
-    return sums.step(step)[:2]
 
 
 def _spread(sums: LazySteps, step: int) -> Floats:

@@ -303,28 +303,20 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
             text = _text(u, source)
-            partners = [*_partners(text, source), *_partners(text, source, FIRST_OF)]
-            missing = [
-                wanted for _, rest, wanted in partners if _rank(u, source, rest) not in (None, 5, 6)
-            ]
-            if missing:
-                return (
-                    f"the data have one component of a velocity, {u.name!r} "
-                    f"({u.attrs.get('long_name', source)}), but not the other one, whose "
-                    f"{source.replace('_', ' ')} would be {missing[0]!r}; open the file that has "
-                    "it together with this one, or name both, as in u=..., v=..."
-                )
-        for source in ("standard_name", "long_name", "name"):
-            for _, _, partner in _partners(_text(u, source), source):
-                if any(_text(v, source) == partner and _match(u, v) for v in arrays):
-                    try:
-                        velocity_unit(u)
-                    except FieldError as error:
-                        return str(error)
-    names = ", ".join(str(a.name) for a in arrays)
-    if not names:
-        return "no variable has two axes; expected the two components of a velocity on a surface"
+            for _, rest, wanted in (*_partners(text, source), *_partners(text, source, FIRST_OF)):
+                if _rank(u, source, rest) not in (None, 5, 6):
+                    return (
+                        f"the data have one component of a velocity, {u.name!r}, but not the other "
+                        f"one, whose {source.replace('_', ' ')} would be {wanted!r}; open the file "
+                        "that has it together with this one, or name both, as in u=..., v=..."
+                    )
+    listed = ", ".join(f"{a.name} ({a.attrs.get('units', 'no unit')})" for a in arrays)
+    if not listed:
+        return (
+            "no variable has two axes; expected the two components of a velocity on a surface, or "
+            "coordinates such as lon and lat along the one axis of points or cells"
+        )
     return (
-        "no two variables are recognised as the components of a velocity; the variables are "
-        f"{names}. Name the components, as in u=..., v=..."
+        "no two variables are recognised as the components of a velocity, in a unit such as m/s; "
+        f"the variables are {listed}. Name the components, as in u=..., v=..."
     )

@@ -26,8 +26,6 @@ from flowtex.sources.reader_errors import values_in
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Paddings of SGRID, and the first side that they mean.
-PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Distance, as a share of a cell, up to which a line of a grid repeats another one.
 REPEATED = 0.01
 #: Offset in cells up to which two grids coincide.
@@ -136,8 +134,8 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
     if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
             raise FieldError(
-                f"{u.name} and {v.name} differ in size, {_sizes(u)} and {_sizes(v)}; expected "
-                "components of one grid"
+                f"{u.name} and {v.name} differ in size, {dict(u.sizes)} and {dict(v.sizes)}; "
+                "expected components of one grid"
             )
         around = beside._replace(datasets=[*own[:1], *datasets])
         places = find_places(u, dims[0], around)
@@ -212,10 +210,8 @@ def _by_positions(
         wraps = count == at_v.a.shape[1] and _wraps(at_u)
         columns = Sides.counted(column, count, at_v.a.shape[1], wraps=wraps)
         middle = _moved(at_u, columns, at_v.a.shape[1])
-        position = "before" if column == 0 else "after"
-        return _staggered(
-            u, v, middle, rows, columns, f"Arakawa C, sides {position} the middle", record
-        )
+        words = f"Arakawa C, sides {'after' if column else 'before'} the middle"
+        return _staggered(u, v, middle, rows, columns, words, record)
     if dims[0] != dims[1]:
         return None
     raise FieldError(_apart(u, v, at_u, at_v))
@@ -262,14 +258,8 @@ def _apart(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places) -> str:
     """Return the message for components at different places."""
     texts = []
     for array, places in ((u, at_u), (v, at_v)):
-        if places.is_line:
-            ends = [labels.text(line) for line in places.lines]
-        else:
-            ends = [
-                f"{np.nanmin(part):.6g} to {np.nanmax(part):.6g}" for part in (places.a, places.b)
-            ]
-        names = places.why.split(" and ")
-        pairs = zip(names, ends, strict=False)
+        ends = [labels.text(line) for line in places.lines]
+        pairs = zip(places.why.split(" and "), ends, strict=False)
         texts.append(f"{array.name} at {', '.join(f'{n} {end}' for n, end in pairs)}")
     return (
         f"{u.name} and {v.name} lie at different positions: {texts[0]}; {texts[1]}. These are "
@@ -304,16 +294,11 @@ def _own_places(
     array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, beside: Beside
 ) -> Places | None:
     """Return the places of a variable by coordinates that have its own dimensions."""
-    own = {str(n): c for n, c in {**source.variables, **array.coords}.items()}
-    names = [
-        n
-        for n in own
-        if n in source.variables and (not source[n].dims or {*dims} & {*source[n].dims})
-    ]
     if len(dims) < 2:
         return None
-    foreign = {d for n in names for d in source[n].dims} - {*array.dims, *dims}
-    part = source[[n for n in names if not {*source[n].dims} & foreign]]
+    own = {str(name): {*c.dims} for name, c in source.variables.items()}
+    near = {name for name, at in own.items() if not at or {*dims} & at}
+    part = source[[name for name in own if name in near and own[name] <= {*array.dims, *dims}]]
     try:
         return find_places(array, dims, beside._replace(datasets=[part]), any_axes=False)
     except FieldError:
@@ -327,20 +312,14 @@ def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
 def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Grid:
     """Return a staggered grid by the names and sizes of its dimensions."""
     (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
-    counts = {
-        "row": (v.sizes[row_v], u.sizes[row_u]),
-        "column": (u.sizes[column_u], v.sizes[column_v]),
-    }
-    for name, (sides, middle) in counts.items():
-        if abs(sides - middle) > 1:
-            raise FieldError(
-                f"{u.name} has {_sizes(u)} and {v.name} {_sizes(v)}; along a {name} they differ "
-                "by more than one, so they cannot be components of one staggered grid"
-            )
-    firsts = [
-        first_side(row_v, row_u, counts["row"], beside.datasets),
-        first_side(column_u, column_v, counts["column"], beside.datasets),
-    ]
+    rows, columns = (v.sizes[row_v], u.sizes[row_u]), (u.sizes[column_u], v.sizes[column_v])
+    if any(abs(sides - middle) > 1 for sides, middle in (rows, columns)):
+        raise FieldError(
+            f"{u.name} has {dict(u.sizes)} and {v.name} {dict(v.sizes)}; they differ by more than "
+            "one along rows or columns, so they cannot be components of one staggered grid"
+        )
+    first_row = first_side(row_v, row_u, rows, beside.datasets)
+    first_column = first_side(column_u, column_v, columns, beside.datasets)
     try:
         places = _cell_places(u, cells, beside)
     except FieldError as error:
@@ -348,14 +327,13 @@ def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: 
             on_sides = find_places(u, horizontal_dims(u), beside)
         except FieldError:
             raise error from None
-        count = v.sizes[column_v]
-        places = _moved(on_sides, Sides.counted(firsts[1], on_sides.a.shape[1], count), count)
-    rows = Sides.counted(firsts[0], *counts["row"])
-    wraps = counts["column"][0] == counts["column"][1] and _wraps(places)
-    columns = Sides.counted(firsts[1], *counts["column"], wraps=wraps)
-    position = {0: "before", -1: "after"}[firsts[1]]
-    words = f"Arakawa C, sides {position} the middle"
-    return _staggered(u, v, places, rows, columns, words, beside.record)
+        sides = Sides.counted(first_column, on_sides.a.shape[1], columns[1])
+        places = _moved(on_sides, sides, columns[1])
+    at_rows = Sides.counted(first_row, *rows)
+    wraps = columns[0] == columns[1] and _wraps(places)
+    at_columns = Sides.counted(first_column, *columns, wraps=wraps)
+    words = f"Arakawa C, sides {'after' if first_column else 'before'} the middle"
+    return _staggered(u, v, places, at_rows, at_columns, words, beside.record)
 
 
 def _moved(places: Places, sides: Sides, count: int) -> Places:
@@ -431,10 +409,6 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     return slice(0, max(top, 2)), slice(0, last)
 
 
-def _sizes(array: xr.DataArray) -> str:
-    return " x ".join(f"{n} {d}" for d, n in array.sizes.items())
-
-
 def first_side(
     side: str, cell: str, counts: tuple[int, int], datasets: Sequence[xr.Dataset]
 ) -> int:
@@ -442,31 +416,21 @@ def first_side(
     sides, cells = counts
     if sides != cells:
         return 0 if sides > cells else -1
-    declared = declared_first(side, cell, datasets)
-    if declared is not None:
-        return declared
+    sgrid = re.compile(rf"\b{re.escape(cell)}:\s*{re.escape(side)}\s*\(padding:\s*(\w+)\)")
+    for ds in datasets:  # by COMODO, or by SGRID
+        shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
+        if shift is not None:
+            return 0 if float(shift) < 0 else -1
+        for variable in ds.variables.values():
+            is_grid = variable.attrs.get("cf_role") == "grid_topology"
+            if is_grid and (match := sgrid.search(" ".join(map(str, variable.attrs.values())))):
+                return -1 if match[1] in ("low", "both") else 0
     lines = [_line(name, datasets) for name in (side, cell)]
     if lines[0] is not None and lines[1] is not None:
         rising = lines[1][-1] > lines[1][0]
         return 0 if (lines[0][0] < lines[1][0]) == rising else -1
     # MITgcm counts the side on the left of a cell, and most others the one on its right.
     return 0 if re.search(r"g$|_l(eft)?$", side, re.IGNORECASE) else -1
-
-
-def declared_first(side: str, cell: str, datasets: Sequence[xr.Dataset]) -> int | None:
-    """Return :func:`first_side` by the attributes of COMODO or SGRID, if present."""
-    for ds in datasets:
-        shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
-        if shift is not None:
-            return 0 if float(shift) < 0 else -1
-        for variable in ds.variables.values():
-            if variable.attrs.get("cf_role") != "grid_topology":
-                continue
-            texts = " ".join(str(v) for v in variable.attrs.values())
-            for one, two, padding in re.findall(r"(\w+):\s*(\w+)\s*\(padding:\s*(\w+)\)", texts):
-                if (one, two) == (cell, side):
-                    return PADDINGS.get(padding)
-    return None
 
 
 def _line(name: str, datasets: Sequence[xr.Dataset]) -> Floats | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import netcdf, vtk_legacy, vtk_xml
 from flowtex.sources.inspection.vtk_legacy import Data
-from flowtex.sources.reader_errors import check_count, check_memory, check_other
+from flowtex.sources.reader_errors import check_count, check_memory
 
 #: Bytes that identify most files.
 HEAD_BYTES = 256
@@ -83,7 +83,6 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
 
 def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
     head, is_hdf5, suffix = data[:HEAD_BYTES], netcdf.is_hdf5(path), path.suffix.lower()
-    check_other(path, head)
     if is_hdf5:
         netcdf.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.vtk_legacy import Data
-from flowtex.sources.reader_errors import check_attributes, check_count, check_memory
+from flowtex.sources.reader_errors import check_count, check_memory
 
 SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
@@ -158,7 +158,6 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
 
     try:
         with h5py.File(path, "r", locking=False) as file:
-            check_attributes(file.attrs)
             links: list[tuple[bytes, int]] = []
             # This follows no link out of the file.
             file.id.links.visit(lambda name, link: links.append((name, link.type)), info=True)

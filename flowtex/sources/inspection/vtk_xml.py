@@ -10,6 +10,7 @@ import binascii
 import math
 import re
 import zlib
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -46,14 +47,16 @@ def check_vtk_xml(path: Path, data: Data) -> list[Path]:
         raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
     document = _Document()
     document.parse(data)
-    contents = _Contents(data, document)
-    times: dict[str, int] = {}
+    contents, times = _Contents(data, document), Counter[str]()
+    # VTK makes the whole of a structured grid, of which the file may have a part.
+    copies = max(1, -(-document.whole // max(document.points, 1)))
     for array in document.arrays:
         contents.check(array)
-        nbytes = (array.values or 0) * array.bits // 8 * document.copies
-        times[array.time] = times.get(array.time, 0) + nbytes
+        nbytes = (array.values or 0) * array.bits // 8 * copies
+        times[array.attributes.get("TimeStep", "")] += nbytes
     check_memory(max(times.values(), default=0), "the file")
-    check_memory(max(24 * document.points, document.parallel), "the grid")
+    points = max(document.points, document.whole)
+    check_memory(max(24 * points, document.parallel), "the grid")
     return [path.parent / name for name in document.members]
 
 
@@ -65,13 +68,10 @@ class _Array:
     section: str
     bits: int
     values: int | None
-    format: str
-    offset: int
-    time: str
+    attributes: dict[str, str]
     piece: int
-    #: Begin of its tag, and end of its content.
-    begin: int
-    end: int = 0
+    begin: int  #: Begin of its tag.
+    end: int = 0  #: End of its content.
 
 
 class _Document:
@@ -92,20 +92,11 @@ class _Document:
         self._axis = 0
         self._pieces = 0
         #: Points of all pieces, and of the whole grid where it is structured.
-        self._points = self._whole = 0
+        self.points = self.whole = 0
         self._parser = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.EntityDeclHandler = _refuse_entity
-
-    @property
-    def copies(self) -> int:
-        """Size of the grid that VTK makes, in multiples of its pieces."""
-        return max(1, -(-self._whole // max(self._points, 1)))
-
-    @property
-    def points(self) -> int:
-        return max(self._points, self._whole)
 
     def parse(self, data: Data) -> None:
         try:
@@ -136,40 +127,30 @@ class _Document:
         elif tag == "DataSet" or (tag == "Piece" and "Source" in attributes):
             self.members += filter(None, (attributes.get("file"), attributes.get("Source")))
         elif "WholeExtent" in attributes:
-            self._whole = math.prod(_sides(attributes["WholeExtent"]))
+            self.whole = math.prod(_sides(attributes["WholeExtent"]))
         elif tag == "Piece" and len(self._path) == 3:  # VTK reads only those of the grid
             self._piece, self._pieces = attributes, self._pieces + 1
-            self._points += self._tuples("PointData") or 0
+            self.points += self._tuples("PointData") or 0
         elif tag in ("Coordinates", "Points"):
             self._axis = 0
         elif tag in ("DataArray", "Array"):
             self._array(parent, attributes)
         elif tag == "PDataArray" and parent in ("PPointData", "PPoints"):
             components = _whole(attributes.get("NumberOfComponents", "1"))
-            self.parallel += 8 * components * self._whole
+            self.parallel += 8 * components * self.whole
 
     def _array(self, section: str, attributes: dict[str, str]) -> None:
-        name = attributes.get("Name", "")
-        bits = _BITS.fullmatch(attributes.get("type", ""))
-        width = 1 if attributes.get("type") == "Bit" else int(bits[1]) if bits else 8
-        components = _whole(attributes.get("NumberOfComponents", "1"))
-        tuples = self._tuples(section, name)
-        if section == "FieldData" or tuples is None:
+        name, kind = attributes.get("Name", ""), attributes.get("type", "")
+        bits = _BITS.fullmatch(kind)
+        width = 1 if kind == "Bit" else int(bits[1]) if bits else 8
+        values = self._tuples(section, name)
+        if section == "FieldData" or values is None:
             declared = attributes.get("NumberOfTuples")
-            tuples = None if declared is None else _whole(declared)
-        self.arrays.append(
-            _Array(
-                name or section,
-                section,
-                width,
-                None if tuples is None else tuples * components,
-                attributes.get("format", "ascii").lower(),
-                _whole(attributes.get("offset", "0")),
-                attributes.get("TimeStep", ""),
-                self._pieces,
-                self._parser.CurrentByteIndex,
-            )
-        )
+            values = None if declared is None else _whole(declared)
+        if values is not None:
+            values *= _whole(attributes.get("NumberOfComponents", "1"))
+        begin, name = self._parser.CurrentByteIndex, name or section
+        self.arrays.append(_Array(name, section, width, values, attributes, self._pieces, begin))
 
     def _tuples(self, section: str, name: str = "") -> int | None:
         """Return the number of tuples of an array; ``None`` where another array has it."""
@@ -227,13 +208,17 @@ class _Contents:
             return
         label = f"the array {array.name}"
         is_topology = array.section in CELLS and array.name in ("offsets", "connectivity")
-        if array.format == "ascii":
-            begin = self._after_tag(array.begin)
+        form, begin = array.attributes.get("format", "ascii").lower(), self._after_tag(array.begin)
+        if form == "ascii":
             values, _ = count_numbers(self._data, array.values, begin, array.end)
             tail = _INTEGER.findall(self._data, max(begin, array.end - 64), array.end)
             last = int((tail or [b"0"])[-1]) if is_topology else None
         else:
-            block = _Block(self._data, self._document, *self._place(array), label)
+            place = begin, array.end, True
+            if form == "appended":
+                offset = self._base + _whole(array.attributes.get("offset", "0"))
+                place = offset, len(self._data), self._document.encoded
+            block = _Block(self._data, self._document, place, label)
             values = block.nbytes * 8 // array.bits
             last = block.last(array.bits // 8) if is_topology else None
         if array.values is not None:
@@ -244,12 +229,6 @@ class _Contents:
             if len(ends) == 2:
                 check_count(ends["connectivity"], ends["offsets"], "the offsets of cells", "nodes")
 
-    def _place(self, array: _Array) -> tuple[int, int, bool]:
-        """Return the begin of an array, its latest end, and whether it is in base64."""
-        if array.format == "appended":
-            return self._base + array.offset, len(self._data), self._document.encoded
-        return self._after_tag(array.begin), array.end, True
-
     def _after_tag(self, begin: int) -> int:
         match = _TAG.match(self._data, begin)
         return match.end() if match else begin
@@ -259,18 +238,12 @@ class _Block:
     """The bytes of one array, after a header with their number, or those of compressed blocks."""
 
     def __init__(
-        self,
-        data: Data,
-        document: _Document,
-        begin: int,
-        end: int,
-        encoded: bool,  # noqa: FBT001
-        what: str,
+        self, data: Data, document: _Document, place: tuple[int, int, bool], what: str
     ) -> None:
-        self._data, self._encoded, self._order = data, encoded, document.order
-        self._begin, self._word = begin, document.header
-        room = max(end - begin, 0)
-        self._room = room * 3 // 4 if encoded else room
+        self._data, self._order, self._word = data, document.order, document.header
+        self._begin, end, self._encoded = place
+        room = max(end - self._begin, 0)
+        self._room = room * 3 // 4 if self._encoded else room
         self._sizes: list[int] = []
         if not document.compressed:
             (self.nbytes,) = self._header(1, what)

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.arguments import brief
+from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.triangles.triangle_nodes import (
@@ -29,7 +28,6 @@ from flowtex.sources.meshes.vectors import (
     catalogue,
     data_of,
     hidden_nodes,
-    near_name,
     values_of,
 )
 from flowtex.sources.notices import Record
@@ -88,16 +86,8 @@ class Contour:
 Cut = Slice | Contour
 
 
-def find_cut(slice: Any, contour: Any) -> Cut | None:
-    """Return the requested cut, or ``None``."""
-    if slice is not None and contour is not None:
-        raise FieldError(f"slice is {slice!r} and contour is {contour!r}; choose one of the two")
-    if slice is not None:
-        return _slice(slice)
-    return None if contour is None else _contour(contour)
-
-
-def _slice(raw: Any) -> Slice:
+def slice_of(raw: Any) -> Slice:
+    """Return the plane that is given as text or numbers."""
     normal: Any = raw
     point: Any = None
     if isinstance(raw, str):
@@ -113,22 +103,15 @@ def _slice(raw: Any) -> Slice:
     direction, middle = _vector(normal), None if point is None else _vector(point)
     if direction is None or not any(direction) or (point is not None and middle is None):
         raise FieldError(
-            f'slice is {brief(raw)}; expected a text such as "{_example(raw)}", a normal as in '
-            '"1,1,0", one with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, '
-            "point) of three numbers each"
+            f'slice is {brief(raw)}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
+            'with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three '
+            "numbers each"
         )
     return Slice(direction, middle, repr(raw))
 
 
-def _example(raw: Any) -> str:
-    """Return a slice as a text, that of ``("z", 1)`` and ``{"z": 1}`` if these are given."""
-    pair = next(iter(raw.items()), ()) if isinstance(raw, Mapping) else raw
-    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
-        return f"{pair[0]}={pair[1]}"
-    return "x=0.5"
-
-
-def _contour(raw: Any) -> Contour:
+def contour_of(raw: Any) -> Contour:
+    """Return the contour that is given as text or a pair."""
     pair = raw.rpartition("=")[::2] if isinstance(raw, str) else raw
     if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
         name, value = pair[0].strip(), _number(pair[1])
@@ -159,22 +142,15 @@ def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
     if not mesh.n_cells:
         return ["the mesh has no cells; check the file or filter that made it"]
     if dimension < 2:
-        kind = "lines" if dimension else "points"
-        return [f"the mesh has only {kind}; expected a surface, or a volume to cut"]
+        return ["the mesh has only points or lines; expected a surface, or a volume to cut"]
     if cut is not None and dimension == 2:
         name = type(cut).__name__.lower()
-        return [
-            f"{name} is {cut.text}, but the mesh is already a surface, of which a cut is only a "
-            f"line; omit {name}"
-        ]
+        return [f"{name} is {cut.text}, but the mesh is already a surface; omit {name}"]
     names = dict.fromkeys(a.name for a in catalogue(mesh) if a.numeric and a.components == 1)
     if not isinstance(cut, Contour) or cut.name in names:
         return []
-    some = f"expected one of: {', '.join(names)}" if names else "it has only vectors, or no arrays"
-    return [
-        f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
-        f"{near_name(cut.name, names)}; {some}"
-    ]
+    text = f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
+    return [f"{text}; {near_names(cut.name, names)}"]
 
 
 def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record) -> Sheet:

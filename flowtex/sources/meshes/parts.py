@@ -23,9 +23,7 @@ from flowtex.sources.meshes.vectors import (
     candidates,
     catalogue,
     data_of,
-    missing_arrays,
 )
-from flowtex.sources.meshes.volume import count_nodes
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -40,8 +38,6 @@ SAME_NODE_SHARE = 1e-6
 MOST_LISTED = 12
 #: Length of a gap in usual steps from which on a notice is issued.
 GAP_STEPS = 8
-#: Arrays that number the nodes or cells of a mesh, whatever their order.
-LABELS = ("GlobalPointIds", "GlobalNodeIds", "GlobalNodeId", "vtkOriginalPointIds", "GlobalCellIds")
 PARTS = "If these are parts of one mesh and not time steps, give one of them, as in block=0"
 
 
@@ -231,18 +227,15 @@ def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
     """Return blocks that all have the scalars of each, which are NaN where a block lacks them."""
     blocks = {name: part.copy(deep=False) for name, part in parts.items()}
     scalars = [a for b in blocks.values() for a in catalogue(b) if a.numeric and a.components == 1]
-    for where in ("points", "cells"):
-        arrays = {scalar.name for scalar in scalars if scalar.where == where}
-        for array in sorted(arrays):
-            lacking = [name for name, block in blocks.items() if array not in data_of(block, where)]
-            for block in blocks.values():
-                count = block.n_points if where == "points" else block.n_cells
-                data = data_of(block, where)
-                values = np.asarray(data[array]) if array in data else np.full(count, np.nan)
-                if lacking:  # of one type, as others are dropped
-                    data[array] = values.astype(np.float64)
-            if lacking:
-                record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
+    for array, where in sorted({(a.name, a.where) for a in scalars}):
+        lacking = [name for name, block in blocks.items() if array not in data_of(block, where)]
+        for block in blocks.values() if lacking else ():
+            count = block.n_points if where == "points" else block.n_cells
+            data = data_of(block, where)
+            values = np.asarray(data[array]) if array in data else np.full(count, np.nan)
+            data[array] = values.astype(np.float64)  # of one type, as others are dropped
+        if lacking:
+            record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
     return list(blocks.values())
 
 
@@ -252,16 +245,11 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
 
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
         return source if isinstance(source, pv.DataObject) else pv.wrap(source)
-    kind = type(source)
-    msg = (
-        f"{label} has type {kind.__name__}; expected a PyVista mesh or MultiBlock, a list of them, "
-        "or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
-        "FlowField.from_triangles(points, triangles, velocity)"
+    raise FieldError(
+        f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
+        "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
+        "FlowField.from_triangles(points, triangles, velocity), for datasets FlowField.from_xarray"
     )
-    if kind.__module__.startswith("xarray."):
-        text = f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components"
-        msg = f"{text} of the velocity, as xr.Dataset({{'u': u, 'v': v}})"
-    raise FieldError(msg)
 
 
 def _time(mesh: pv.DataObject) -> float | None:
@@ -271,54 +259,49 @@ def _time(mesh: pv.DataObject) -> float | None:
 
 
 def _no_mesh(mesh: pv.DataObject, label: str) -> str:
-    kinds = ", ".join(sorted({type(block).__name__ for _, block in leaves(mesh)}))
-    is_mesh = "expected a mesh, with points and cells"
-    nothing = f"{label} has no blocks; check the file or filter that made it"
-    return f"{label} is a {kinds}; {is_mesh}" if kinds else nothing
+    if kinds := ", ".join(sorted({type(block).__name__ for _, block in leaves(mesh)})):
+        return f"{label} is a {kinds}; expected a mesh, with points and cells"
+    return f"{label} has no blocks; check the file or filter that made it"
 
 
 def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
     """Raise a FieldError for a step of another kind than the first, or without its vectors."""
-    sizes = [
-        count_nodes(tuple(grid.dimensions)) if is_structured(grid) else part_size(grid)
-        for grid in (step.grid, first.grid)
-    ]
+    sizes = [part_size(grid) for grid in (step.grid, first.grid)]
     if is_structured(first.grid) and sizes[0] != sizes[1]:
         raise FieldError(
             f"{step.label} has {sizes[0]} and the first step has {sizes[1]}; expected the same "
             f"nodes in every step. {PARTS}"
         )
-    if missing := missing_arrays(step.grid, velocity):
-        arrays = ", ".join(map(str, catalogue(step.grid))) or "none"
+    needed = [f"{part} ({velocity.where}, 1)" for part in velocity.parts] or [str(velocity)]
+    arrays = list(map(str, catalogue(step.grid)))
+    if missing := [array for array in needed if array not in arrays]:
         raise FieldError(
             f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
-            f"every step. Its arrays, with their numbers of components: {arrays}"
+            f"every step. Its arrays, with their numbers of components: {', '.join(arrays)}"
         )
 
 
 def aligned(step: TimeStep, first: TimeStep) -> TimeStep:
     """Return a step in the order of nodes and cells of the first, itself if it has that order.
 
-    Nodes are the same by their labels or places. A step with others remains as it is, and
+    Nodes are the same by their places. A step with others remains as it is, and
     :func:`check_nodes` raises an error if they are drawn.
     """
     grid, before = step.grid, first.grid
     if (grid.n_points, grid.n_cells) != (before.n_points, before.n_cells) or _equal(grid, before):
         return step
     near = SAME_NODE_SHARE * before.length
-    nodes = _order(before.points, grid.points, near, before.point_data, grid.point_data)
+    nodes = _order(before.points, grid.points, near)
     if nodes is None:
         return step
-    middles = before.cell_centers().points, grid.cell_centers().points
-    cells = _order(*middles, near, before.cell_data, grid.cell_data)
-    if cells is None or (_is_sorted(nodes) and _is_sorted(cells)):
+    cells = _order(before.cell_centers().points, grid.cell_centers().points, near)
+    if cells is None or ((np.diff(nodes) > 0).all() and (np.diff(cells) > 0).all()):
         return step
     ordered = before.copy(deep=False)
     ordered.clear_data()
-    for name in grid.point_data:
-        ordered.point_data[name] = np.asarray(grid.point_data[name])[nodes]
-    for name in grid.cell_data:
-        ordered.cell_data[name] = np.asarray(grid.cell_data[name])[cells]
+    for where, order in (("points", nodes), ("cells", cells)):
+        for name, values in data_of(grid, where).items():
+            data_of(ordered, where)[name] = np.asarray(values)[order]
     return replace(step, grid=ordered)
 
 
@@ -329,38 +312,24 @@ def _equal(grid: Any, before: Any) -> bool:
     if isinstance(grid, pv.ImageData) and isinstance(before, pv.ImageData):
         matrices = grid.index_to_physical_matrix, before.index_to_physical_matrix
         return grid.extent == before.extent and np.array_equal(*matrices)
-    if isinstance(grid, pv.RectilinearGrid) and isinstance(before, pv.RectilinearGrid):
-        return all(np.array_equal(getattr(grid, a), getattr(before, a)) for a in "xyz")
-    if not np.array_equal(grid.points, before.points):
-        return False
-    names = {pv.PolyData: ("faces", "lines", "strips"), pv.UnstructuredGrid: ("cells", "celltypes")}
-    return all(
-        np.array_equal(getattr(grid, name), getattr(before, name, ()))
-        for name in names.get(type(grid), ())
-    )
+    names = {
+        pv.RectilinearGrid: ("x", "y", "z"),
+        pv.PolyData: ("points", "faces", "lines", "strips"),
+        pv.UnstructuredGrid: ("points", "cells", "celltypes"),
+    }.get(type(grid), ("points",))
+    return all(np.array_equal(getattr(grid, n), getattr(before, n, ())) for n in names)
 
 
-def _order(before: AnyArray, after: AnyArray, near: float, *data: Any) -> Indices | None:
+def _order(before: AnyArray, after: AnyArray, near: float) -> Indices | None:
     """Return the number of each place of a step in the order of the first; ``None`` if unknown."""
     before, after = (np.asarray(places, dtype=np.float64) for places in (before, after))
     if not (np.isfinite(before).all() and np.isfinite(after).all()):
         return None
     if np.abs(after - before).max(initial=0.0) <= near:
         return np.arange(len(before))
-    for name in LABELS:
-        if all(name in arrays for arrays in data):
-            first, second = (np.asarray(arrays[name]) for arrays in data)
-            labelled: Indices = np.argsort(second)[np.argsort(np.argsort(first))]
-            same = np.array_equal(second[labelled], first) and len(np.unique(first)) == len(first)
-            if same and np.abs(after[labelled] - before).max() <= near:
-                return labelled
     distances, order = (np.asarray(found) for found in scipy.spatial.cKDTree(after).query(before))
     is_whole = distances.max(initial=0.0) <= near and len(np.unique(order)) == len(after)
     return order if is_whole else None
-
-
-def _is_sorted(order: Indices) -> bool:
-    return bool((np.diff(order) > 0).all())
 
 
 def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
@@ -368,9 +337,10 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
     before, after = first.points, sheet.points
     if before.shape != after.shape or not np.array_equal(first.triangles, sheet.triangles):  # type: ignore[arg-type]
         raise FieldError(
-            f"{label} has a surface of {_size(sheet)} and the first step has one of "
-            f"{_size(first)}; expected the same nodes and cells in every step: sample all steps "
-            f"onto one mesh with mesh.sample(step), or draw one of the times. {PARTS}"
+            f"{label} has a surface of {len(after):,} nodes and the first step has one of "
+            f"{len(before):,}, or other triangles; expected the same nodes and cells in every "
+            "step: sample all steps onto one mesh with mesh.sample(step), or draw one of the "
+            f"times. {PARTS}"
         )
     compared: Bools = first.shown & sheet.shown & np.isfinite(before + after).all(-1)
     moved = float(np.max(np.abs(after[compared] - before[compared]), initial=0.0))
@@ -382,18 +352,13 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
         )
 
 
-def _size(sheet: Sheet) -> str:
-    triangles = () if sheet.triangles is None else sheet.triangles
-    return f"{len(sheet.points):,} nodes and {len(triangles):,} triangles"
-
-
 def ordered_times(steps: Sequence[TimeStep], record: Record) -> tuple[list[int], Any]:
     """Return the order of steps by their times, and the times; ``None`` without them."""
     numbers = list(range(len(steps)))
     times = [np.nan if step.time is None else step.time for step in steps]
     if lacking := [step.label for step in steps if step.time is None]:
-        text = f"{lacking[0]} has no time, so the {len(steps)} steps are numbered from 0"
         if len(steps) > 1:
+            text = f"{lacking[0]} has no time, so the {len(steps)} steps are numbered from 0"
             record("align", text, notable=len(lacking) < len(steps))
         return numbers, None
     if not np.isfinite(times).all():

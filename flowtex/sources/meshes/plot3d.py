@@ -144,23 +144,19 @@ def _check_solution(layout: Layout, solution: Path) -> None:
     """Raise a FieldError for a solution that is cut, or of other grids."""
     if not layout.binary:
         return
-    axes, size = len(layout.dimensions[0]), solution.stat().st_size
+    size = solution.stat().st_size
     words = _integers(_head(solution), big_endian=layout.big_endian)
-    whole = layout.length(solution=True)
-    # A grid of three dimensions that is cut may be as long as one of two.
-    for rank in (axes, 5 - axes):
+    for rank in (2, 3):  # a grid of three dimensions that is cut may look like one of two
         form = {"marks": layout.record_marks, "multiple": layout.multiple}
         sizes = _dimensions(words, rank, **form)
-        other = sizes and replace(layout, dimensions=sizes).length(solution=True)
-        if sizes and sizes != layout.dimensions and (rank == axes or size == other):
+        other = replace(layout, dimensions=sizes or layout.dimensions)
+        if other != layout and other.length(solution=True) == size:
             raise FieldError(
                 f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has "
                 f"{layout.dimensions[:3]}; the grid file is truncated, or the solution belongs to "
                 "another grid"
             )
-        check_count(size, whole, solution.name)
-        if size == whole:
-            return
+    check_count(size, layout.length(solution=True), solution.name)
 
 
 def read_plot3d(grid: Path, layout: Layout, solution: Path) -> pv.MultiBlock:
@@ -207,11 +203,11 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     if not problem and vectors.shape[-2] not in (mesh.n_points, cells):
         problem = f"{path.name} has shape {vectors.shape}"
     if problem:
-        corners = f", ({3 * cells}, 3) for the corners of the faces" if is_stl else ""
-        places = f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}"
-        text = f"{problem}; expected them in {path.name} in the same folder, written by numpy.save"
-        text += f": numbers of shape {places}, or (T, {points}, 3) for times, in the order of the"
-        return mesh, None, f"{text} file"
+        text = f"{problem}; expected vectors in {path.name} in the same folder, written by "
+        text += (
+            f"numpy.save: numbers of shape ({points}, 3) for the points or ({cells}, 3) for the "
+        )
+        return mesh, None, f"{text}faces, in the order of the file, or (T, ..., 3) for times"
 
     def with_vectors(step: AnyArray) -> Any:
         copy = mesh.copy(deep=False)
@@ -233,11 +229,8 @@ def _vectors(path: Path) -> tuple[AnyArray, str]:
     try:
         # Mapped first: NumPy allocates the declared size even if the file is shorter.
         vectors = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
+        if vectors.ndim in (2, 3) and vectors.shape[-1] in (2, 3) and vectors.dtype.kind in "fiu":
+            return np.array(vectors), ""
+    except (ValueError, EOFError, OSError, AttributeError) as error:  # the last of an archive
         return nothing, f"{path.name} is not a NumPy array ({error})"
-    if not isinstance(vectors, np.ndarray):  # an archive
-        return nothing, f"{path.name} contains several arrays"
-    real = vectors.dtype.kind in "fiu" and vectors.size
-    if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
-        return nothing, f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"
-    return np.array(vectors), ""
+    return nothing, f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"

@@ -21,7 +21,7 @@ from flowtex.errors import FieldError, raise_faults
 from flowtex.field.derived import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.options import OF_EARTH, FieldOptions
-from flowtex.sources.meshes.cuts import Cut, cut_faults, find_cut, surface_sheet
+from flowtex.sources.meshes.cuts import Cut, contour_of, cut_faults, slice_of, surface_sheet
 from flowtex.sources.meshes.parts import (
     TimeStep,
     aligned,
@@ -63,15 +63,21 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
-    cut = find_cut(options.slice, options.contour)
-    if cut is not None and plane is not None:
-        option = "slice" if options.slice is not None else "contour"
-        raise FieldError(f"plane is {plane!r} and {option} is {cut.text}; choose one of the two")
+    cuts = {"plane": plane, "slice": options.slice, "contour": options.contour}
+    if len(given := [f"{k} is {value!r}" for k, value in cuts.items() if value is not None]) > 1:
+        raise FieldError(f"{' and '.join(given)}; choose one of them")
+    cut: Cut | None = None if options.slice is None else slice_of(options.slice)
+    cut = cut if options.contour is None else contour_of(options.contour)
     steps = time_steps(mesh, options.block, cut=cut is not None, record=record)
     first = next(steps)
     on_grid = is_structured(first.grid) and cut is None
-    if not on_grid:
-        _refuse({"plane": plane, "periodic": periodic, "sign_free": sign_free or None})
+    refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
+    if not on_grid and (given := [f"{k}={value!r}" for k, value in refused.items() if value]):
+        raise FieldError(
+            f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, cut a "
+            'volume as in slice="x=0.5", or sample the mesh onto a structured one, as in '
+            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
+        )
     velocity, chosen = choose(first.grid, options.vectors, plane, cut, record)
 
     def draw(grid: Any) -> Sheet:
@@ -92,19 +98,6 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if on_grid:
         return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
     return TriangleArrays(**arrays)
-
-
-def _refuse(choices: dict[str, Any]) -> None:
-    """Raise a FieldError for choices that apply to structured meshes only."""
-    if refused := [f"{k}={value!r}" for k, value in choices.items() if value not in (None, "")]:
-        plane = choices["plane"]
-        cut_here = plane if plane and plane[0] in "xyz" else "x=0.5"
-        remedy = f'to cut it, use slice="{cut_here}"; otherwise ' if plane is not None else ""
-        raise FieldError(
-            f"{', '.join(refused)} applies to structured meshes, and this one is not; {remedy}omit "
-            "it, or sample the mesh onto a structured one, as in "
-            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
-        )
 
 
 def choose(
@@ -221,12 +214,13 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
         return [0, 1, 2]
     points = sheet.points[sheet.shown & np.isfinite(sheet.points).all(axis=-1)]
     in_plane = thick_axes(points)
+    variances = np.linalg.eigvalsh(np.cov(points.T)) if len(points) > 2 else np.ones(3)
     named, is_sure = named_axes(parts)
     if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
         axes = list(named)
     elif len(in_plane) == 2 and not solid:
         axes = in_plane
-    elif solid or not _is_flat(points):
+    elif solid or variances[0] > FLAT * variances[-1]:
         axes = [0, 1]
     else:
         raise FieldError(
@@ -241,10 +235,3 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
         text = f"{name} has two components, which are drawn along {along}: the one along "
         record("components", f"{text}{'xyz'[lacking]} is taken to be zero", notable=True)
     return axes
-
-
-def _is_flat(points: Floats) -> bool:
-    if len(points) < 3:
-        return False
-    variances = np.linalg.eigvalsh(np.cov(points.T))
-    return bool(variances[0] <= FLAT * variances[-1])

@@ -8,15 +8,15 @@ mask of points that a sampling filter missed. Vectors may have a fill value.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.masks import undeclared_fill
@@ -167,13 +167,6 @@ def thick_axes(points: AnyArray) -> list[int]:
     return [axis for axis, span in enumerate(spans) if span > FLAT_SHARE * spans.max()]
 
 
-def missing_arrays(mesh: pv.DataSet, vectors: MeshArray) -> list[str]:
-    """Return the arrays of another mesh's vectors that a mesh lacks."""
-    needed = [f"{part} ({vectors.where}, 1)" for part in vectors.parts] or [str(vectors)]
-    present = {str(array) for array in catalogue(mesh)}
-    return [array for array in needed if array not in present]
-
-
 def select_velocity(mesh: pv.DataSet, vectors: Any) -> Selection:
     """Return the selected vectors; of ``None`` those that can be the velocity."""
     arrays = catalogue(mesh)
@@ -192,30 +185,13 @@ def select_velocity(mesh: pv.DataSet, vectors: Any) -> Selection:
     for array in named:
         if array.numeric and array.components in (2, 3):
             return Selection(array, f'the velocity is "{array.name}", as selected')
-    names = [array.name for array in arrays]
-    if named:
+    reason = "; " + near_names(str(vectors), [array.name for array in arrays])
+    if named or len(words) > 1:
         reason = (
-            f", an array of {named[0].components} component(s); expected 2 or 3 components at each "
-            "point or cell, or the names of 2 or 3 arrays of one component, separated by commas. "
-            "The arrays of the mesh,"
+            "; expected an array of 2 or 3 components, or the names of 2 or 3 arrays of one "
+            "component, all on points or all on cells, separated by commas"
         )
-    elif len(words) == 1:
-        reason = f", but the mesh has no such array{near_name(vectors, names) or '.'} Its arrays,"
-    elif absent := [word for word in words if word not in names]:
-        hint = near_name(absent[0], names) or "."
-        reason = f", but the mesh has no array {absent[0]!r}{hint} The arrays of the mesh,"
-    else:
-        reason = (
-            "; expected two or three arrays of one component each, all on points or all on cells. "
-            "The arrays of the mesh,"
-        )
-    return Selection(None, f"vectors is {vectors!r}{reason} {known}")
-
-
-def near_name(name: Any, names: Iterable[str]) -> str:
-    """Return a question for the name that was meant; empty if no name is similar."""
-    close = difflib.get_close_matches(str(name), list(names), n=1)
-    return f'. Did you mean "{close[0]}"?' if close else ""
+    return Selection(None, f"vectors is {vectors!r}{reason}. The arrays of the mesh, {known}")
 
 
 def _found(mesh: pv.DataSet, known: str) -> Selection:
@@ -235,21 +211,19 @@ def _found(mesh: pv.DataSet, known: str) -> Selection:
             'components, separate their names by commas, as in vectors="u,v,w"'
         )
         return Selection(None, text)
-    array, *others = preferred
-    listed = ", ".join(map(str, preferred))
-    if others:
-        text = f"the mesh has {len(preferred)} arrays that could be the velocity: {listed}"
-        return Selection(None, f'{text}; choose one, as in vectors="{preferred[-1].name}"')
-    others = [other for other in arrays if other != array]
+    array = preferred[0]
+    if len(preferred) > 1:
+        text = f"the mesh has {len(preferred)} arrays that could be the velocity: "
+        text += f"{', '.join(map(str, preferred))}; choose one, as in vectors="
+        return Selection(None, f'{text}"{preferred[-1].name}"')
     text = f'the velocity is "{array.name}"'
-    if not others:
-        kind = f"{array.where.removesuffix('s')} array with {array.components} components"
-        return Selection(array, f"{text}, the only {kind}")
-    if mesh.active_vectors_name == array.name:
+    if mesh.active_vectors_name == array.name and len(arrays) > 1:
         return Selection(array, f"{text}, the active vectors of the mesh")
-    listed = ", ".join(map(str, others))
-    text += f', chosen by its name; other vectors: {listed}. Choose one of them as in vectors="'
-    return Selection(array, f'{text}{others[0].name}"', notable=True)
+    if others := [other for other in arrays if other != array]:
+        text += f", chosen by its name; other vectors: {', '.join(map(str, others))}. Choose one of"
+        return Selection(array, f'{text} them as in vectors="{others[0].name}"', notable=True)
+    kind = f"{array.where.removesuffix('s')} array with {array.components} components"
+    return Selection(array, f"{text}, the only {kind}")
 
 
 def find_vectors(

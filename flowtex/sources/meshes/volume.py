@@ -161,45 +161,34 @@ class Plane:
         return np.moveaxis(np.take(shaped, sides, axis=2 - self.axis), 2 - self.axis, 0)
 
 
-def count_nodes(dimensions: tuple[int, int, int]) -> str:
-    """Return the size of a mesh as text."""
-    return " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
-
-
 def find_plane(mesh: Any, plane: Any) -> tuple[Plane | None, str]:
     """Return a plane and a sentence about it, or ``None`` and the fault in the choice.
 
     ``None`` stands for the mesh itself, or the middle of a volume.
     """
     dimensions = tuple(mesh.dimensions)
-    size, middle = count_nodes(dimensions), f"k={dimensions[2] // 2}"
+    size = " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
     if min(dimensions) < 1:
         return None, "the mesh has no nodes; check the file or filter that made it"
     if sum(n > 1 for n in dimensions) < 2:
-        text = "a single row; a surface needs at least 2 nodes along two of the axes"
-        return None, f"the mesh has {size}, {text}"
+        return None, f"the mesh has {size}; a surface needs at least 2 nodes along two of the axes"
     if plane is None and min(dimensions) == 1:
         return Plane(dimensions, dimensions.index(1), 0), ""
     if plane is None:
         ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
         return Plane(dimensions, 2, dimensions[2] // 2), (
-            f'the plane is "{middle}", the middle of {size}; choose another as in '
+            f'the plane is "k={dimensions[2] // 2}", the middle of {size}; choose another as in '
             f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
         )
     match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
-    if match is None:
+    axis = "ijk".index(match[1].lower()) if match else 0
+    count, index = dimensions[axis], int(match[2]) if match else 0
+    if match is None or not -count <= index < count or (min(dimensions) == 1 and count > 1):
         text = 'expected "i=N", "j=N" or "k=N" with a whole number N'
-        return None, f'plane is {plane!r}; {text}, as in plane="{middle}"'
-    letter = match[1].lower()
-    axis, index = "ijk".index(letter), int(match[2])
-    count = dimensions[axis]
-    if not -count <= index < count:
-        text = f"expected {letter} from {-count} to {count - 1}, because the mesh has {size}"
-        return None, f"plane is {plane!r}; {text}"
-    if min(dimensions) == 1 and count > 1:
-        text = f"which selects a single row, because the mesh has {size}; the mesh is already a"
-        return None, f"plane is {plane!r}, {text} surface: omit plane"
-    return Plane(dimensions, axis, index % count), f"plane {letter} = {index % count} of {size}"
+        return None, f"plane is {plane!r}; {text} within {size}, and no plane for a surface"
+    return Plane(
+        dimensions, axis, index % count
+    ), f"plane {'ijk'[axis]} = {index % count} of {size}"
 
 
 def plane_sheet(

@@ -1,7 +1,7 @@
 """Finding the mesh of a dataset by UGRID, by the names of models, or by the bounds of cells.
 
 Its dimensions, levels and times then get a form in which the axes are recognised. Values along one
-dimension are points of a mesh: scattered ones, HEALPix, faces of a cube.
+dimension are points of a mesh: scattered ones, faces of a cube.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axis_kind
 from flowtex.sources.datasets.coordinates import ACROSS, LATITUDE, LONGITUDE, UPWARD
@@ -28,28 +27,22 @@ if TYPE_CHECKING:
 #: The attribute of xarray-selafin with the corners of faces.
 TELEMAC = "ikle2"
 #: Names of the corners of faces, and of coordinates of the nodes, of models without a convention.
-#: Each has the mesh's words, the corners, pairs of coordinates, and the number of the first node.
+#: Each has the mesh's words, the corners, and pairs of coordinates; nodes are counted from 1.
 MODELS = (
-    ("FVCOM", ("nv",), (("lon", "lat"), ("x", "y")), 1),
-    ("SCHISM", ("SCHISM_hgrid_face_nodes",), (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),), 1),
+    ("FVCOM", ("nv",), (("lon", "lat"), ("x", "y"))),
+    ("SCHISM", ("SCHISM_hgrid_face_nodes",), (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),)),
     (
         "FESOM",
         ("face_nodes", "elem_nodes", "elements", "elem"),
         (("lon", "lat"), ("nodes", "nodes")),
-        1,
     ),
-    (
-        "ICON",
-        ("vertex_of_cell",),
-        (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices")),
-        1,
-    ),
+    ("ICON", ("vertex_of_cell",), (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices"))),
     # The velocity of MPAS is in the middle of its cells: these are the nodes here, and triangles
     # join the three around each corner.
-    ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
-    ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex")), 1),
-    ("TUFLOW FV", ("cell_node",), (("node_X", "node_Y"),), 1),
-    ("TELEMAC", (TELEMAC,), (("x", "y"),), 1),
+    ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell"))),
+    ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex"))),
+    ("TUFLOW FV", ("cell_node",), (("node_X", "node_Y"),)),
+    ("TELEMAC", (TELEMAC,), (("x", "y"),)),
 )
 #: Variables with the number of corners of each face.
 COUNTS = {"verticesOnCell": "nEdgesOnCell", "cell_node": "cell_Nvert"}
@@ -79,9 +72,8 @@ def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         attrs = topology.attrs
         if attrs.get("cf_role") != "mesh_topology" or "face_node_connectivity" not in attrs:
             continue
-        missing = [attrs["face_node_connectivity"], *str(attrs.get("node_coordinates", "")).split()]
-        missing = [name for name in missing if name not in variables]
         names = str(attrs.get("node_coordinates", "")).split()
+        missing = [n for n in (attrs["face_node_connectivity"], *names) if n not in variables]
         if missing or len(names) != 2:
             raise FieldError(
                 f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
@@ -102,7 +94,7 @@ def _is_latitude(c: xr.DataArray) -> bool:
 
 
 def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
-    for kind, names, coordinates, first in MODELS:
+    for kind, names, coordinates in MODELS:
         corners = next((variables[n] for n in names if n in variables), None)
         if corners is None or corners.ndim != 2 or corners.dtype.kind not in "fiu":
             continue
@@ -112,10 +104,9 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             longitude, latitude = variables[x], variables[y]
             if longitude.ndim != (2 if x == y else 1) or not _varies(longitude):
                 continue
-            attrs = {**corners.attrs}
             counts = variables.get(COUNTS.get(str(corners.name), ""))
-            first_index = int(attrs.get("start_index", first))
-            yield Mesh(kind, longitude, latitude, corners, counts, first_index)
+            first = int(corners.attrs.get("start_index", 1))
+            yield Mesh(kind, longitude, latitude, corners, counts, first)
 
 
 def _varies(c: xr.DataArray) -> bool:
@@ -144,7 +135,6 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
 def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets whose mesh has dimensions of known names; without faces it is of points."""
     datasets = [_completed(ds) for ds in datasets]
-    _check_classes(datasets)
     mesh = find_mesh(datasets)
     if mesh is None:
         return with_points(datasets)
@@ -186,23 +176,6 @@ def _completed(ds: xr.Dataset) -> xr.Dataset:
     return ds
 
 
-def _check_classes(datasets: Sequence[xr.Dataset]) -> None:
-    """Raise a FieldError for speeds and directions that are numbers of classes."""
-    classes = {
-        str(name): str(array.attrs["flag_bounds"])
-        for ds in datasets
-        for name, array in ds.data_vars.items()
-        if "flag_bounds" in array.attrs
-        and re.search("speed|direction", str(array.attrs.get("standard_name", "")))
-    }
-    if classes and not any(pair.rank <= NAMED for pair in find_pairs(datasets)):
-        raise FieldError(
-            f"{' and '.join(classes)} store classes of the speed and the direction, not their "
-            f"values; their bounds are in {' and '.join(classes.values())}. Replace each number "
-            "by the middle of its class, compute the components, and pass the dataset with both"
-        )
-
-
 def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
     """Return a dataset with numbers for levels, which show the one at the surface."""
     for dim in map(str, ds.dims):
@@ -220,7 +193,6 @@ def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
 
 def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets in which the dimension of scattered points is called ``NODES``."""
-    datasets = [_with_centres(ds) for ds in datasets]
     pairs = [pair for pair in find_pairs(datasets) if pair.rank <= NAMED]
     for x, y in _positions(datasets):
         along = [a for ds in datasets for a in ds.data_vars.values() if set(x.dims) <= set(a.dims)]
@@ -334,73 +306,3 @@ def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
         # Otherwise all of a file is read.
         ds = ds.chunk({d: 1 if d not in face else -1 for d in ds.dims})
     return ds.stack({NODES: sorted(face)}, create_index=False)
-
-
-def _with_centres(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset on HEALPix with the positions of its cells, if it has none."""
-    names = ("grid_mapping_name", "grid_name")
-    grids = [a for a in ds.variables.values() if "healpix" in (a.attrs.get(name) for name in names)]
-    if not grids or any(True for _ in _positions([ds])):
-        return ds
-    attrs = {str(k).removeprefix("healpix_"): value for k, value in grids[0].attrs.items()}
-    largest = max(ds.data_vars.values(), key=lambda a: a.size)
-    sizes = {str(d): n for d, n in largest.sizes.items() if axis_kind(largest, str(d)) == str(d)}
-    dim = max(sizes, key=lambda d: sizes[d], default="")
-    level = attrs.get("refinement_level", attrs.get("level"))
-    nside = int(attrs.get("nside", 0) if level is None else 2 ** int(level))
-    order = str(attrs.get("order", attrs.get("indexing_scheme", ""))).lower()
-    cells = next(
-        (c.values for c in ds.coords.values() if c.dims == (dim,) and c.dtype.kind in "iu"),
-        np.arange(sizes.get(dim, 0)),
-    )
-    if (
-        nside < 1
-        or order not in ("ring", "nest", "nested")
-        or not 0 < len(cells) <= 12 * nside**2
-        or cells.max() >= 12 * nside**2
-    ):
-        raise FieldError(
-            f"the grid mapping {dict(grids[0].attrs)} does not fit {len(cells):,} cells along "
-            f"{dim!r}; expected healpix_nside, healpix_order 'ring' or 'nested', and 12 nside² "
-            "cells, or an integer coordinate with the numbers of the cells"
-        )
-    lon, lat = healpix_centres(cells.astype(np.int64), nside, nested=order != "ring")
-    return ds.assign_coords(
-        lon=(dim, lon, {"units": "degrees_east"}), lat=(dim, lat, {"units": "degrees_north"})
-    )
-
-
-def healpix_centres(cells: Indices, nside: int, *, nested: bool) -> tuple[Floats, Floats]:
-    """Return longitudes and latitudes in degrees of cells, by their numbers in a full grid."""
-    return _nested(cells, nside) if nested else _ring(cells, nside)
-
-
-def _ring(cells: Indices, nside: int) -> tuple[Floats, Floats]:
-    count, cap = 12 * nside**2, 2 * nside * (nside - 1)
-    south = cells >= count - cap
-    north = np.where(south, count - 1 - cells, cells)  # of a cap, counted from its pole
-    in_cap = south | (cells < cap)
-    ring = ((1 + np.sqrt(1 + 2 * np.where(in_cap, north, 0))) / 2).astype(np.int64)
-    place = north - 2 * ring * (ring - 1)
-    belt = np.where(in_cap, 0, cells - cap)
-    row, column = belt // (4 * nside) + nside, belt % (4 * nside)
-    z = np.where(in_cap, 1 - ring**2 / (3 * nside**2), 4 / 3 - 2 * row / (3 * nside))
-    shift = ((row - nside) % 2 == 0) / 2
-    lon = np.where(in_cap, (place + 0.5) * 90 / ring, (column + shift) * 90 / nside)
-    lon = np.where(south, 360 - lon, lon)
-    return lon, np.degrees(np.arcsin(np.where(south, -z, z)))
-
-
-def _nested(cells: Indices, nside: int) -> tuple[Floats, Floats]:
-    face, bits = cells // nside**2, cells % nside**2
-    x, y = np.zeros_like(bits), np.zeros_like(bits)
-    for k in range(nside.bit_length()):
-        x |= (bits >> 2 * k & 1) << k
-        y |= (bits >> 2 * k + 1 & 1) << k
-    ring = (face // 4 + 2) * nside - x - y - 1  # from 1 at the north pole
-    size = np.minimum(np.minimum(ring, 4 * nside - ring), nside)
-    middle = np.where(face // 4 == 1, 2 * (face % 4), 2 * (face % 4) + 1)
-    lon = (middle + (x - y) / size) * 45
-    near = 1 - size**2 / (3 * nside**2)
-    z = np.where(size < nside, np.where(ring < nside, near, -near), 4 / 3 - 2 * ring / (3 * nside))
-    return lon % 360, np.degrees(np.arcsin(z))

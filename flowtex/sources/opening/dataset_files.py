@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 import warnings
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
-from itertools import chain, takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import brief, checked_source
-from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
 from flowtex.sources.datasets import labels
@@ -37,9 +34,6 @@ from flowtex.sources.opening.tables import (
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Names of coordinates by what they are.
-Names = dict[str, list[Hashable]]
-
 #: Names of dates as text, which some models write beside less exact times, or instead of them.
 LETTERS = ("Times", "xtime")
 #: A unit of time of ICON: a date, with the share of the day behind its point.
@@ -50,8 +44,6 @@ JSON = (".json", ".geojson")
 TABLES = {".csv": read_csv, ".vec": read_vec}
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
-#: The newest Python for which the wheels of eccodes have its library.
-ECCODES_UNTIL = (3, 13)
 
 
 class Opened(list["xr.Dataset"]):
@@ -62,14 +54,6 @@ class Opened(list["xr.Dataset"]):
     ) -> None:
         super().__init__(items)
         self.closers = tuple(closers)
-
-    @classmethod
-    def of(cls, items: Iterable[xr.Dataset], parts: Iterable[Any]) -> Opened:
-        """Return datasets, with the functions that close the datasets and nodes of trees.
-
-        The method ``close`` of a dataset works only once, but xarray opens a file for each read.
-        """
-        return cls(items, [part._close for part in parts if part._close is not None])
 
 
 class Datasets(Opened):
@@ -180,25 +164,22 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
     for axis in ds.dims:
         line = ds.variables.get(axis)
         if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
-            return ds.assign_coords({axis: (axis, _days(line.values), {"axis": "T"})})
+            days = np.floor(line.values).astype(int)
+            dates = np.array([f"{d // 10**4:04}-{d // 100 % 100:02}-{d % 100:02}" for d in days])
+            seconds = np.round((line.values - days) * 86400).astype("timedelta64[s]")
+            times = (dates.astype("datetime64[s]") + seconds).astype("datetime64[ns]")
+            return ds.assign_coords({axis: (axis, times, {"axis": "T"})})
     return ds
-
-
-def _days(numbers: AnyArray) -> AnyArray:
-    whole = np.floor(numbers).astype(int)
-    days = np.array([f"{n:08d}" for n in whole])
-    dates = [np.datetime64(f"{d[:4]}-{d[4:6]}-{d[6:]}", "s") for d in days]
-    seconds = np.round((numbers - whole) * 86400).astype("timedelta64[s]")
-    return np.asarray(np.array(dates) + seconds, dtype="datetime64[ns]")
 
 
 def _with_axes(ds: xr.Dataset) -> xr.Dataset:
     import_extra("cf_xarray", "xarray")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        guessed, axes, places = _guessed(ds)
+        guessed = ds.cf.guess_coord_axis()
         # Asked for often, and slowly found: each coordinate is marked with its axis.
-        marks = {**axes, "Z": [*axes.get("Z", []), *places.get("vertical", [])]}
+        axes = guessed.cf.axes
+        marks = {**axes, "Z": [*axes.get("Z", []), *guessed.cf.coordinates.get("vertical", [])]}
         for axis, names in marks.items():
             for name in names:
                 guessed[name].attrs.setdefault("axis", axis)
@@ -208,29 +189,6 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
             del c.attrs["axis"]
     return guessed
-
-
-def _guessed(ds: xr.Dataset) -> tuple[xr.Dataset, Names, Names]:
-    """Return what ``ds.cf.guess_coord_axis()`` returns, and its axes and coordinates.
-
-    That looks all of them up for each coordinate and pattern, which takes most of the time to open.
-    """
-    from cf_xarray.accessor import ATTRS
-    from cf_xarray.criteria import regex
-
-    ds = ds.copy(deep=False)
-    known: tuple[Names, Names] = ds.cf.axes, ds.cf.coordinates
-    for name, c in ds.coords.items():
-        dates = c.ndim == 1 and (c.dtype.kind == "m" or is_dates(c))
-        if dates and name not in chain(*known[1].values()):
-            kinds = ["time"]
-        else:
-            kinds = [kind for kind, pattern in regex.items() if pattern.match(str(name).lower())]
-        for kind in kinds:
-            if name not in chain(*known[kind not in "XYZT"].values()):
-                ds[name].attrs = {**ATTRS[kind], **ds[name].attrs}
-                known = ds.cf.axes, ds.cf.coordinates
-    return ds, *known
 
 
 def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:
@@ -253,22 +211,14 @@ def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.D
     datasets = [_decoded(ds) for ds in datasets]
     name = _time_axis(datasets)
     dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
-    if dates is not None and name in datasets[0] and datasets[0][name].dtype.kind in "fiu":
+    if dates is not None and name in datasets[0].dims and datasets[0][name].dtype.kind in "fiu":
         # The times are numbers without a unit.
-        datasets = [
-            ds.assign_coords({name: [d]}) if name in ds.dims else ds
-            for ds, d in zip(datasets, dates, strict=True)
-        ]
+        datasets = [ds.assign_coords({name: [d]}) for ds, d in zip(datasets, dates, strict=True)]
     datasets = _alike(datasets, name, record)
     try:
-        series: xr.Dataset = xarray.concat(
-            _chunked(datasets),
-            dim=name,
-            data_vars="different",
-            coords="different",
-            compat="equals",
-            join="exact",
-        ).sortby(name)
+        rules: dict[str, Any] = {"data_vars": "different", "coords": "different"}
+        rules |= {"compat": "equals", "join": "exact"}
+        series: xr.Dataset = xarray.concat(_chunked(datasets), dim=name, **rules).sortby(name)
         return series
     except (ValueError, KeyError) as error:
         raise FieldError(
@@ -348,8 +298,7 @@ def dataset_paths(given: Any) -> list[Path]:
 def common_name(paths: Sequence[Path]) -> str:
     """Return a word for captions: the common beginning of the names of files."""
     stems = [path.stem for path in paths]
-    common = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
-    shared = "".join(letters[0] for letters in common)
+    shared = os.path.commonprefix(stems)  # noqa: RUF071
     return shared.rstrip("_-. 0123456789") if len(stems) > 1 and len(shared) > 2 else stems[0]
 
 
@@ -384,42 +333,41 @@ def open_files(path: Path) -> Opened:
             return Opened([TABLES[suffix](path)])
         if suffix in GRIB:
             parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
-            return Opened.of(parts, parts)
+            return Opened(parts, _closers(parts))
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
             options["engine"] = "zarr"
         try:
             ds = xarray.open_dataset(path, **options)
-        except ValueError as error:
-            if "decode time" not in str(error):
-                raise
-            # Times that no calendar has stay numbers.
+        except ValueError:  # times that no calendar has stay numbers
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
-            return Opened.of([ds], [ds])
+            return Opened([ds], _closers([ds]))
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")
-        return Opened.of([of_tree(tree[group] if group else tree, path)], [ds, *tree.subtree])
+        part = of_tree(tree[group] if group else tree, path)
+        return Opened([part], _closers([ds, *tree.subtree]))
+
+
+def _closers(parts: Iterable[Any]) -> list[Callable[[], None]]:
+    """Return functions that close datasets again and again, as xarray opens a file for each read.
+
+    The method ``close`` works only once.
+    """
+    return [part._close for part in parts if part._close is not None]
 
 
 def import_cfgrib() -> Any:
-    """Import the reader of GRIB; the error for a missing package has the remedy."""
+    """Import the reader of GRIB; the error for a missing library has the remedy."""
     try:
         return import_extra("cfgrib", "grib")
-    except (ModuleNotFoundError, RuntimeError) as error:
-        absent = isinstance(error, ModuleNotFoundError)
-        if absent and sys.version_info[:2] <= ECCODES_UNTIL:
-            raise
-        if not absent and "ecCodes" not in str(error):
-            raise
-        until = ".".join(map(str, ECCODES_UNTIL))
+    except RuntimeError as error:
         raise ModuleNotFoundError(
-            "reading GRIB needs the library ecCodes, which is missing: its wheels support Python "
-            f"up to {until}. Use such a Python, or cfgrib from conda-forge, which includes the "
-            "library",
+            f"reading GRIB needs the library ecCodes, which is missing ({error}): its wheels "
+            "support not every Python; install cfgrib from conda-forge, which includes it",
             name="cfgrib",
         ) from error

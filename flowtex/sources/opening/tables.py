@@ -13,6 +13,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -160,13 +161,10 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
             break
     else:
         names = [name for name in (x, y, time, level) if name is not None]
-        same = frame[frame.duplicated(names, keep=False)]
-        first = same[(same[names] == same[names].iloc[0]).all(axis=1)]
-        place = ", ".join(f"{name} {first[name].iloc[0]}" for name in names)
+        same = frame[frame.duplicated(names, keep=False)][names]
         raise FieldError(
-            f"{len(same):,} rows repeat a position; the rows {first.index[0]} and "
-            f"{first.index[1]} both have {place}. Average them, as in "
-            f"df.groupby({names!r}).mean(), or draw a part of the table"
+            f"{len(same):,} rows repeat a position, such as {same.iloc[0].to_dict()}. Average "
+            f"them, as in df.groupby({names!r}).mean(), or draw a part of the table"
         )
     if not axes and time is not None and frame[time].nunique() > max(len(frame) / 2, 1):
         raise FieldError(
@@ -254,19 +252,12 @@ def read_vec(path: Path) -> xr.Dataset:
     return of_table(frame)
 
 
-#: Names of the components by the number of the parameter.
-NUMBERS = {2: "u", 3: "v"}
-WORDS = {"u": "eastward_wind", "v": "northward_wind"}
-
-
 def read_winds(path: Path) -> xr.Dataset:
     """Read the components of the first level and time."""
     xarray = import_extra("xarray", "xarray")
+    check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     try:
-        check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
         records = json.loads(path.read_text(encoding="utf-8"))
-    except FieldError:
-        raise
     except (ValueError, RecursionError) as error:
         raise FieldError(f"it is not valid JSON ({error})") from error
     if isinstance(records, dict) and records.get("type") == "FeatureCollection":
@@ -277,57 +268,49 @@ def read_winds(path: Path) -> xr.Dataset:
             "earth"
         )
     components: dict[str, Any] = {}
-    for record in records:
-        header = record.get("header")
-        header = header if isinstance(header, dict) else {}
-        name = NUMBERS.get(header.get("parameterNumber", 0))
-        if name and name not in components:
-            components[name] = _component(xarray, header, record.get("data"), name)
-    if len(components) < 2:
-        missing = " and ".join(n for n in WORDS if n not in components)
-        raise FieldError(
-            f"the record of the component {missing} is missing (parameterNumber 2 and 3)"
-        )
+    for number, name in ((2, "eastward"), (3, "northward")):
+        headers = [r.get("header", {}) for r in records]
+        found = [n for n, header in enumerate(headers) if header.get("parameterNumber") == number]
+        if not found:
+            raise FieldError(f"the record of the {name} component is missing ({number=})")
+        try:
+            component = _component(headers[found[0]], records[found[0]]["data"], name)
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
+            if isinstance(error, FieldError):
+                raise
+            raise FieldError(f"the record of the {name} component is damaged ({error})") from error
+        components["u" if number == 2 else "v"] = component
     try:
-        merged: xr.Dataset = xarray.merge(list(components.values()), join="exact")
+        whole: xr.Dataset = xarray.merge([a.rename(n) for n, a in components.items()], join="exact")
     except ValueError as error:
         raise FieldError(f"the two components have different grids ({error})") from error
-    return merged
+    return whole
 
 
-def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any:
+def _component(header: dict[str, Any], data: Any, name: str) -> xr.DataArray:
     """Return one record as an array on latitude and longitude."""
-    try:
-        columns, rows = int(header["nx"]), int(header["ny"])
-        if min(columns, rows) < 1:
-            raise FieldError(
-                f"nx is {columns} and ny {rows} of the component {name}; expected 1 or more"
-            )
-        check_count(len(data), columns * rows, f"the component {name}", "numbers")
-        lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
-        south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
-        lat = float(header["la1"]) + south * abs(float(header["dy"])) * np.arange(rows)
-        values = np.array([np.nan if v is None else v for v in data], dtype=float)
-        values = values.reshape(rows, columns)
-    except FieldError:
-        raise
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise FieldError(f"the record of the component {name} is damaged ({error})") from error
+    columns, rows = int(header["nx"]), int(header["ny"])
+    check_count(min(columns, rows), 1, f"the {name} component", "columns and rows")
+    check_count(len(data), columns * rows, f"the {name} component", "numbers")
+    lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
+    south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
+    lat = float(header["la1"]) + south * abs(float(header["dy"])) * np.arange(rows)
     coordinates: dict[str, Any] = {
         "latitude": ("latitude", lat, {"units": "degrees_north"}),
         "longitude": ("longitude", lon, {"units": "degrees_east"}),
     }
-    if isinstance(header.get("refTime"), str):
-        try:
-            start = np.datetime64(header["refTime"].replace("Z", ""))
-            hours = np.timedelta64(round(3600 * float(header.get("forecastTime", 0))), "s")
-            coordinates["time"] = start.astype("datetime64[s]") + hours
-        except ValueError:
-            pass  # the date has another form
+    with suppress(KeyError, ValueError, AttributeError):  # the date may have another form
+        hours = np.timedelta64(round(3600 * float(header.get("forecastTime", 0))), "s")
+        start = np.datetime64(header["refTime"].replace("Z", "")).astype("datetime64[s]")
+        coordinates["time"] = start + hours
     unit = str(header.get("parameterUnit", "m/s")).replace("m.s-1", "m/s")
-    attributes = {"standard_name": WORDS[name], "units": unit}
-    dims = ("latitude", "longitude")
-    return xarray.DataArray(values, coordinates, dims, name, attributes)
+    values = np.array(data, dtype=float).reshape(rows, columns)
+    return import_extra("xarray", "xarray").DataArray(
+        values,
+        coordinates,
+        ("latitude", "longitude"),
+        attrs={"standard_name": f"{name}_wind", "units": unit},
+    )
 
 
 def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:

@@ -162,7 +162,7 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
     ("change", "words"),
     [
         (lambda ds: ds.drop_vars("v"), "one component of a velocity, 'u'.*'northward_wind'"),
-        (lambda ds: ds.drop_vars(["lon", "lat"]), "neither longitude and latitude.*assign_coords"),
+        (lambda ds: ds.drop_vars(["lon", "lat"]), "has no positions.*assign_coords"),
         (lambda ds: ds.assign_coords(lat=ds.lat * np.nan), "NaN everywhere"),
         (
             lambda ds: ds.assign_coords(lat=("lat", ds.lat.values * 3, ds.lat.attrs)),
@@ -177,7 +177,7 @@ def _unplaced(ds: xr.Dataset) -> xr.Dataset:
             lambda ds: ds.assign(
                 {n: (ds.u.dims, ds[n].values, {"units": "furlong"}) for n in "uv"}
             ),
-            "^the unit of 'u' is 'furlong', which is not a unit of velocity",
+            r"in a unit such as m/s; the variables are u \(furlong\), v",
         ),
         (_unplaced, "no variable has two axes; expected the two components"),
     ],

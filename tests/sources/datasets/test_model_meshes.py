@@ -229,7 +229,7 @@ def test_files_of_a_mesh_and_of_its_values(tmp_path: Path, capsys: Any) -> None:
 
 def test_what_is_missing_is_told() -> None:
     _, u, v = CONVENTIONS["fesom"][0](globe(100))
-    with pytest.raises(FieldError, match="neither longitude and latitude"):
+    with pytest.raises(FieldError, match="has no positions"):
         FlowField.from_xarray([u, v])
     (ds,) = ugrid(globe(100))
     with pytest.raises(

@@ -313,54 +313,6 @@ def reduced_gaussian() -> Any:
     ), Truth(np.stack([lons, lats], axis=-1))
 
 
-def healpix_places(nside: int, order: str) -> tuple[Any, Any]:
-    """Longitude and latitude of the middles of HEALPix cells, by Górski et al. (2005)."""
-    count = 12 * nside**2
-    if order == "ring":
-        cells = np.arange(count)
-        cap = 2 * nside * (nside - 1)
-        north, south = cells < cap, cells >= count - cap
-        p = np.where(south, count - 1 - cells, cells)
-        ring = np.floor((1 + np.sqrt(1 + 2 * p)) / 2)
-        on_ring = p - 2 * ring * (ring - 1)
-        on_ring = np.where(south, 4 * ring - 1 - on_ring, on_ring)
-        height = 1 - ring**2 / (3 * nside**2)
-        k, equal = np.divmod(cells - cap, 4 * nside)
-        row = k + nside
-        shift = np.where((row - nside) % 2 == 0, 0.5, 0.0)
-        z = np.where(north | south, height, 4 / 3 - 2 * row / (3 * nside))
-        z = np.where(south, -height, z)
-        turn = np.where(north | south, (on_ring + 0.5) * 90 / ring, (equal + shift) * 90 / nside)
-        return turn, np.degrees(np.arcsin(z))
-    face, within = np.divmod(np.arange(count), nside**2)
-    bits = int(np.log2(nside))
-    x = sum(((within >> (2 * b)) & 1) << b for b in range(bits))
-    y = sum(((within >> (2 * b + 1)) & 1) << b for b in range(bits))
-    row = np.array([2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4])[face] * nside - x - y - 1
-    column = np.array([1, 3, 5, 7, 0, 2, 4, 6, 1, 3, 5, 7])[face]
-    length = np.where(row < nside, row, np.where(row > 3 * nside, 4 * nside - row, nside))
-    polar = np.where(row > 2 * nside, -1, 1) * (1 - length**2 / (3 * nside**2))
-    z = np.where(length < nside, polar, (2 * nside - row) * 2 / (3 * nside))
-    turn = (column * length + x - y) * 45 / length
-    return turn % 360, np.degrees(np.arcsin(z))
-
-
-@variants(["ring", "nested"], error="healpix", options={"globe": True})
-def healpix(order: str) -> Any:
-    nside = 4
-    lon, lat = healpix_places(nside, order)
-    u, v = wind(lon, lat)
-    attrs = {
-        "grid_mapping_name": "healpix",
-        "healpix_nside": nside,
-        "healpix_order": order,
-    }
-    mapping = {"grid_mapping": "crs"}
-    return xr.Dataset(
-        {"ua": ("cell", u, EAST | mapping), "va": ("cell", v, NORTH | mapping)}
-    ).assign(crs=xr.DataArray(0, attrs=attrs)), Truth(np.stack([lon, lat], axis=-1))
-
-
 def ugrid(at: str, start: int) -> tuple[xr.Dataset, Any, Any]:
     """Triangles of UGRID around points of a region."""
     p = np.random.default_rng(4).uniform((5, 40), (25, 55), (1200, 2))

@@ -242,14 +242,10 @@ def shuffled(mesh: Any, seed: int, labels: str = "") -> Any:
 @given(
     st.integers(0, 2**31),
     st.sampled_from(["grid", "triangles", "faces", "tetrahedra", "slice"]),
-    st.booleans(),
 )
-def test_steps_in_another_order_are_matched(seed: int, kind: str, labels: bool) -> None:
+def test_steps_in_another_order_are_matched(seed: int, kind: str) -> None:
     options = {"slice": "0.3,1,0.2"} if kind == "slice" else {}
     steps = [step("tetrahedra" if kind == "slice" else kind, time) for time in (1.0, 2.0)]
-    if labels:
-        for mesh in steps:
-            mesh["GlobalPointIds"] = np.arange(mesh.n_points)
     expected, _ = read(steps, **options)
     field, notices = read([steps[0], shuffled(steps[1], seed)], **options)
     assert np.array_equal(field.points, expected.points)
@@ -258,24 +254,6 @@ def test_steps_in_another_order_are_matched(seed: int, kind: str, labels: bool) 
         np.testing.assert_allclose(field.scalars[name], expected.scalars[name], atol=1e-12)
     text = "nodes or cells of 1 steps are in another order than those of the first"
     assert sum(notice.startswith(text) for notice in notices) == 1
-
-
-def test_nodes_at_one_place_are_matched_by_their_labels_only() -> None:
-    first = step("triangles", 1.0)
-    doubled = pv.PolyData.from_regular_faces(
-        np.tile(first.points, (2, 1)),
-        np.vstack([first.regular_faces, first.regular_faces + first.n_points]),
-    )
-    doubled["U"] = np.random.default_rng(0).normal(size=(doubled.n_points, 3))
-    doubled["GlobalPointIds"] = np.arange(doubled.n_points) + 7
-    doubled.cell_data["c"] = doubled.cell_data["GlobalCellIds"] = np.arange(doubled.n_cells)
-    other = shuffled(doubled, 1)
-    other.cell_data["GlobalCellIds"] = other.cell_data["c"]
-    field, _ = read([doubled, other], vectors="U")
-    assert np.array_equal(field.velocity[0], field.velocity[1])
-    other.point_data.remove("GlobalPointIds")
-    with pytest.raises(FieldError, match="expected the same nodes and cells in every step"):
-        read([doubled, other], vectors="U")
 
 
 def test_steps_are_sorted_by_time() -> None:

@@ -1,4 +1,4 @@
-"""Scattered points, HEALPix and faces of a cube: triangles between neighbours, exact values."""
+"""Scattered points and faces of a cube: triangles between neighbours, exact values."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.units import factor
-from flowtex.sources.models.conventions import healpix_centres
 from flowtex.sources.models.model_mesh import join_points
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
@@ -93,39 +92,6 @@ def test_components_along_rows_of_faces_raise() -> None:
     with pytest.raises(FieldError, match=r"U and V lie along the rows.*6 faces.*isel={'nf': 0}"):
         FlowField.from_xarray(ds, globe=True)
     assert faults(FlowField.from_xarray(ds, components="earth", globe=True)) < 1e-6
-
-
-@pytest.mark.parametrize("nested", [False, True])
-def test_healpix_centres_match_astropy(*, nested: bool) -> None:
-    cells = np.array([0, 3, 9, 23, 24, 47, 88, 104, 151, 168, 190, 191])
-    lon, lat = healpix_centres(cells, 4, nested=nested)
-    # From astropy-healpix 1.1.
-    if nested:
-        a = [45, 45, 33.75, 165, 112.5, 225, 67.5, 157.5, 157.5, 195, 303.75, 315]
-        b = [9.5941, 30, 41.8103, 54.3409, 30, 78.2841, -9.5941, -9.5941, -30, -54.3409]
-        b += [-19.4712, -9.5941]
-    else:
-        a = [45, 315, 247.5, 345, 11.25, 157.5, 11.25, 0, 337.5, 15, 225, 315]
-        b = [78.2841, 78.2841, 66.4435, 54.3409, 41.8103, 30, 0, -9.5941, -30, -54.3409]
-        b += [-78.2841, -78.2841]
-    assert np.allclose(lon % 360, a, atol=1e-4) and np.allclose(lat, b, atol=1e-4)
-
-
-@pytest.mark.parametrize("order", ["ring", "nested"])
-def test_healpix_cells_get_positions(order: str) -> None:
-    cells = np.arange(12 * 8**2)
-    u, v = components(*healpix_centres(cells, 8, nested=order == "nested"))
-    crs = {"grid_mapping_name": "healpix", "healpix_nside": 8, "healpix_order": order}
-    ds = xr.Dataset({"ua": ("cell", u, EAST), "va": ("cell", v, NORTH), "crs": ((), 0, crs)})
-    assert faults(FlowField.from_xarray(ds, globe=True)) < 1e-6
-    part = ds.isel(cell=slice(100, 400)).assign_coords(cell=cells[100:400])
-    assert faults(FlowField.from_xarray(part, globe=True)) < 1e-6
-    ids = xr.Variable("cell", cells, {"grid_name": "healpix", "level": 3, "indexing_scheme": order})
-    named = ds.drop_vars("crs").assign_coords(cell_ids=ids)  # as xdggs has it
-    assert faults(FlowField.from_xarray(named, globe=True)) < 1e-6
-    with pytest.raises(FieldError, match=r"does not fit 700 cells along 'cell'.*healpix_nside"):
-        ds["crs"].attrs["healpix_nside"] = 4
-        FlowField.from_xarray(ds.isel(cell=slice(700)))
 
 
 def test_no_triangle_spans_the_notch() -> None:
