@@ -11,14 +11,7 @@ import { arrowDistance, hasArrows, type Uniform } from "./uniforms.ts";
 import { add, cross, subtract, unit, type Vector } from "./vectors.ts";
 
 /** Numbers of a seed by the place of their attribute: position, coordinate, normal, scalar, corners and radius. */
-const SIZES: [attribute: number, size: number][] = [
-  [0, 3],
-  [1, 2],
-  [2, 3],
-  [3, 2],
-  [4, 3],
-  [5, 1],
-];
+const SIZES: [attribute: number, size: number][] = [[0, 3], [1, 2], [2, 3], [3, 2], [4, 3], [5, 1]];
 const FLOAT_BYTES = 4;
 const STRIDE = SIZES.reduce((sum, [, size]) => sum + size, 0);
 
@@ -95,13 +88,7 @@ export class Arrows {
   }
 
   /** Draw some above the surface, whose slices lie in their units, with the values of these parts. */
-  draw(
-    program: Program,
-    placed: Placed[],
-    painted: string[],
-    anchor: Vector,
-    values: Record<string, Uniform>,
-  ): void {
+  draw(program: Program, placed: Placed[], painted: string[], anchor: Vector, values: Record<string, Uniform>): void {
     const { graphics } = this;
     const gl = graphics.context;
     this.array ??= this.make();

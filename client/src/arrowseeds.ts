@@ -1,5 +1,4 @@
-// Where arrows stand on a surface: flowtex/rendering/arrow_seeds.py in the browser; that file
-// explains the method.
+// Where arrows stand on a surface: flowtex/rendering/arrow_seeds.py in the browser; that file explains the method.
 
 import type { Data, Geometry, Header } from "./protocol.ts";
 import type { TileView } from "./tilechoice.ts";

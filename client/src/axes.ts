@@ -6,6 +6,7 @@ import { lonLatOf } from "./lonlat.ts";
 import type { AxesKind, Earth, Header, Part } from "./protocol.ts";
 import { degreeTicks, offsetOf, ticksOf, type Tick } from "./ticks.ts";
 import { clamp, length, subtract, type Vector } from "./vectors.ts";
+import type { Viewer } from "./viewer.ts";
 
 /** Parts of a border; values between their ends are interpolated linearly. */
 const PARTS = 48;
@@ -58,14 +59,6 @@ export function placedTicks({ values, letters }: Border, most: number): (Tick & 
 const isBetween = (value: number, a: number, b: number) =>
   Math.min(a, b) <= value && value <= Math.max(a, b);
 
-/** The picture that stands between the axes. */
-export interface AxesHost {
-  readonly header: Header | null;
-  readonly camera: Camera | null;
-  readonly parts: ReadonlyMap<string, Part>;
-  readonly stage: HTMLElement;
-}
-
 /** Whether a surface lies in a plane, along whose sides coordinates can be read. */
 export function hasTicks({ geometry, earth }: Header): boolean {
   return geometry.planar && (!earth || earth.map !== null);
@@ -73,9 +66,9 @@ export function hasTicks({ geometry, earth }: Header): boolean {
 
 export class Axes {
   readonly element = shape("svg", { class: "axes", "aria-hidden": "true" });
-  private readonly host: AxesHost;
+  private readonly host: Viewer;
 
-  constructor(host: AxesHost) {
+  constructor(host: Viewer) {
     this.host = host;
   }
 
@@ -162,7 +155,7 @@ export class Axes {
 }
 
 /** Lengths on the Earth for one of its map, in the middle of the view; 1 elsewhere. */
-function scaleOf({ parts }: AxesHost, header: Header, camera: Camera): number {
+function scaleOf({ parts }: Viewer, header: Header, camera: Camera): number {
   const { earth } = header;
   if (!earth?.map) return 1;
   const [a, b] = [-1, 1].map((x) => pointInPlane(header.geometry, camera, MIDDLE_SHARE * x, 0));
@@ -175,7 +168,7 @@ function scaleOf({ parts }: AxesHost, header: Header, camera: Camera): number {
 }
 
 /** The coordinate that goes along a border of the picture, if one does. */
-function borderOf(host: AxesHost, from: [number, number], to: [number, number]): Border | null {
+function borderOf(host: Viewer, from: [number, number], to: [number, number]): Border | null {
   const { header, camera, parts } = host;
   if (!header || !camera || !hasTicks(header)) return null;
   const places = Array.from({ length: PARTS + 1 }, (_, n) =>

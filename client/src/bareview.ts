@@ -6,7 +6,9 @@ import { Camera, type CameraState } from "./camera.ts";
 import { sharedGraphics, type Graphics, type User } from "./context.ts";
 import { HeldParts } from "./heldparts.ts";
 import { Lifetime } from "./lifetime.ts";
+import type { Options } from "./options.ts";
 import type { Painter } from "./painter.ts";
+import type { Panel } from "./panel.ts";
 import type { Found } from "./picking.ts";
 import { Player } from "./player.ts";
 import { tilePart, type Header, type NamedPart, type Settings } from "./protocol.ts";
@@ -14,7 +16,7 @@ import type { Scene } from "./scene.ts";
 import { Requests, type Source, type Taker } from "./sources/source.ts";
 import type { Tiles } from "./tiles.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
-import { viewState, type View } from "./viewstate.ts";
+import { viewState } from "./viewstate.ts";
 import { WebGL2Painter } from "./webgl2painter.ts";
 
 /** Who shows the picture. */
@@ -39,7 +41,7 @@ interface Shared {
 }
 
 /** Holds the parts of a scene, and has a painter draw them in turn with the other views of the page. */
-export abstract class SceneView implements View, User, Taker {
+export abstract class SceneView implements User, Taker {
   readonly canvas = document.createElement("canvas");
   readonly root = document.createElement("div");
   readonly graphics: Graphics = sharedGraphics();
@@ -47,9 +49,9 @@ export abstract class SceneView implements View, User, Taker {
   readonly held = new HeldParts(this.graphics);
   readonly parts = this.held.all;
   abstract readonly player: Player;
-  abstract readonly panel: View["panel"];
+  abstract readonly panel: Pick<Panel, "wait" | "showKinds" | "fail">;
   abstract readonly requests: Requests;
-  abstract readonly options: View["options"];
+  abstract readonly options: Pick<Options, "smooth" | "source" | "isComing">;
   abstract readonly header: Header | null;
   abstract readonly settings: Settings;
   abstract readonly painter: Painter;
@@ -61,6 +63,8 @@ export abstract class SceneView implements View, User, Taker {
   /** Whether the full picture is shown. */
   sharp = false;
   isVisible = true;
+  /** Whether the picture is clear beside the surface. */
+  readonly isClear: boolean = false;
 
   abstract place(): void;
   abstract advance(now: number): void;
@@ -148,10 +152,10 @@ export abstract class SceneView implements View, User, Taker {
 
 export class BareView extends SceneView {
   readonly player: Player;
-  readonly isClear = true;
-  readonly panel: View["panel"];
+  override readonly isClear = true;
+  readonly panel: SceneView["panel"];
   readonly requests: Requests;
-  readonly options: View["options"];
+  readonly options: SceneView["options"];
   readonly header: Header;
   readonly settings: Settings;
   readonly painter: WebGL2Painter;

@@ -1,38 +1,21 @@
 // Controls of the appearance: what the surface is coloured by, the map, its range, and lines of the Earth.
 
-import { choiceOf, rampOf, mapOf, type ColourChoice } from "./colours.ts";
+import { choiceOf, rampOf, mapOf } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
-import type { Lifetime } from "./lifetime.ts";
-import {
-  EARTH_LINES,
-  legendLimits,
-  type EarthLines,
-  type Header,
-  type Part,
-  type Settings,
-} from "./protocol.ts";
+import { EARTH_LINES, legendLimits, type EarthLines } from "./protocol.ts";
+import type { Viewer } from "./viewer.ts";
 
 /** Colours of a swatch, and the choice of none. */
 const STOPS = 9;
 const PLAIN = "none";
 const LINE_NAMES: Record<EarthLines, string> = { coastlines: "Coastlines", graticule: "Graticule" };
 
-/** The view whose colours are chosen. */
-export interface ColoursHost {
-  readonly lifetime: Lifetime;
-  readonly header: Header | null;
-  readonly settings: Settings;
-  readonly parts: ReadonlyMap<string, Part>;
-  readonly options: { onColours?: unknown };
-  chooseColours(choice: ColourChoice): void;
-}
-
 const labelled = (name: string, input: HTMLElement) =>
   dom("label", { class: "row" }, [dom("span", { class: "name" }, [name]), input]);
 
 export class ColourControls {
   readonly element = dom("div", { class: "colours" });
-  private readonly viewer: ColoursHost;
+  private readonly viewer: Viewer;
   private readonly scalars = dom("select", { "aria-label": "Colour by" });
   private readonly swatches = dom("div", { class: "swatches", role: "group" });
   private readonly ends = ["Lowest value", "Highest value"].map((name) =>
@@ -49,7 +32,7 @@ export class ColourControls {
   private readonly rangeRow: HTMLElement;
   private readonly lines = dom("div", { class: "colours" });
 
-  constructor(viewer: ColoursHost) {
+  constructor(viewer: Viewer) {
     this.viewer = viewer;
     const { scalars, swatches, ends, auto } = this;
     const { lifetime } = viewer;
@@ -113,9 +96,7 @@ export class ColourControls {
     if (!header || !maps || this.element.hidden) return;
     const { choices, name, auto, cmap } = header.scalars;
     const options = [...choices, { name: PLAIN, label: PLAIN }];
-    this.scalars.replaceChildren(
-      ...options.map((each) => dom("option", { value: each.name }, [each.label])),
-    );
+    this.scalars.replaceChildren(...options.map((each) => dom("option", { value: each.name }, [each.label])));
     this.scalars.value = name ?? PLAIN;
     const isHosted = this.viewer.options.onColours !== undefined;
     this.mapRow.hidden = this.rangeRow.hidden = name === null;

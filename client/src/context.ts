@@ -155,10 +155,7 @@ export class Graphics {
     const gl = this.context;
     const frame = this.counted(gl.createFramebuffer());
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    const kinds = [
-      [format, gl.COLOR_ATTACHMENT0],
-      [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT],
-    ];
+    const kinds = [[format, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]];
     const buffers = kinds.map(([kind, attachment]) => {
       const buffer = this.counted(gl.createRenderbuffer());
       gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);

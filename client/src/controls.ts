@@ -1,9 +1,9 @@
 // The sheet of settings, made from the table that comes with the header.
 
 import { dom, numberText } from "./dom.ts";
-import type { Lifetime } from "./lifetime.ts";
 import { isSignFree, type Header, type Row, type Settings, type Value } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
+import type { Viewer } from "./viewer.ts";
 
 /** Stops of a slider for a number that is not whole. */
 const SLIDER_STOPS = 400;
@@ -58,21 +58,13 @@ interface Control {
 
 type Made = Omit<Control, "row" | "line">;
 
-/** The view whose settings are shown. */
-export interface ControlsHost {
-  readonly lifetime: Lifetime;
-  readonly options: { rebuild?: boolean };
-  readonly settings: Settings;
-  choose(name: string, value: Value): void;
-}
-
 export class Controls {
   readonly element = dom("div", { class: "settings glass", hidden: "", "aria-label": "Settings" });
-  private readonly viewer: ControlsHost;
+  private readonly viewer: Viewer;
   private readonly controls = new Map<string, Control>();
   private rows: Row[] | null = null;
 
-  constructor(viewer: ControlsHost) {
+  constructor(viewer: Viewer) {
     this.viewer = viewer;
   }
 

@@ -68,10 +68,7 @@ export function pictureOf(
 ): Promise<Blob> {
   const widths = views.map(({ canvas }) => Math.max(Math.round(size * canvas.width), 1));
   const height = Math.max(Math.round(size * views[0].canvas.height), 1);
-  const all = new OffscreenCanvas(
-    widths.reduce((sum, width) => sum + width, 0),
-    height,
-  );
+  const all = new OffscreenCanvas(widths.reduce((sum, width) => sum + width, 0), height);
   const pen = all.getContext("2d", { alpha: false });
   let left = 0;
   for (const [n, { canvas }] of views.entries()) {

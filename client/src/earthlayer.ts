@@ -25,10 +25,7 @@ export interface PieceGroup {
  * Lines in the surface's frame. The part has the steps from each point to the next, which go around at
  * their greatest number, and whether a line begins there.
  */
-export function linesOf(
-  steps: ArrayLike<number>,
-  { low, size }: Pick<Earth, "low" | "size">,
-): Vector[][] {
+export function linesOf(steps: ArrayLike<number>, { low, size }: Pick<Earth, "low" | "size">): Vector[][] {
   const lines: Vector[][] = [];
   const place = [0, 0, 0];
   for (let n = 0; n < steps.length; n += 4) {

@@ -61,10 +61,7 @@ export class Explanation {
   constructor(element: HTMLElement) {
     this.options = {
       controls: false,
-      explainer: {
-        explain: (pixel) => this.tell(pixelSum(pixel)),
-        clear: () => void this.tell(null),
-      },
+      explainer: { explain: (pixel) => this.tell(pixelSum(pixel)), clear: () => void this.tell(null) },
     };
     for (const slider of SLIDERS) this.controls.append(this.slider(slider));
     this.controls.append(this.menu(), this.box());

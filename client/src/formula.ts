@@ -346,13 +346,7 @@ export class FormulaSource {
     const lags = [...slices.lags.filter((lag) => lag < pyramid.pathCells), pyramid.pathCells];
     const texels = (n: number) => ({ before: BEFORE, size: BEFORE * Math.ceil((n + 2 * BEFORE) / BEFORE) });
     const own: TileHeader = {
-      geometry: {
-        ...geometry,
-        shape,
-        rows: texels(shape[0]),
-        columns: texels(shape[1]),
-        levels: LEVELS,
-      },
+      geometry: { ...geometry, shape, rows: texels(shape[0]), columns: texels(shape[1]), levels: LEVELS },
       slices: {
         ...slices,
         lags,

@@ -7,10 +7,7 @@ import { FlowtexView, type SceneData } from "./element.ts";
 import { Explanation } from "./explanation.ts";
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
 
-/**
- * A scene as its script passes it; equal parts have their text once, large ones have their own
- * script.
- */
+/** A scene as its script passes it; equal parts have their text once, large ones have their own script. */
 interface Packed {
   /** Of a second header there is what differs from the first. */
   headers: Header[];
@@ -56,10 +53,7 @@ async function fetchScene({ dataset: { scene = "" } }: HTMLElement): Promise<Sce
   const { headers, parts } = await handedOver(scene, scenes);
   const apart = (digest: string) => handedOver(scene.replace(/[^/]*$/, `${digest}.js`), texts);
   const known = new Map<string, Promise<NamedPart>>();
-  const result: SceneData[] = headers.map((header) => ({
-    header: { ...headers[0], ...header },
-    parts: [],
-  }));
+  const result: SceneData[] = headers.map((header) => ({ header: { ...headers[0], ...header }, parts: [] }));
   const read = async (info: PartInfo, text: string | null) => partOfText(info, text ?? (await apart(info.digest)));
   await Promise.all(
     parts.map(async ([view, info, text]) => {

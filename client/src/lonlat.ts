@@ -75,10 +75,7 @@ export function eastNorth(
   return [east, (across * change[2] - z * outward) / away];
 }
 
-/**
- * Such as 12.35° E, 45.20° N, with enough decimals to distinguish positions this many degrees
- * apart.
- */
+/** Such as 12.35° E, 45.20° N, with enough decimals to distinguish positions this many degrees apart. */
 export function lonLatText([lon, lat]: [number, number], apart: number): string {
   const decimals = clamp(Math.ceil(-Math.log10(apart)), FEWEST_DECIMALS, MOST_DECIMALS);
   const told = (degrees: number, [before, after]: string) => {
@@ -87,11 +84,7 @@ export function lonLatText([lon, lat]: [number, number], apart: number): string 
   return `${told(lon, "WE")}, ${told(lat, "SN")}`;
 }
 
-/**
-                                                * The date of a time in seconds, as date_text in
-                                                * flowtex/field/dates.py writes it; null where it
-                                                * has none.
-                                                */
+/** The date of a time in seconds, as date_text in flowtex/field/dates.py writes it; null where it has none. */
 export function dateText({ start, dates, step }: Dates, times: readonly number[], time: number) {
   if (start === null) {
     if (!dates.length) return null;

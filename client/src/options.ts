@@ -1,5 +1,6 @@
 // What a host sets of a view, and what a view reports to its host.
 
+import type { SceneView } from "./bareview.ts";
 import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import type { Painter } from "./painter.ts";
@@ -8,7 +9,6 @@ import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { PointPath } from "./pointpath.ts";
 import type { AxesKind, Value } from "./protocol.ts";
 import type { Source } from "./sources/source.ts";
-import type { View } from "./viewstate.ts";
 
 /** A view that has the bar for another one as well. */
 interface Leader {
@@ -61,7 +61,7 @@ export interface Options {
   /** Whether the host draws, and sends pictures. */
   streamed?: boolean;
   /** A painter of the host's own. */
-  painter?: (view: View) => Painter;
+  painter?: (view: SceneView) => Painter;
   /** Whether the name of the flow stands beside the view already. */
   named?: boolean;
   /** Colours are chosen, which the host changes. */

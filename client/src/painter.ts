@@ -1,11 +1,11 @@
 // What draws the picture of a view: WebGL2, pictures that a host sends, or a painter of one's own.
 
+import type { SceneView } from "./bareview.ts";
 import type { Found } from "./picking.ts";
 import type { Header } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import type { Tiles } from "./tiles.ts";
 import type { Moment } from "./uniforms.ts";
-import type { View } from "./viewstate.ts";
 
 export interface Painter {
   /** Go on with the picture until a time, and call `painted`. */
@@ -37,11 +37,11 @@ export interface Painter {
 
 /** Shows images that the host draws and sends; the view moves its camera and waits for them. */
 export class StreamedPainter implements Painter {
-  private readonly view: View;
+  private readonly view: SceneView;
   /** Whether the host has drawn the last request. */
   private isPainted = true;
 
-  constructor(view: View) {
+  constructor(view: SceneView) {
     this.view = view;
   }
 

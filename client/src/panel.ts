@@ -1,20 +1,19 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
 import { Axes, hasTicks } from "./axes.ts";
-import type { Camera } from "./camera.ts";
-import { ColourControls, type ColoursHost } from "./colourcontrols.ts";
-import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
+import { ColourControls } from "./colourcontrols.ts";
+import { Controls, hasStreaming } from "./controls.ts";
 import { dom, icon, numberText, pictureOf, withUnit, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
 import { dateText } from "./lonlat.ts";
-import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
-import { placeText, type PointCard } from "./pointcard.ts";
-import { AXES, type AxesKind, type Header, type Part, type Settings, type StructureHeader } from "./protocol.ts";
+import { placeText } from "./pointcard.ts";
+import { AXES, type AxesKind, type Header, type Settings, type StructureHeader } from "./protocol.ts";
 import STYLE from "./styles.css";
+import type { Viewer } from "./viewer.ts";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
 const HINT_MS = 1600;
@@ -30,34 +29,11 @@ const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
 /** What the name of a file cannot have. */
 const FORBIDDEN = /[\\/:*?"<>|]+/g;
 
-export interface PanelHost extends ControlsHost, ColoursHost {
-  readonly options: Options;
-  readonly settings: Settings;
-  readonly root: HTMLElement;
-  readonly stage: HTMLElement;
-  readonly canvas: HTMLCanvasElement;
-  readonly camera: Camera | null;
-  readonly player: Player;
-  readonly card: PointCard;
-  readonly lacking: string[];
-  readonly tiles: { pending: number; wanted: number } | null;
-  readonly parts: ReadonlyMap<string, Part>;
-  readonly together: readonly {
-    readonly canvas: HTMLCanvasElement;
-    readonly panel: Panel;
-    readonly player: Player;
-  }[];
-  togglePlaying(): void;
-  step(count: number): void;
-  scrub(share: number): void;
-  reset(): void;
-}
-
 const styleSheet = new CSSStyleSheet();
 styleSheet.replaceSync(STYLE);
 
 export class Panel {
-  private readonly viewer: PanelHost;
+  private readonly viewer: Viewer;
   private readonly legend = new Legend();
   private readonly axes: Axes;
   private readonly axesMenu = dom("select", {}, AXES.map((kind) => dom("option", {}, [kind])));
@@ -87,8 +63,7 @@ export class Panel {
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.parameters, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
   /**
-   * What is in progress, whose start is read out by screen readers, and its progress, which would
-   * be read repeatedly.
+   * What is in progress, whose start is read out by screen readers, and its progress, which would be read repeatedly.
    */
   private readonly doing = dom("span", { role: "status" });
   private readonly count = dom("span", { "aria-hidden": "true" });
@@ -109,7 +84,7 @@ export class Panel {
   private lateTimer: Timer | null = null;
   private isFinding = false;
 
-  constructor(viewer: PanelHost) {
+  constructor(viewer: Viewer) {
     this.viewer = viewer;
     const { root, stage, canvas, options } = viewer;
     this.isShown = options.controls ?? true;
@@ -353,11 +328,7 @@ export class Panel {
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 
-  /**
-                                                              * Show that parts are arriving, paths
-                                                              * are traced, tiles are missing or
-                                                              * details are left out, if so.
-                                                              */
+  /** Show that parts are arriving, paths are traced, tiles are missing or details are left out, if so. */
   wait(missing: string[], isMade: boolean, isCoarse = false, isFinding = false): void {
     const { viewer, busy } = this;
     const { pending = 0, wanted = 0 } = viewer.tiles ?? {};

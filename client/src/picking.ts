@@ -89,11 +89,7 @@ function onRay(scene: Scene, near: [number, number], [start, along]: [Vector, Ve
 }
 
 /** Values of the scalars that are here, that of the colours first. */
-export function valuesAt(
-  scene: Scene,
-  moment: Moment,
-  place: [number, number],
-): Record<string, number> {
+export function valuesAt(scene: Scene, moment: Moment, place: [number, number]): Record<string, number> {
   const { header, parts } = scene;
   const { scalars, geometry } = header;
   const corners = cornersOn(scene, place);

@@ -2,7 +2,7 @@
 
 import type { Camera } from "./camera.ts";
 import { dom, numberText, shape, withUnit } from "./dom.ts";
-import type { Lifetime, Timer } from "./lifetime.ts";
+import type { Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
 import { velocityOnEarth } from "./onearth.ts";
 import type { Options } from "./options.ts";
@@ -10,11 +10,9 @@ import { type Dot, type Line, pathShapes, type Place } from "./samples.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
 import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
-import type { Requests } from "./sources/source.ts";
-import type { Layer } from "./places.ts";
-import type { Moment } from "./uniforms.ts";
+import type { Header, Part } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
+import type { Viewer } from "./viewer.ts";
 
 const TITLE = "Path through this point";
 /** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
@@ -65,29 +63,10 @@ function positionText(position: readonly number[], header: Header, camera: Camer
   return vectorText(position, geometry.extent, digits, isInPlane);
 }
 
-/** The view in which a point is chosen. */
-export interface CardHost {
-  readonly header: Header | null;
-  readonly settings: Settings;
-  readonly options: Options;
-  readonly parts: ReadonlyMap<string, Part>;
-  /** What the picture fills. */
-  readonly stage: HTMLElement;
-  readonly camera: Camera | null;
-  readonly shown: Moment | null;
-  readonly tiles: { readonly layers: Layer[] } | null;
-  /** The views beside each other, which show the path as well. */
-  readonly together: readonly { readonly card: PointCard }[];
-  readonly requests: Pick<Requests, "trajectory">;
-  readonly lifetime: Lifetime;
-  readonly canPick: boolean;
-  find(x: number, y: number): Found | null;
-}
-
 export class PointCard {
   readonly element = dom("div", { class: "card glass", role: "region", hidden: "" });
   readonly overlay = shape("svg", {});
-  private readonly host: CardHost;
+  private readonly host: Viewer;
   private readonly list = dom("dl");
   private chosen: Found | null = null;
   /** The point that was read last, where a host reads them, and the number of what it was asked. */
@@ -97,7 +76,7 @@ export class PointCard {
   /** The path that is drawn, and its point. */
   private drawn: { path: PointPath; point: Vector; samples: Sample[] } | null = null;
 
-  constructor(host: CardHost) {
+  constructor(host: Viewer) {
     this.host = host;
     this.element.setAttribute("aria-label", TITLE);
     this.overlay.setAttribute("class", "path");
@@ -147,7 +126,7 @@ export class PointCard {
   }
 
   /** Draw a path in views, by default in all. */
-  private share(path: PointPath, point: Vector, samples: Sample[], views: CardHost["together"] = this.host.together): void {
+  private share(path: PointPath, point: Vector, samples: Sample[], views: readonly { card: PointCard }[] = this.host.together): void {
     for (const { card } of views) {
       card.drawn = { path, point, samples };
       card.draw();

@@ -1,17 +1,10 @@
 // Pointers, wheel and keys on the picture.
 
-import {
-  CAMERA_KEYS,
-  CLOSE_KEY,
-  DIRECTIONS,
-  FULLSCREEN_KEY,
-  hasModifier,
-  PLAY_KEY,
-} from "./keyboard.ts";
+import { CAMERA_KEYS, CLOSE_KEY, DIRECTIONS, FULLSCREEN_KEY, hasModifier, PLAY_KEY } from "./keyboard.ts";
 import type { Timer } from "./lifetime.ts";
-import type { Panel, PanelHost } from "./panel.ts";
 import type { Point } from "./picking.ts";
-import { clamp, type Vector } from "./vectors.ts";
+import { clamp } from "./vectors.ts";
+import type { Viewer } from "./viewer.ts";
 
 /** Within these a press is a click. */
 const CLICK_PX = 4;
@@ -42,20 +35,9 @@ export function placeIn(element: Element, event: { clientX: number; clientY: num
   };
 }
 
-/** The view that is moved. */
-export interface PointerHost extends PanelHost {
-  readonly panel: Panel;
-  readonly sharp: boolean;
-  readonly canPick: boolean;
-  point(x: number, y: number): Point | null;
-  ground(x: number, y: number): Vector | null;
-  /** Draw and report a camera that the user has moved. */
-  reportCamera(): void;
-}
-
 export class Pointers {
   readonly down = new Map<number, Place>();
-  private readonly viewer: PointerHost;
+  private readonly viewer: Viewer;
   private isOther = false;
   /** The last request to a host. */
   private asked: object | null = null;
@@ -64,7 +46,7 @@ export class Pointers {
   private look: Timer | null = null;
   private lastPointed = -Infinity;
 
-  constructor(viewer: PointerHost) {
+  constructor(viewer: Viewer) {
     this.viewer = viewer;
     const { canvas, root, options, lifetime } = viewer;
     root.classList.toggle("flowtex-guarded", options.guarded ?? false);

@@ -163,9 +163,7 @@ function sidesAt(scene: Scene, place: [number, number]): [Vector, Vector] {
   return [subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5))];
 }
 
-/**
- * Sine of the angle to paths so far beside, as shaders/common/texture.glsl has it: below 0 where they meet.
- */
+/** Sine of the angle to paths so far beside, as shaders/common/texture.glsl has it: below 0 where they meet. */
 export function partingAt(at: PathPlace, half: number): number {
   const { scene, place } = at;
   const [first, second] = sidesAt(scene, place);

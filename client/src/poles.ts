@@ -1,6 +1,5 @@
-// The planes at the poles of a surface, in which paths next to them are traced:
-// flowtex/field/grids/poles.py and flowtex/trace/sampler.py have what they are,
-// shaders/common/poles.glsl follows paths in them.
+// The planes at the poles of a surface, in which paths next to them are traced: flowtex/field/grids/poles.py and
+// flowtex/trace/sampler.py have what they are, shaders/common/poles.glsl follows paths in them.
 
 import type { PoleHeader } from "./protocol.ts";
 import type { Uniform } from "./uniforms.ts";
@@ -24,10 +23,7 @@ export class Poles {
   private readonly cells: number;
   private readonly lines: number;
 
-  /**
-   * Of nodes in this many rows and columns; `rays` are cells along the lines that lead to each
-   * pole.
-   */
+  /** Of nodes in this many rows and columns; `rays` are cells along the lines that lead to each pole. */
   constructor(poles: PoleHeader[], nodes: [number, number], rays: ArrayLike<number>) {
     const [rows, columns] = nodes;
     this.poles = poles;
@@ -36,10 +32,7 @@ export class Poles {
     this.isAlongJ = poles[0]?.component !== 0;
     [this.lines, this.cells] = this.isAlongJ ? [rows, columns - 1] : [columns, rows - 1];
     const more = poles.reduce((sum, pole) => sum + this.depth(pole) + 1, 0);
-    this.size = {
-      width: columns + (this.isAlongJ ? 0 : more),
-      height: rows + (this.isAlongJ ? more : 0),
-    };
+    this.size = { width: columns + (this.isAlongJ ? 0 : more), height: rows + (this.isAlongJ ? more : 0) };
   }
 
   /** Texels of the nodes' own (i, j, speed, unit), with those in the planes. */

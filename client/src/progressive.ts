@@ -1,5 +1,6 @@
 // Progressive drawing: a draft in the time that there is, then the full picture strip by strip.
 
+import type { SceneView } from "./bareview.ts";
 import type { mat2d as Mat2d } from "gl-matrix";
 import * as mat2d from "gl-matrix/esm/mat2d.js";
 import { Camera, projection, rays } from "./camera.ts";
@@ -11,7 +12,6 @@ import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn 
 import type { Scene } from "./scene.ts";
 import { hasArrows, isNear, type Moment, uniforms, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
-import type { View } from "./viewstate.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
 const MOVING_LEAST_MS = 14;
@@ -42,7 +42,7 @@ interface Content {
 }
 
 export class ProgressiveRenderer {
-  private readonly viewer: View;
+  private readonly viewer: SceneView;
   private readonly content: Content;
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
@@ -70,7 +70,7 @@ export class ProgressiveRenderer {
   /** Whether the picture on show has fewer pixels or samples than the full one. */
   private isCoarse = false;
 
-  constructor(viewer: View, content: Content) {
+  constructor(viewer: SceneView, content: Content) {
     this.viewer = viewer;
     this.content = content;
     this.graphics = viewer.graphics;

@@ -120,10 +120,7 @@ export interface Earth extends Record<EarthLines, boolean> {
   /** The box in the surface's own frame that the lines' steps divide. */
   low: number[];
   size: number[];
-  /**
-   * Least x and y of a flat map and the greatest, between which the part "lonlat" is spread; null for a
-   * globe.
-   */
+  /** Least x and y of a flat map and the greatest, between which the part "lonlat" is spread; null for a globe. */
   map: number[] | null;
   land: number[] | null;
   /** Height of a view in which lines have their width, and how that changes with it at most. */

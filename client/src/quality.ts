@@ -70,13 +70,7 @@ export function motionFactor(samples: number): number {
 }
 
 /** The price after another picture was drawn. */
-export function learnedPrice(
-  price: number,
-  spent: number,
-  pixels: number,
-  samples: number,
-  factor: number,
-): number {
+export function learnedPrice(price: number, spent: number, pixels: number, samples: number, factor: number): number {
   const latest = Math.max(spent, 0.05) / (pixels * (samples + PIXEL_COST) * factor);
   // A slower measurement counts at once, a faster one gradually: a picture that is late is felt.
   return price + (latest - price) * (latest > price ? 0.7 : 0.3);
@@ -92,8 +86,5 @@ export function draftUniforms(settings: Settings, samples: number, density: numb
   const drawn = Math.max(grain * density, Math.min(grain, 1));
   const length = all * spacing * grain;
   const stretched = (length * density) / (samples * drawn);
-  return {
-    u_grain: drawn,
-    u_spacing: clamp(stretched, 0.1, Math.max(DRAFT_SPACING, spacing)),
-  };
+  return { u_grain: drawn, u_spacing: clamp(stretched, 0.1, Math.max(DRAFT_SPACING, spacing)) };
 }

@@ -4,17 +4,11 @@
 //                     |                                       |
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
+import type { SceneView } from "./bareview.ts";
 import type { Camera } from "./camera.ts";
 import { placesOf } from "./formula.ts";
 import type { Layer } from "./places.ts";
-import {
-  isOfStep,
-  stepOf,
-  type Header,
-  type NamedPart,
-  type Part,
-  type TileHeader,
-} from "./protocol.ts";
+import { isOfStep, stepOf, type Header, type NamedPart, type Part, type TileHeader } from "./protocol.ts";
 import { Scene } from "./scene.ts";
 import {
   cellPixels,
@@ -30,16 +24,12 @@ import {
 import { Failures } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
-import type { View } from "./viewstate.ts";
 
 /** Milliseconds from a change of what is wanted to the request. */
 const REQUEST_MS = 60;
 /** Milliseconds of a picture that the upload of tiles may take. */
 const LOAD_MS = 25;
-/**
- * Default memory of the tiles in bytes, and memory for each received byte, here and on the graphics
- * card.
- */
+/** Default memory of the tiles in bytes, and memory for each received byte, here and on the graphics card. */
 const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
@@ -61,7 +51,7 @@ export class Tiles {
   /** Number of the tiles that are wanted, and of those that cannot be drawn yet. */
   wanted = 0;
   pending = 0;
-  private readonly host: View;
+  private readonly host: SceneView;
   private readonly root: Scene;
   private readonly tiles = new Map<string, Tile>();
   private pyramid: Pyramid | null = null;
@@ -78,7 +68,7 @@ export class Tiles {
   /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Failures();
 
-  constructor(host: View, root: Scene) {
+  constructor(host: SceneView, root: Scene) {
     this.host = host;
     this.root = root;
   }

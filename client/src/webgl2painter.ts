@@ -3,6 +3,7 @@
 //   header, parts --> Scene (buffers, textures), Tiles --> ProgressiveRenderer --> canvas
 //                     Graphics (context, programs)           uniforms() of header, settings and view
 
+import type { SceneView } from "./bareview.ts";
 import type { Painter } from "./painter.ts";
 import { pickedPoint, type Found } from "./picking.ts";
 import { Places, type Layer } from "./places.ts";
@@ -13,19 +14,18 @@ import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import { Tiles } from "./tiles.ts";
 import { isNear, variantOf, type Moment } from "./uniforms.ts";
-import type { View } from "./viewstate.ts";
 
 export class WebGL2Painter implements Painter {
   scene: Scene | null = null;
   tiles: Tiles | null = null;
   places: Places | null = null;
   shown: Moment | null = null;
-  private readonly view: View;
+  private readonly view: SceneView;
   private readonly renderer: ProgressiveRenderer;
   /** Steps that the player shows next. */
   private next: number[] = [];
 
-  constructor(view: View) {
+  constructor(view: SceneView) {
     this.view = view;
     this.renderer = new ProgressiveRenderer(view, this);
     if (view.graphics.gl) return;

@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { FakeElement, page } from "./fakepage.ts";
-import type { Controls as Sheet, ControlsHost } from "../src/controls.ts";
+import type { Controls as Sheet } from "../src/controls.ts";
+import type { Viewer } from "../src/viewer.ts";
 import type { Header, Row, Value } from "../src/protocol.ts";
 
 /** An element that is made by its kind, as much of one as the sheet touches. */
@@ -51,7 +52,7 @@ function sheetOf(table: Row[], rebuild?: boolean) {
   const settings: Record<string, Value> = {};
   const lifetime = new Lifetime();
   const choose = (name: string, value: Value) => void chosen.push([name, value]);
-  const sheet: Sheet = new Controls({ lifetime, options: { rebuild }, settings, choose } satisfies ControlsHost);
+  const sheet: Sheet = new Controls({ lifetime, options: { rebuild }, settings, choose } as unknown as Viewer);
   const slices = { sides: 1, steps: 1 };
   sheet.build({ table, variant: [], image: null, slices, settings: {} } as unknown as Header);
   const rows = (sheet.element as unknown as MadeElement).children as MadeElement[];

@@ -42,10 +42,11 @@ const LAYERS = [
   "app/app",
 ].map((names) => names.split(" "));
 
-/** Modules that a module imports, for types as well. */
+/** Modules that a module imports, for types as well but those of the view that it belongs to. */
 function importsOf(name: string): string[] {
   const text = readFileSync(new URL(`${name}.ts`, FOLDER), "utf8");
-  const addresses = text.matchAll(/(?:from|import)\s*\(?\s*"(\..+?)\.ts"/g);
+  const own = /^import type \{ (SceneView|Viewer) \} from .+$/gm;
+  const addresses = text.replace(own, "").matchAll(/(?:from|import)\s*\(?\s*"(\..+?)\.ts"/g);
   return [...addresses].map(([, address]) => join(dirname(name), address));
 }
 

@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { eventOf, FakeElement } from "./fakepage.ts";
 import { Lifetime } from "../src/lifetime.ts";
-import { Pointers, type PointerHost } from "../src/pointers.ts";
+import { Pointers } from "../src/pointers.ts";
+import type { Viewer } from "../src/viewer.ts";
 
 /** An element that can be held, and is in a page. */
 class Held extends FakeElement {
@@ -48,7 +49,7 @@ function viewed({ flat = true, guarded = false, camera = true, more = {} } = {})
     togglePlaying: note("togglePlaying"),
     ...more,
   };
-  const pointers = new Pointers(host as unknown as PointerHost);
+  const pointers = new Pointers(host as unknown as Viewer);
   const send = (kind: string, values: object, target = canvas) => {
     const keys = { ctrlKey: false, metaKey: false, altKey: false, shiftKey: false };
     const at = { clientX: 50, clientY: 25, pointerId: 1, pointerType: "mouse", button: 0, movementX: 1 };

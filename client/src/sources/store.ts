@@ -7,10 +7,7 @@ import * as zarr from "zarrita";
 const PAUSES_MS = [300, 1000, 3000];
 /** Milliseconds without a byte after which an answer counts as lost. */
 const STALL_MS = 20_000;
-/**
- * What a server says of an object that is not there; buckets do not distinguish that from a private
- * one.
- */
+/** What a server says of an object that is not there; buckets do not distinguish that from a private one. */
 const ABSENT = [401, 403, 404, 410];
 const OK = 200;
 const BUSY = 429;

@@ -273,12 +273,7 @@ export class Stream implements Source {
   }
 
   /** The parts of a file of a tile, by their names in it. */
-  private async file(
-    kind: string,
-    key: TileKey,
-    at: number[],
-    signal: AbortSignal,
-  ): Promise<Map<string, NamedPart>> {
+  private async file(kind: string, key: TileKey, at: number[], signal: AbortSignal): Promise<Map<string, NamedPart>> {
     const array = await this.store.array(`${key[0]}/${kind}`);
     const chunk = async (n: number) => {
       const { data } = await array.getChunk([...at, n], { signal });

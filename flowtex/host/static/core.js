@@ -1390,14 +1390,14 @@ tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.length&&shown?this.r
 !camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.
 point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.at(pointed,camera,view.settings,shown),
 found}};var SceneView=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=sharedGraphics();lifetime=new Lifetime;held=new HeldParts(
-this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.isOver||(this.lifetime.end(),
-this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.painter.
-scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&this.tiles?.
-setPart(tile[0],{...part,name:tile[1]}),tile||!this.held.set(part)?!1:(this.scene?.forget(part.name),this.trim(),part.name===
-"cmap"&&this.tiles?.recolour(),this.change(),!0)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
-this.tell(reason)}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}request(){!this.lifetime.
-isOver&&this.isVisible&&this.graphics.request(this)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.frame(now,
-until)}catch(error){this.fail(error)}}lost(){this.header&&this.painter.open?.(this.header),this.sharp=!1}view(shown,density){
+this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;dispose(){this.lifetime.isOver||(this.lifetime.
+end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.
+painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&
+this.tiles?.setPart(tile[0],{...part,name:tile[1]}),tile||!this.held.set(part)?!1:(this.scene?.forget(part.name),this.trim(),
+part.name==="cmap"&&this.tiles?.recolour(),this.change(),!0)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(
+tile,steps),this.tell(reason)}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}request(){
+!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
+frame(now,until)}catch(error){this.fail(error)}}lost(){this.header&&this.painter.open?.(this.header),this.sharp=!1}view(shown,density){
 let{header,camera,player,rows}=this;if(!header||!camera)throw new Error("no scene is shown yet");return viewState({header,
 camera,anchor:this.scene?.anchor??[0,0,0],player,rows},shown,density)}find(x,y){return this.painter.canPick?this.painter.
 find?.(x,y)??null:null}};function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(

@@ -44,7 +44,7 @@ LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
 SOFTWARE. */
 function Ra(a){let e=a>>10&31,t=a&1023,r;return e===0?r=t*2**-24:e===31?r=t?NaN:1/0:r=(1024+t)*2**(e-25),a&32768?-r:r}var Re=Float32Array.
-from({length:65536},(a,e)=>Ra(e)),Br=new Float32Array(1),Dr=new Uint32Array(Br.buffer);function Hr(a){Br[0]=a;let e=Dr[0]>>>
+from({length:65536},(a,e)=>Ra(e)),Br=new Float32Array(1),Dr=new Uint32Array(Br.buffer);function zr(a){Br[0]=a;let e=Dr[0]>>>
 16&32768,t=Dr[0]&2147483647;return t>=1199566848?e|(t>2139095040?32256:31744):t<947912704?e|Math.round(Math.abs(a)*2**24):
 e|t-93952e4>>>13}function or(a,e,t,r=1){let n=a.getParameter(a.MAX_TEXTURE_SIZE),s=a.getParameter(a.MAX_ARRAY_TEXTURE_LAYERS);
 if(Math.max(e,t)>n||r>s)throw new Error(`a texture of ${e} x ${t} texels in ${r} layers is needed, but this graphics car\
@@ -52,13 +52,13 @@ d supports at most ${n} x ${n} in ${s}; show fewer nodes`)}function Qe(a,e,t){le
 or(a,r,n,s);let c=a.TEXTURE_2D_ARRAY;a.bindTexture(c,e),a.texStorage3D(c,o+1,i===1?a.R16F:a.RGBA16F,r,n,s),a.texParameteri(
 c,a.TEXTURE_MIN_FILTER,a.LINEAR_MIPMAP_LINEAR),a.texParameteri(c,a.TEXTURE_MAG_FILTER,a.LINEAR),a.texParameteri(c,a.TEXTURE_WRAP_S,
 a.CLAMP_TO_EDGE),a.texParameteri(c,a.TEXTURE_WRAP_T,a.CLAMP_TO_EDGE)}var Wr=["coastlines","graticule"],Me={critical:"critical_points",separatrices:"separatrices",nullclines:"nullclines"},et={
-saddle:8,orbit:4,leaving:2},zr={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,
+saddle:8,orbit:4,leaving:2},Hr={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,
 int8:Int8Array,uint8:Uint8Array};function cr({low:a,high:e,log:t}){if(!t)return n=>(n-a)/(e-a||1);let r=Math.log(e/a)||1;
 return n=>Math.log(Math.max(n,a)/a)/r}function me(a){return a.variant.includes("FLOWTEX_SIGNFREE")}function Y(a){return Number(a.split("/")[1])}function Ee(a,e,{
 scalars:t}){let[r,n,s="0"]=a.split("/"),i=t.choices[Number(s)]?.steps??t.steps;return r==="scalars"&&Number(n)===e&&i>1}
 function ue(a){let[e,t,r,n,...s]=a.split("/");return e==="tile"?[[t,r,n].join("/"),s.join("/")]:null}function $r(a,e){let t=ArrayBuffer.
-isView(e)?new Uint8Array(e.buffer,e.byteOffset,e.byteLength):new Uint8Array(e),{name:r,dtype:n,shape:s,digest:i}=a,o=zr[n];
-if(!o)throw new Error(`a part has the type "${n}"; expected ${Object.keys(zr).join(", ")}`);return{name:r,shape:s,digest:i,
+isView(e)?new Uint8Array(e.buffer,e.byteOffset,e.byteLength):new Uint8Array(e),{name:r,dtype:n,shape:s,digest:i}=a,o=Hr[n];
+if(!o)throw new Error(`a part has the type "${n}"; expected ${Object.keys(Hr).join(", ")}`);return{name:r,shape:s,digest:i,
 data:new o(t.slice().buffer)}}function jr(a){let[e,t]=lr(new Uint8Array(a)),r=t;return e.map(n=>{let s=new Uint8Array(a,
 r,n.bytes);return r+=n.bytes,n.differences===void 0?$r(n,s):Xr(n,s)})}function lr(a){let e=4+new DataView(a.buffer,a.byteOffset).
 getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(a.subarray(4,e))),e]}async function Yr(a,e){return Xr(a,new Uint8Array(
@@ -69,7 +69,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new Gr[i](s);for(let m=0,u=0;m<c;m+=1)for(let p=m;p<s;p+=c,u+=1){let f=0;for(let d=0;d<i;d+=1)f|=e[d*s+u]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=o*c;for(let m=0;m<r[0];m+=1)for(let u=h;u<s;u+=1)l[u]+=l[u-h];for(let m=0;m<r[1];m+=1)for(let u=0;u<
 s;u+=h)for(let p=u+c;p<u+h;p+=1)l[p]+=l[p-c];return $r(a,n?ka(l,n.map(m=>2**m)):l)}function ka(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>Hr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var hr=1e-6,tt=typeof Float32Array<"u"?Float32Array:Array;var Pc=Math.PI/180,Rc=180/Math.PI;function Kr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>zr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var hr=1e-6,tt=typeof Float32Array<"u"?Float32Array:Array;var Pc=Math.PI/180,Rc=180/Math.PI;function Kr(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function Jr(a,e,t){var r=t[0],n=t[1],s=t[2],i=Math.sqrt(r*r+n*n+s*s),o,c,l;return i<hr?null:(i=1/i,r*=i,n*=i,s*=i,o=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*o,a[2]=s*r*l-n*o,a[3]=0,a[4]=r*n*l-s*o,a[5]=n*n*l+c,a[6]=s*n*l+r*o,
 a[7]=0,a[8]=r*s*l+n*o,a[9]=n*s*l-r*o,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Na(){var a=new tt(3);return tt!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function Zr(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function Qr(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function en(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function tn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -120,16 +120,16 @@ let r=Math.max(e/pe(this.limits.view_angle),this.nearest);this.state.position=T(
 view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=L(E(r,this.state.
 position),n);s>0&&(this.state.focal_point=T(this.state.position,n,s))}shift(e){this.state.focal_point=T(this.state.focal_point,
 e),this.state.position=T(this.state.position,e)}};function pr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
-...e],focal_point:[...t],up:[...r]}}function H(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:i,frame:o}=a,[c,l,h]=e.axes.map(S=>O(o,S)),m=S=>E(O(o,E(S,s)),
+...e],focal_point:[...t],up:[...r]}}function z(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:i,frame:o}=a,[c,l,h]=e.axes.map(S=>O(o,S)),m=S=>E(O(o,E(S,s)),
 t),u=m(r.focal_point),p=k(t,-1),f=Math.max(.51*i,a.reach??0),d=new Array(16).fill(0),g=r.parallel?r.parallel_scale:pe(r.
 view_angle);if([c.map(S=>S/g/n),l.map(S=>S/g)].forEach((S,P)=>{for(let R=0;R<3;R+=1)d[4*R+P]=S[R];d[12+P]=-L(S,u)}),r.parallel){
 for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-L(h,p)/f,d[15]=1,d}let b=m(r.position),v=L(E(p,b),h),x=Math.max(v+f,.001*
 f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),_=-2*x*w/(x-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-L(
 h,b),d[14]=d[15]*M+_,d}function un({center:a,frame:e},t,r,n,s){let[i,o]=t.axes,{height:c,state:l,aspect:h}=t,[m,u]=[k(i,
-2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,fn=9,Da=.2,Ba=1.4,pn=55,Ha=125,za=.5,Ga=4,dn=4e-5,gn=2e-6;function bn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
+2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,fn=9,Da=.2,Ba=1.4,pn=55,za=125,Ha=.5,Ga=4,dn=4e-5,gn=2e-6;function bn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+ae)<=s)return{scale:1,samples:r};let i=Math.min(fn,r),o=Math.sqrt(s/(i+ae)/t);return o<1?{scale:Math.max(
 o,Da),samples:i}:{scale:1,samples:A(Math.floor(s/t-ae),i,r)}}function yn(a,e,t,r,n){if(!n)return pn;let s=Math.min(fn,r),
-i=e+a*t*za**2*(s+ae);return A(i,pn,Ha)}function vn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),Ga)}function xn(a){
+i=e+a*t*Ha**2*(s+ae);return A(i,pn,za)}function vn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),Ga)}function xn(a){
 return(2*a+ae)/(a+ae)}function wn(a,e,t,r,n){let s=Math.max(e,.05)/(t*(r+ae)*n);return a+(s-a)*(s>a?.7:.3)}function Mn(a,e,t){
 let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:A(
 c,.1,Math.max(Ba,n))}}var Wa=`#version 300 es
@@ -308,7 +308,7 @@ r:o>=r),s=t.length,i=n<0?s:n;return t[(e>0?i:i-1+s)%s]}start(){this.playing=!0,t
 return{first:this.span[0],last:this.span[1],now:this.time};let t=Number(e.period);return{first:0,last:t,now:this.clock%t}}advance(e,t){
 let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,bi)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
 r,!0;let[n,s]=this.span,i=A(fi*(this.times.length-1),di,gi),o=this.time+r*(s-n)/i,[c,l]=gr(this.times,Math.min(o,s));return t(
-[c,l])?(this.time=o>s?n:o,!0):!1}};var On=()=>null,mt=class{};var V="",Fn=5,z=a=>a.join("/"),oe=a=>a.split("/").map(Number);function Nn(a,e){let[t,r,n]=["samples","spacing","grain"].
+[c,l])?(this.time=o>s?n:o,!0):!1}};var On=()=>null,mt=class{};var V="",Fn=5,H=a=>a.join("/"),oe=a=>a.split("/").map(Number);function Nn(a,e){let[t,r,n]=["samples","spacing","grain"].
 map(i=>Number(e[i])),s=.5*t*r*n;return a.cellPixels*Math.max(1,2*s/(a.cellPixels*a.pathCells))}var ut=class{header;place;constructor(e,t){
 this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Fn*(n[s]+i*
 e.blocks[s][1]+o);return t.subarray(c,c+Fn)}}blocksOf(e,[t,r,n]){let[s,i]=this.header.blocks[t];if(e===V)return[0,0,s,i];
@@ -320,7 +320,7 @@ header,s=[V];for(let i of s){let o=i===V?[r,0,0]:oe(i),c={key:o,needed:!1,pixels
 p=this.header.blocks[o[0]][1],f=new Set;for(let d=l;d<m;d+=1)for(let g=h;g<u;g+=1){let y=this.place(o[0],d,g);if(!br(e,y))
 continue;let b=yr(e,y);o[0]>n&&b>e.cellPixels?f.add(d*p+g):c.needed=!0,f.has(d*p+g)||(c.pixels=Math.max(c.pixels,b))}f.size&&
 (c.finer=this.children(i,o).filter(d=>{let[g,y,b]=this.finerPart(d,V);return[...f].some(v=>{let[x,w]=[Math.floor(v/p)-g,
-v%p-y];return x>=0&&x<b&&w>=0&&w<b})}).map(z)),t.set(i,c),s.push(...c.finer)}return t}};function br({planes:a},[e,t,r,n]){
+v%p-y];return x>=0&&x<b&&w>=0&&w<b})}).map(H)),t.set(i,c),s.push(...c.finer)}return t}};function br({planes:a},[e,t,r,n]){
 return a.every(s=>L(s,[e,t,r])+s[3]>=-n*F(s.slice(0,3)))}function yr({eye:a,halfHeight:e,pixels:t},[r,n,s,i,o]){let c=a?
 Math.max(F(E([r,n,s],a))-i,o):1;return o*.5*t/(e*c)}function In(a){return[...a].filter(([t,{needed:r}])=>t!==V&&r).sort(
 ([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function vr(a,e){let t=new Map,r=s=>{t.delete(s),a.get(s)?.finer.forEach(r)},
@@ -333,11 +333,11 @@ now())}has(e){return this.now()-(this.times.get(e)??-1/0)<Un}},ke=class{source;t
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
 running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Ae}next(){for(let e of this.jobs){if(this.
 running.size>=(this.source()?.atOnce??vi))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
-let{taker:t}=this,r=this.source();if(!r)return;let[n,s,i]=e,o=new AbortController,{signal:c}=o,l=h=>n?t.tiles?.has(z(n),
+let{taker:t}=this,r=this.source();if(!r)return;let[n,s,i]=e,o=new AbortController,{signal:c}=o,l=h=>n?t.tiles?.has(H(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),o);try{let h=await r.load(n,s,c,l,i);if(!c.aborted)for(let m of h)t.setPart(
 m)}catch(h){c.aborted||this.fail(e,h)}c.aborted||(this.running.delete(String(e)),this.failed.has(String(e))||(this.jobs=
 this.jobs.filter(h=>String(h)!==String(e))),this.next())}fail(e,t){let[r,n]=e;this.failed.add(String(e)),setTimeout(()=>this.
-next(),Un+yi);let s=t.fault==="unreachable",i=r&&!s?z(r):void 0;this.taker.lack(Vn(r?Mi:Ei,t),i,n)}};function Vn(a,e){let{
+next(),Un+yi);let s=t.fault==="unreachable",i=r&&!s?H(r):void 0;this.taker.lack(Vn(r?Mi:Ei,t),i,n)}};function Vn(a,e){let{
 fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?r:`${a}: ${r}`}var ft=class{tiles;wholes;marks;given;formula=null;constructor(e,t){
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
@@ -349,9 +349,9 @@ n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==Stri
 this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
 frame,E(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(E(h,t))?u(h)?h:[0,
 0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var Si=-1e9,Bn=500;function dt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);
-for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function Hn({shape:a,rows:e,columns:t}){return Float32Array.from({
+for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function zn({shape:a,rows:e,columns:t}){return Float32Array.from({
 length:2*a[0]*a[1]},(r,n)=>{let[s,{before:i,size:o}]=n%2?[Math.floor((n>>1)/a[1]),e]:[(n>>1)%a[1],t];return(s+i+.5)/o})}
-function zn(a,e){let t=Math.max(a.length,e.length);return Float32Array.from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Gn(a){
+function Hn(a,e){let t=Math.max(a.length,e.length);return Float32Array.from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Gn(a){
 let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=
 r}return e}function gt(a,e){let t=a[0]?.length??0,r=new Float32Array(2*t),n=cr(e);return a.forEach((s,i)=>{for(let o=0;o<
 t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?A(c,-Bn,Bn):Si}}),r}function Wn([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
@@ -394,11 +394,11 @@ scene:n,position:s}=a,{slices:i,image:o}=n.header,c=es(a),l=!me(n.header),h=c(0)
 !l?i.sides:1;for(let w=0;w<f&&F(m)>Qn;w+=1){let M=o?1:h[3]*i.unit,S=Ii(c,i.lags,w*i.lags.length,w?1:-1,M).map(u),P=S.findIndex(
 R=>R===null);p.push(S.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=ct(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):
 g-1,b=Number(e.spacing)*Ui(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(S=>Vi(s,S,w));return[...M.reverse(),s,..._]};return{path:v(
-Pi*Math.max(y,Ri)*b),sampled:v(y*b),directed:l,velocity:wr(a)}}var Di=8,Bi=1e-6,Hi=.001,zi=89.99,Gi=a=>a-360*Math.round(a/360);function Mr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+Pi*Math.max(y,Ri)*b),sampled:v(y*b),directed:l,velocity:wr(a)}}var Di=8,Bi=1e-6,zi=.001,Hi=89.99,Gi=a=>a-360*Math.round(a/360);function Mr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function vt({header:a},e){return e.map((t,r)=>A(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ns=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function ss(a,e,[t,r],n){let{earth:s}=a.header,i=Mr(e).map(d=>s&&yt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
-abs(d[1])>zi))return null;let[o,c,l,h]=i.map(d=>[Gi(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
-...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>Hi*p)?null:[(o[1]*
+abs(d[1])>Hi))return null;let[o,c,l,h]=i.map(d=>[Gi(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
+...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>zi*p)?null:[(o[1]*
 u[0]-o[0]*u[1])/f,(o[0]*m[1]-o[1]*m[0])/f]}function as(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&yt(n,
 t,r);if(!i)return e;let o=vt(a,e);for(let c=0;c<Di;c+=1){let l=ss(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
 .5+Bi?u:0),m=vt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+A(l[p],0,1));o=m}return e}function is(a,e){
@@ -434,7 +434,7 @@ let c=this.graphics.context,{frames:l}=this.make(n,s),[{scene:h}]=e,m=Math.min(.
 mesh.tileCells);this.seen=e.map(({scene:p,covered:f,key:[d]})=>{let g=p.doublings.map(y=>Math.max(Math.min(y,m-d),0));return us(
 p.blocks,t,s,f,g)}),this.sendStrides(),c.bindFramebuffer(c.FRAMEBUFFER,l[0]),c.viewport(0,0,n,s),c.disable(c.SCISSOR_TEST),
 c.enable(c.DEPTH_TEST),c.depthFunc(c.LESS),c.disable(c.BLEND),c.clearBufferuiv(c.COLOR,0,[0,0,0,0]),c.clear(c.DEPTH_BUFFER_BIT);
-let u=H(h.header.geometry,t,r);h.bodies.hide(u,r),h.bodies.seeThrough(()=>this.triangles(h.programs("place"),u,r),!1)}triangles(e,t,r,n={}){
+let u=z(h.header.geometry,t,r);h.bodies.hide(u,r),h.bodies.seeThrough(()=>this.triangles(h.programs("place"),u,r),!1)}triangles(e,t,r,n={}){
 let{graphics:s,layers:i,seen:o}=this,c=s.context,{mesh:l,pyramid:h,geometry:m}=i[0].scene.header,[u,p]=h?.shapes[0]??m.shape;
 this.bind(),c.bindVertexArray(null),i.forEach(({scene:f,key:[d,...g]},y)=>{let{levels:b}=o[y],{columns:v,rows:x,shape:w,
 triangles:M}=f.header.geometry,[_,S]=g.map(R=>R*l.tileCells*(h?.tileBlocks??0)*2**d);f.bindNodes(r),s.programs.use(e,{...n,
@@ -503,7 +503,7 @@ f}this.pen?.drawImage(t,0,0)}complete(){let{camera:e,player:t}=this.viewer;this.
 !1,this.draftVersion=this.version,bs(this.lastPen,this.canvas),e&&!t.playing&&(this.lastCamera=new fe(e.state,e.limits,e.
 flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.content;if(!r?.header.geometry.planar||
 !t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,s=E(t.state.focal_point,n.center),i=O(
-n.frame,s),[o,c]=[e,t].map(l=>H(n,l,i));return so(o,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
+n.frame,s),[o,c]=[e,t].map(l=>z(n,l,i));return so(o,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
 viewer;return t.motion!=="off"||r.varies&&r.playing?xn(e):1}placeAt(e,t,r){let{places:n}=this.content;return this.place(
 e,n?.width||this.canvas.width,n?.height||this.canvas.height),n?.at(t,r)??null}place(e,t,r){let{viewer:n,layers:s,content:i}=this,
 {camera:o}=n;if(!o||!s.length)return;let{anchor:c}=n.view(e,this.density(r));i.places?.draw({layers:s,camera:o,anchor:c,
@@ -518,7 +518,7 @@ if(!o||!c||!l)return;let h=s.context,{width:m,height:u}=l,p=i.view(e,this.densit
 h.FRAMEBUFFER,null),h.viewport(0,-t,m,u),h.enable(h.SCISSOR_TEST),h.scissor(0,0,m,r),h.enable(h.DEPTH_TEST),h.depthFunc(
 h.LESS),h.disable(h.BLEND),h.disable(h.CULL_FACE);let[f,d,g]=c.header.background??[1,1,1];h.clearColor(f,d,g,i.isClear?0:
 1),h.clear(h.COLOR_BUFFER_BIT|h.DEPTH_BUFFER_BIT);let y={camera:o,anchor:p.anchor,width:m,height:u,ratio:i.ratio};c.earth.
-drawGround(y);let{bodies:b}=c;b.draw(y,"opaque"),b.seeThrough(()=>{if(!n)return l.show(c.programs("surface"));let v=H(c.
+drawGround(y);let{bodies:b}=c;b.draw(y,"opaque"),b.seeThrough(()=>{if(!n)return l.show(c.programs("surface"));let v=z(c.
 header.geometry,o,p.anchor);l.triangles(c.programs("smooth"),v,p.anchor,{u_bottom:t})}),this.drawArrows(e,p,m,u),b.draw(
 y,"clear"),c.marks.draw({...y,ratio:p.density},i.settings,e),n&&s.copySmooth(m,r),this.copy(m,u,t,r)}drawArrows(e,t,r,n){
 let{camera:s,settings:i}=this.viewer,{scene:o}=this.content;if(!o||!s||!Le(o.header,i))return;let c={...s.sight(n/t.density),
@@ -526,7 +526,7 @@ planes:s.planes},l=n!==this.canvas.height,h=this.layers.map(m=>m.scene);for(let[
 header:f}=m,d=p.program(i,lt(f,i,t));if(!d||!u.length)continue;m.bindTextures(e[0],e[1]);let g=m.scalarParts(e[0],e[1]),
 y=this.values(m,o,s,t,Number(i.samples),l);p.draw(d,u,g,t.anchor,{...y,u_picture:[r,n]})}}values({header:e},{bodies:t},r,n,s,i){
 let{settings:o}=this.viewer,{columns:c,rows:l}=e.geometry,h=e.scalars.name!==null&&Le(e,o)&&o.arrow_color==="scalars";return{
-...Rn(e,{...o,samples:s},n),...i?Mn(o,s,n.density):{},u_matrix:H(e.geometry,r,n.anchor),u_mapped:e.scalars.name!==null&&
+...Rn(e,{...o,samples:s},n),...i?Mn(o,s,n.density):{},u_matrix:z(e.geometry,r,n.anchor),u_mapped:e.scalars.name!==null&&
 !h,u_plain:h,u_flat:!!e.scalars.flat,u_padding:[c.before,l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??
 [1,1,1],u_opacity:t.areBehind?1:e.opacity,u_toEye:O(e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)
 return;let{canvas:i}=this.graphics,o=i.height-n,[c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=
@@ -592,7 +592,7 @@ M?null:[P,S-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of As)e.enableVertexAttribArray(n),e.vertexAttribPointer(
 n,s,e.FLOAT,!1,oo*Es,r),e.vertexAttribDivisor(n,1),r+=s*Es;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
-i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=gt(i,s),c=this.nodes,l=n.triangles?null:Hn(n);return Float32Array.
+i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=gt(i,s),c=this.nodes,l=n.triangles?null:zn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:m,radius:u,cell:p})=>{let[f,d]=m,[g,y,b,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
 2*p,2*p+2):Ie(o,h,m,2),...Array.from(h).slice(0,3),u]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
@@ -614,7 +614,7 @@ let r=this.graphics.context;r.enable(r.POLYGON_OFFSET_FILL),r.polygonOffset(Te[0
 0,0,0,this.header.opacity),r.blendFuncSeparate(r.CONSTANT_ALPHA,r.ONE_MINUS_CONSTANT_ALPHA,r.ZERO,r.ONE)),e(),r.disable(
 r.BLEND),r.disable(r.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height:n,ratio:s},i){let o=i==="clear",c=this.
 runs.filter(({clear:_})=>_===o);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:m}=l,u=h.context,[p,f]=this.
-programs,d=this.drawn??=this.make(),g=H(m,e,t),[y,b,v,x]=e.eye,w=O(m.frame,E([y,b,v],k(m.center,x)));o&&(u.enable(u.BLEND),
+programs,d=this.drawn??=this.make(),g=z(m,e,t),[y,b,v,x]=e.eye,w=O(m.frame,E([y,b,v],k(m.center,x)));o&&(u.enable(u.BLEND),
 u.blendFuncSeparate(u.SRC_ALPHA,u.ONE_MINUS_SRC_ALPHA,u.ZERO,u.ONE),u.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,
 u_eye:[...E(w,k(t,x)),x],...uo(l,e)}),u.bindVertexArray(d.faces),u.enable(u.POLYGON_OFFSET_FILL),u.polygonOffset(Te[1],Te[1]);
 for(let{faces:[_,S],ambient:P,diffuse:R}of c)S&&(h.programs.use(p,{u_ambient:P,u_diffuse:R}),u.drawElements(u.TRIANGLES,
@@ -626,7 +626,7 @@ u.depthMask(!0),u.disable(u.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.l
 this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
 s.bindVertexArray(i.faces);for(let{faces:[o,c],clear:l}of r)l||s.drawElements(s.TRIANGLES,3*c,s.UNSIGNED_INT,12*o);s.disable(
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:i}){let{geometry:o}=this.
-header,c=H(o,t,r);for(let{text:l,position:h,size:m,color:u,plate:p}of this.labels){let f=E(O(o.frame,E(h,o.center)),r),[
+header,c=z(o,t,r);for(let{text:l,position:h,size:m,color:u,plate:p}of this.labels){let f=E(O(o.frame,E(h,o.center)),r),[
 d,g,,y]=[0,1,2,3].map(S=>c[S]*f[0]+c[4+S]*f[1]+c[8+S]*f[2]+c[12+S]);if(y<=0)continue;let[b,v]=[(.5+.5*d/y)*n,(.5-.5*g/y)*
 s],x=m*i,w=mo*x;e.font=`600 ${x}px system-ui, sans-serif`,e.textBaseline="middle";let[M,_]=[e.measureText(l).width+2*w,x+
 2*w];e.fillStyle=_s(p),e.beginPath(),e.roundRect(b,v-_,M,_,w),e.fill(),e.fillStyle=_s(u),e.fillText(l,b+w,v-.5*_)}}make(){
@@ -655,14 +655,14 @@ c.SCISSOR_TEST),c.scissor(0,0,m,u),c.disable(c.DEPTH_TEST),c.enable(c.BLEND),c.b
 let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y=2*l.height*p/u,b=A(Math.sqrt(u/p/s.usualHeight),
 ...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:_,width:S}of s.strokes){
 if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let P=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
-use(o,{u_matrix:H(r.geometry,l,h),u_picture:[m,u],u_width:S*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
+use(o,{u_matrix:z(r.geometry,l,h),u_picture:[m,u],u_width:S*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
 c.bindVertexArray(P.array),c.bindBuffer(c.ARRAY_BUFFER,P.buffers[0]);for(let[R,N]of yo(P.groups,g)){for(let B=0;B<ks;B+=
 1)c.vertexAttribPointer(B,3,c.FLOAT,!1,Ls,(R+B)*Ls);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,N)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders;
 return!this.lines.length||this.graphics.programs.get(e,t).ready}drawGround({camera:e,anchor:t}){let{header:r,graphics:n}=this,
 {earth:s,shaders:i,geometry:o}=r;if(!s?.land)return;let c=s.map===null;if(!(c?s.below:this.parts.has("land")))return;let l=n.
 context,h=c?["FLOWTEX_GLOBE"]:[],m=n.programs.get(i.groundVertex,i.groundFragment,...h);if(m.ready){if(n.programs.use(m,
-{u_matrix:H(o,e,t),u_colour:s.land,u_ground:r.background??[1,1,1],u_lit:r.lighting,u_toEye:O(o.frame,k(e.axes[2],-1)),...c?
+{u_matrix:z(o,e,t),u_colour:s.land,u_ground:r.background??[1,1,1],u_lit:r.lighting,u_toEye:O(o.frame,k(e.axes[2],-1)),...c?
 this.disc(e,s.radius,t):{}}),c){let u=this.take("disc",t,()=>this.emptyArray());l.bindVertexArray(u.array),l.drawArrays(
 l.TRIANGLE_STRIP,0,4)}else{let u=this.take("land",t,()=>this.landOf(t));l.bindVertexArray(u.array),l.depthMask(!1),l.drawElements(
 l.TRIANGLES,u.count,l.UNSIGNED_INT,0),l.depthMask(!0)}l.bindVertexArray(null)}}horizon(e){let{earth:t}=this.header;if(!t||
@@ -701,7 +701,7 @@ push(...c),[...i.filter((u,p)=>s.has(p)),...m.map(u=>({...u,isLine:!0}))]}draw({
 let{header:c,graphics:l}=this,{structure:h,geometry:m}=c,u=h&&this.layers(h,i,o);if(!h||!u?.length)return;let p=l.context,
 [f,d,g,y]=e.eye,b=O(m.frame,E([f,d,g],k(m.center,y))),v=s*A(Math.sqrt(n/s/h.usualHeight),...h.widthRange),x=y?1:e.distance/
 Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
-ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:H(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
+ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:z(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
 y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:S,width:P,
 above:R}of u){let[N,B,K,se=1]=S;l.programs.use(w,{u_width:P*v,u_nearer:xo*x*(1+wo*R)});for(let C of[0,1])p.vertexAttribPointer(
 C,3,p.FLOAT,!1,Fs,Fs*(M+C/2)),p.vertexAttrib4f(2+C,N,B,K,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
@@ -799,7 +799,7 @@ e,t));i!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=i,this.dropSlic
 e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_image",n&&this.image("image",[!0,!0])),this.bind("u\
 _stepImage",n&&this.image("step",n.repeat));let o=ln(this.parts.get("cmap")?.data??new Uint8Array(4),s);this.bind("u_cma\
 p",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,o.length/4,()=>o));let[c,l]=this.shares(e,t);this.bind("u_sha\
-res",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>zn(n?.alongI??[],n?.alongJ??[]);this.
+res",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>Hn(n?.alongI??[],n?.alongJ??[]);this.
 bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),h))}};function Us(a,e){a.texParameteri(
 e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Po(a,e){if(a.length===e)return a;
 let t=new a.constructor(e);return t.set(a),t}var Ro=60,Lo=25,ko=9e8,Oo=3.5,Fo={slices:4,flow:24},Ot=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
@@ -825,8 +825,8 @@ count+=1;for(let m of o.keys()){let u=this.tiles.get(m);u&&(u.used=this.count)}l
 In(o),t,r.pyramid.depth);this.missing=l.filter(m=>!this.isHere(m,t)),this.ask(),this.trim(t);for(let m of l)this.isHere(
 m,t)&&this.load(m,t,c);let h=vr(o,m=>this.isHere(m,t)&&this.load(m,t,c));return this.wanted=l.length,this.pending=l.filter(
 m=>!this.isHere(m,t)||!this.isLoaded(m,t)).length,this.chosen={choices:o,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
-let n=[t,...t.map(o=>[o])],s=o=>n.some(c=>this.failed.has(this.need(o,c))),i=e.map(o=>{let[c,l,h]=oe(o);for(;c<r&&s(z([c,
-l,h]));)[c,l,h]=[c+1,l>>1,h>>1];return c<r?z([c,l,h]):V});return[...new Set(i)].filter(o=>o!==V)}isHere(e,t){let r=this.
+let n=[t,...t.map(o=>[o])],s=o=>n.some(c=>this.failed.has(this.need(o,c))),i=e.map(o=>{let[c,l,h]=oe(o);for(;c<r&&s(H([c,
+l,h]));)[c,l,h]=[c+1,l>>1,h>>1];return c<r?H([c,l,h]):V});return[...new Set(i)].filter(o=>o!==V)}isHere(e,t){let r=this.
 tiles.get(e)?.scene;return r===null||r?.missing(t[0],t[t.length-1]).length===0}isLoaded(e,t){let r=this.tiles.get(e)?.scene;
 return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene;return!n||this.isLoaded(e,t)?!0:performance.
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;this.isWaiting||
@@ -866,10 +866,10 @@ draw(c,o,t);l&&(i.slices.critical&&this.program(i,!0),r.player.varies&&this.prog
 return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.
 layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||!n||!s)return null;let l=ls(c,s,o,n,[e,t]),h={place:[e,t],
 position:l.point.position,height:i.root.clientHeight};return l.point.mark=s.marks.at(h,o,i.settings,n),l}};var _r=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ot;held=new it(
-this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;dispose(){this.lifetime.isOver||(this.lifetime.end(),
-this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.painter.
-scene??null}get tiles(){return this.painter.tiles??null}setPart(e){let t=ue(e.name);return t&&this.tiles?.setPart(t[0],{
-...e,name:t[1]}),t||!this.held.set(e)?!1:(this.scene?.forget(e.name),this.trim(),e.name==="cmap"&&this.tiles?.recolour(),
+this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;dispose(){this.lifetime.isOver||(this.lifetime.
+end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.
+painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(e){let t=ue(e.name);return t&&this.tiles?.setPart(
+t[0],{...e,name:t[1]}),t||!this.held.set(e)?!1:(this.scene?.forget(e.name),this.trim(),e.name==="cmap"&&this.tiles?.recolour(),
 this.change(),!0)}lack(e,t,r=[]){t!==void 0&&this.tiles?.fail(t,r),this.tell(e)}trim(){this.held.trim(this.header,this.options.
 source,this.player.moment.slice(0,2))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}frame(e,t){
 if(!this.lifetime.isOver)try{this.painter.frame(e,t)}catch(r){this.fail(r)}}lost(){this.header&&this.painter.open?.(this.
@@ -920,26 +920,26 @@ void main()
   flowtexPlaceOut = (u_flowMatrix * vec4(place, 0.0, 1.0)).xyw;
   gl_Position = projectTile(place);
 }
-`;var Bs=1e-5,It=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,Co=88*X,Hs='export it with projection="mercator"';
+`;var Bs=1e-5,It=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,Co=88*X,zs='export it with projection="mercator"';
 function ge({lng:a,lat:e}){let t=Math.sin(A(e,-It,It)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ct=class{origin;slope;box;constructor(e,t){
-let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${Hs}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
+let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${zs}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/X,lat:Math.asin(v/Math.hypot(y,b,v))/X}),w=[r[0]+(r[2]-r[0])*g/(s-
 1),r[1]+(r[3]-r[1])*d/(n-1)];return{place:x,position:w}},[o,c,l]=[i(1,1),i(n>>1,s>>1),i(n-2,s-2)],h=d=>d+Math.ceil(o.place[0]-
 d),m=[h(l.place[0])-o.place[0],l.place[1]-o.place[1]];this.slope=[0,1].map(d=>m[d]/(l.position[d]-o.position[d])),this.origin=
 [0,1].map(d=>o.place[d]-this.slope[d]*o.position[d]);let[u,p]=this.placeOf(c.position);if(!(Math.abs(u-h(c.place[0]))<Bs&&
-Math.abs(p-c.place[1])<Bs))throw new Error(`the flow is on another map; ${Hs}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
+Math.abs(p-c.place[1])<Bs))throw new Error(`the flow is on another map; ${zs}`)}placeOf(e){return[0,1].map(t=>this.origin[t]+
 this.slope[t]*e[t])}lngLatOf(e){let[t,r]=this.placeOf(e);return[360*(t-.5),Math.atan(Math.sinh(2*Math.PI*(.5-r)))/X]}positionOf(e){
 let[t,r]=e.map((s,i)=>(s-this.origin[i])/this.slope[i]),n=1/this.slope[0];return[t+n*Math.round((.5*(this.box[0]+this.box[2])-
 t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,s]=this.positionOf(ge(e.center)),i=f=>e.globe?this.globeLook(
 e,r,[f,s,t]):this.flatLook(e,r,[f,s,t]),o=[i(n)],[c,l]=e.globe?[.5*r*o[0].width,.5*r*o[0].width]:[.5*r*Math.min(e.width,
-e.height),r*zs(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-A(u,h,m))<l&&
+e.height),r*Hs(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-A(u,h,m))<l&&
 o.push(i(u)),o}flatLook({width:e,height:t,bearing:r,pitch:n,fov:s},i,[o,c,l]){let[h,m]=[r*X,n*X],u=.5*t*i,p=u/Math.tan(.5*
 s*X);return{state:{position:[o-p*Math.sin(m)*Math.sin(h),c-p*Math.sin(m)*Math.cos(h),l+p*Math.cos(m)],focal_point:[o,c,l],
 up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:u,view_angle:s},width:e,height:t}}globeLook(e,t,[r,,n]){let s=1/
-(t*this.slope[0]),i=A(e.center.lat,-It,It)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(zs(e)/o,1)),[l,h]=[i-c,i+c].
+(t*this.slope[0]),i=A(e.center.lat,-It,It)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(Hs(e)/o,1)),[l,h]=[i-c,i+c].
 map(g=>ge({lng:0,lat:g/X})[1]),m=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,u=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[m/Math.PI,l-h];return{state:{position:[r,u,n+1/this.slope[0]],focal_point:[r,u,n],up:[0,1,0],parallel:!0,
-parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function zs({width:a,height:e,pitch:t,fov:r}){
+parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function Hs({width:a,height:e,pitch:t,fov:r}){
 let[n,s]=[t*X,.5*r*X],i=n+s;if(i>Co)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(n));return Math.
 hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Pr=8192,Uo=22,Vo=64,Ut=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=e.
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
@@ -961,29 +961,29 @@ round(ge(e.center)[0]-m[0]);for(let P of e.isRepeated&&!s?[-1,0,1]:[0]){let R={w
 tileMercatorCoords,u_projection_clipping_plane:N.clippingPlane,u_projection_transition:N.projectionTransition,u_box:[...w,
 M[0]-w[0],M[1]-w[1]],u_mapCells:_,u_flowMatrix:Do(this.view.header,l,n,p,1/(u*Pr)),u_flowPicture:0,u_opacity:e.opacity}),
 t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*_+2,_)}return t.bindVertexArray(null),!0}};function Do({geometry:a},e,t,r,n){
-let{center:s,frame:i}=a,{focal_point:o}=e.state,c=O(i,E(o,s)),l=H(a,e,c),h=[0,1].map(f=>O(i,[0,1].map(d=>d===f?n/t.slope[f]:
+let{center:s,frame:i}=a,{focal_point:o}=e.state,c=O(i,E(o,s)),l=z(a,e,c),h=[0,1].map(f=>O(i,[0,1].map(d=>d===f?n/t.slope[f]:
 0).concat(0))),m=t.placeOf(o),u=[0,1].map(f=>(r[f]*n*Pr-m[f])/t.slope[f]).concat(0);return[...h,[0,0,0],O(i,u)].flatMap(
 (f,d)=>[0,1,2,3].map(g=>f.reduce((y,b,v)=>y+l[4*v+g]*b,d===3?l[12+g]:0)))}var Vt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
 n;for(let s of t){let[{name:i,digest:o},c]=s,l=ue(i)?.[0];l?this.tiles.set(l,[...this.tiles.get(l)??[],s]):this.parts.push(
-s),l&&c&&n.set(o,c)}}load=(e,t)=>{let r=((e&&this.tiles.get(z(e)))??[]).filter(([{name:n}])=>{let s=ue(n)?.[1]??"",i=Y(s),
+s),l&&c&&n.set(o,c)}}load=(e,t)=>{let r=((e&&this.tiles.get(H(e)))??[]).filter(([{name:n}])=>{let s=ue(n)?.[1]??"",i=Y(s),
 o=s.startsWith("scalars/")&&!Ee(s,i,this.header);return Number.isNaN(i)||t.includes(i)||o});return Promise.all(r.map(n=>this.
 unpacked(n)))};async unpacked([e,t]){let{digest:r,name:n}=e,s=this.known.get(r);return s?{...s,name:n}:Yr(e,t||(this.texts.
 get(r)??""))}async kept(e){let t=await this.unpacked(e);return this.known.set(t.digest,t),t}};var De=class{};var be=class extends Error{},q=class extends be{_tag="NotFoundError";name="NotFoundError";path;found;constructor(e,t={}){
 super(`Not found: ${e}`,{cause:t.cause}),this.path=t.path,this.found=t.found}},D=class extends be{_tag="InvalidMetadataE\
 rror";name="InvalidMetadataError";path;constructor(e,t={}){super(e,{cause:t.cause}),this.path=t.path}},Be=class extends be{_tag="\
-UnknownCodecError";name="UnknownCodecError";codec;constructor(e){super(`Unknown codec: ${e}`),this.codec=e}},He=class extends be{_tag="\
+UnknownCodecError";name="UnknownCodecError";codec;constructor(e){super(`Unknown codec: ${e}`),this.codec=e}},ze=class extends be{_tag="\
 CodecPipelineError";name="CodecPipelineError";direction;codec;chunkPath;constructor(e){let t=[`Failed to ${e.direction} \
 chunk`,e.codec&&`via codec "${e.codec}"`,e.chunkPath&&`at ${e.chunkPath}`].filter(Boolean);super(t.join(" "),{cause:e.cause}),
 this.direction=e.direction,this.codec=e.codec,this.chunkPath=e.chunkPath}};var ye=class extends be{_tag="UnsupportedError";name="UnsupportedError";feature;constructor(e){super(`Unsupported: ${e}`),
-this.feature=e}};var ze=class{},Ge=class{},We=class{};function Ws(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
+this.feature=e}};var He=class{},Ge=class{},We=class{};function Ws(){if(typeof SharedArrayBuffer>"u")throw new Error("SharedArrayBuffer is not available. In browsers, this req\
 uires Cross-Origin-Opener-Policy and Cross-Origin-Embedder-Policy headers to be set.")}function $s(a,e){return e?new SharedArrayBuffer(
 a):new ArrayBuffer(a)}function $e(a){let e=new TextDecoder().decode(a);try{return JSON.parse(e)}catch(t){throw new D("Fa\
 iled to decode JSON",{cause:t})}}function Rr(a,e){let t=e/2,r=e-1,n=0;for(let s=0;s<a.length;s+=e)for(let i=0;i<t;i+=1)n=
 a[s+i],a[s+i]=a[s+r-i],a[s+r-i]=n}function Bt(a){if(a==="v2:object")return globalThis.Array;let e=a.match(/v2:([US])(\d+)/);
 if(e){let[,r,n]=e;return(r==="U"?We:Ge).bind(null,Number(n))}if(a==="string")return globalThis.Array;let t={int8:Int8Array,
 int16:Int16Array,int32:Int32Array,int64:globalThis.BigInt64Array,uint8:Uint8Array,uint16:Uint16Array,uint32:Uint32Array,
-uint64:globalThis.BigUint64Array,float16:globalThis.Float16Array,float32:Float32Array,float64:Float64Array,bool:ze}[a];if(!t)
-throw new D(`Unknown or unsupported dataType: ${a}`);return t}function Ht(a,e){let t=a.length;typeof e=="string"&&(e=e===
+uint64:globalThis.BigUint64Array,float16:globalThis.Float16Array,float32:Float32Array,float64:Float64Array,bool:He}[a];if(!t)
+throw new D(`Unknown or unsupported dataType: ${a}`);return t}function zt(a,e){let t=a.length;typeof e=="string"&&(e=e===
 "C"?Array.from({length:t},(s,i)=>i):Array.from({length:t},(s,i)=>t-1-i)),Ks(t===e.length,"Order length must match the nu\
 mber of dimensions.");let r=1,n=new Array(t);for(let s=e.length-1;s>=0;s--)n[e[s]]=r,r*=a[e[s]];return n}function js({name:a,
 configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r].join(t)}if(a==="v2"){let t=e?.separator??
@@ -1007,27 +1007,27 @@ dimension_separator??"."}},codecs:t,fill_value:a.fill_value,dimension_names:n,at
 node_type:"group",attributes:e}}function Dt(a,e){if(e!=="number"&&e!=="bigint"&&e!=="boolean"&&e!=="object"&&e!=="string")
 return a===e;let t=a==="bool";if(e==="boolean")return t;let r=a.startsWith("v2:U")||a.startsWith("v2:S")||a==="string";if(e===
 "string")return r;let n=a==="int64"||a==="uint64";if(e==="bigint")return n;let s=a==="v2:object";return e==="object"?s:!r&&
-!n&&!t&&!s}function qs(a){return a?.name==="sharding_indexed"}function zt(a){if((a.data_type==="uint64"||a.data_type==="\
+!n&&!t&&!s}function qs(a){return a?.name==="sharding_indexed"}function Ht(a){if((a.data_type==="uint64"||a.data_type==="\
 int64")&&a.fill_value!=null)return BigInt(a.fill_value);let e=a.data_type==="float16"||a.data_type==="float32"||a.data_type===
 "float64";if(typeof a.fill_value=="string"&&e){let t={NaN:NaN,Infinity:1/0,"-Infinity":-1/0};if(a.fill_value in t)return t[a.
 fill_value]}return a.fill_value}function Lr(a,...e){if(!e.some(t=>a instanceof t))throw a}function Ks(a,e=""){if(!a)throw new Error(e)}async function Js(a,{
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
 a.byteLength);r=new Response(n.slice().buffer)}Ks(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var Zs=Ho();function Ho(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+ed to decode ${e}`)}}var Zs=zo();function zo(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
 18}function Qs(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var je=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
-this.#n=e?.endian,this.#t=Bt(t.dataType),this.#s=t.shape,this.#e=Ht(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
+this.#n=e?.endian,this.#t=Bt(t.dataType),this.#s=t.shape,this.#e=zt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
 return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return Zs&&this.#n==="big"&&(t=t.slice(),Rr(t,Qs(this.#t))),
 t}computeEncodedSize(e){return e}decode(e){return Zs&&this.#n==="big"&&(e=e.slice(),Rr(e,Qs(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Gt=class{};function Wt(a){return()=>{throw new ye(`${a} encode`)}}var $t=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=Wt("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var jt=class{};var Yt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=Wt("gzip");async decode(e){let t=await Js(
-e,{format:"gzip"});return new Uint8Array(t)}};var Ye=class{};var Xt=class{};var qt=class{};var Kt=class{};var Xe=class{};var Jt=class{};function zo(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"gzip"});return new Uint8Array(t)}};var Ye=class{};var Xt=class{};var qt=class{};var Kt=class{};var Xe=class{};var Jt=class{};function Ho(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Yt,n=()=>Jt;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Kt).set("bytes",()=>je).set("crc32c",()=>$t).set("vlen-utf8",()=>Xe).set("json2",()=>Ye).set("bit\
 round",()=>De).set("cast_value",()=>Gt).set("scale_offset",()=>Xt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>Xe).set("numcodecs.shuf\
-fle",()=>qt).set("numcodecs.delta",()=>jt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Ye)}var qe=zo();function Ke(a){
-let e;function t(){return e||(e=Go(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new He({direction:n,
+fle",()=>qt).set("numcodecs.delta",()=>jt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Ye)}var qe=Ho();function Ke(a){
+let e;function t(){return e||(e=Go(a)),e}async function r(n,s,i){try{return await i()}catch(o){throw new ze({direction:n,
 codec:s,cause:o})}}return{async encode(n){let s=await t();for(let{name:o,codec:c}of s.arrayToArray)n=await r("encode",o,
 ()=>c.encode(n));let i=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:o,codec:c}of s.
 bytesToBytes)i=await r("encode",o,()=>c.encode(i));return i},async decode(n){let s=await t();for(let o=s.bytesToBytes.length-
@@ -1052,13 +1052,13 @@ v)},h)}}var ne=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}
 a??new Map)}var ve=class extends ne{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
 function na(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function $o(a,e){let t=new Map(e.map((r,n)=>[
 r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function sa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?$o(
-a,t):a;return Ht(e,r)}}var Zt=Symbol("zarrita.context");function jo(a,e){let{configuration:t}=e.codecs.find(qs)??{},r={encodeChunkKey:js(e.chunk_key_encoding),TypedArray:Bt(e.data_type),
+a,t):a;return zt(e,r)}}var Zt=Symbol("zarrita.context");function jo(a,e){let{configuration:t}=e.codecs.find(qs)??{},r={encodeChunkKey:js(e.chunk_key_encoding),TypedArray:Bt(e.data_type),
 fillValue:e.fill_value};if(t){let s=na(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:Ke({dataType:e.
 data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:sa(s),getChunkBytes:ra(a,e.chunk_grid.
 configuration.chunk_shape,r.encodeChunkKey,t)}}let n=na(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:Ke({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
 getStrides:sa(n),async getChunkBytes(s,i){let o=r.encodeChunkKey(s),c=a.resolve(o).path;return a.store.get(c,i)}}}var le=class extends ne{kind="\
-array";#e;[Zt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:zt(r)},this[Zt]=jo(this,this.#e)}get attrs(){return this.#e.
+array";#e;[Zt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Ht(r)},this[Zt]=jo(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[Zt].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
 Ws();let n=this[Zt],s=await n.getChunkBytes(e,t);if(!s){let i=n.chunkShape.reduce((c,l)=>c*l,1),o;if(r?.useSharedArrayBuffer){
@@ -1074,7 +1074,7 @@ let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw n
 a.store,"v2"),la(new le(a.store,a.path,Ys($e(n),e)))}async function ca(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
 store.get(r,{signal:t});if(!n)throw new q("v2 group",{path:r});return er.increment(a.store,"v2"),new ve(a.store,a.path,Xs(
 $e(n),e))}async function Ko(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new q(
-"v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=zt(s)),s.node_type==="array"?la(new le(
+"v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=Ht(s)),s.node_type==="array"?la(new le(
 t,a.path,s)):new ve(t,a.path,s)}async function Jo(a,e={}){let t="store"in a?a:new ne(a),r=await Ko(t,e.signal);if(er.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof le||e.kind==="group"&&r instanceof ve)return r;let n=r instanceof
 le?"array":"group";throw new q(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function Q(a,e={}){let t="store"in a?
@@ -1142,7 +1142,7 @@ r.url,t),this.store=new rr(this.url.href)}open(){return this.opening??=this.comp
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
 file: open it from a web server.`;throw new W("other",n)}let t=(await this.store.attributes()).flowtex;if(fc.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
-ion: export the page again.`;throw new W("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],i=z(s);return this.
+ion: export the page again.`;throw new W("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],i=H(s);return this.
 loaded(r,async o=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(i):
 void 0:this.header,h=l===void 0?this.surface(s,o):{header:l,parts:[]},m=new Map(c.map(d=>[d,this.flow(s,d,o)])),u=[...m.
 values()],p=async()=>{let{header:d,parts:g}=await h;if(e&&this.headers.set(i,d),!d)return g;let[y,...b]=await Promise.all(
@@ -1154,12 +1154,12 @@ let s=await this.store.array(`${t[0]}/${e}`),i=async f=>{let{data:d}=await s.get
 Uint8Array))throw new Error(`${s.path} is empty`);return d},o=await i(0),[c,l]=lr(o),h=c.reduce((f,{bytes:d})=>f+d,l);if(!xe(
 h,mc))throw new Error(`a file of ${s.path} has a wrong size`);let m=new Uint8Array(Math.ceil(h/o.length)*o.length);m.set(
 o);for(let f=1;f*o.length<h;f+=1)m.set(await i(f),f*o.length);let u=new Map;for(let f of jr(m.buffer)){let[d,g]=ue(f.name)??
-["",f.name];if(d&&d!==z(t))throw new Error(`in place of tile ${z(t)} is ${d}`);u.set(g,{...f,name:g})}if(new TextDecoder().
-decode(u.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} belongs to another flow`);return u.delete(
+["",f.name];if(d&&d!==H(t))throw new Error(`in place of tile ${H(t)} is ${d}`);u.set(g,{...f,name:g})}if(new TextDecoder().
+decode(u.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${H(t)} belongs to another flow`);return u.delete(
 "of"),u}async surface(e,t){let r=await this.file("surface",e,[e[1],e[2]],t),n=this.tileHeader(r.get("header"));if(r.delete(
 "header"),n){let o=ba(n).needed.filter(c=>!r.has(c));if(o.length)throw new Error(`a tile has no ${o.join(", ")}`);Nr([...r.
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),i={name:"header",data:s,shape:[
-s.length],digest:`${this.told.fingerprint} ${z(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
+s.length],digest:`${this.told.fingerprint} ${H(e)} header`};return{header:n,parts:[i,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:i,pace:o}=this.header.
 slices;return bc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:i,pace:o}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(i=>{let[o,c]=i.name.split("\
@@ -1168,7 +1168,7 @@ let o=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,u=(l>1?r:
 rs/${d}`),p=c===null?[]:u.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.values()];let f=await Promise.all(p.map(async d=>{
 let g=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...yc(x,
 t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await this.file("values",e,[y,e[1],e[2],h],s)).get(
-`scalars/${y}/${h}`);if(!v)throw new Error(`tile ${z(e)} has no values of step ${y}`);return{...v,name:d}}));Nr(f,t,this.
+`scalars/${y}/${h}`);if(!v)throw new Error(`tile ${H(e)} has no values of step ${y}`);return{...v,name:d}}));Nr(f,t,this.
 header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var vc=4096,xc=4,ya=32,wc=.25,Mc=1e4,va=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Se(r),this.array=t.createVertexArray(),
