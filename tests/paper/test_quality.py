@@ -38,13 +38,6 @@ def test_lines_are_coherent_and_at_their_angle(degrees: float) -> None:
     assert quality.alignment(picture, -v, u, EVERYWHERE).angle > 89
 
 
-def test_white_noise_has_no_direction(rng: np.random.Generator) -> None:
-    ones = np.ones(SIZE)
-    result = quality.alignment(noise(rng), ones, 0 * ones, EVERYWHERE)
-    assert result.coherence < 0.25
-    assert abs(result.angle - 45) < 5
-
-
 def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Generator) -> None:
     ones = np.ones(SIZE)
     picture = noise(rng, 1.5, 4.0)  # rows, columns
@@ -55,16 +48,6 @@ def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Gener
     assert result.across == pytest.approx(1.5 * half, rel=0.12)
     turned = quality.grain(picture, 0 * ones, ones, EVERYWHERE)
     assert turned == pytest.approx((result.across, result.along), rel=0.05)
-
-
-def test_grain_follows_a_bent_flow() -> None:
-    rows, columns = np.indices(SIZE).astype(np.float64)
-    y, x = SIZE[0] / 2 - rows - 0.3, columns - SIZE[1] / 2 + 0.3
-    radius = np.hypot(x, y)
-    mask = EVERYWHERE & (radius > 20) & (radius < 60)
-    result = quality.grain(np.sin(radius * 2), -y, x, mask)
-    assert result.along > 30
-    assert result.across < 1.2
 
 
 def test_a_sense_is_that_of_heads() -> None:
@@ -104,19 +87,3 @@ def test_evenness_tells_stretched_and_uneven_grains(rng: np.random.Generator) ->
     assert measures.evenness(uneven, EVERYWHERE).spread > 2
     nothing = measures.evenness(uneven, np.zeros(SIZE, bool))
     assert np.isnan(nothing.spread)
-
-
-def test_aliasing_of_a_picture_is_its_error_over_the_deviation(rng: np.random.Generator) -> None:
-    truth = noise(rng, 2.0, 2.0)
-    assert quality.aliasing(truth, truth, EVERYWHERE) == 0
-    off = truth + 0.5 * truth[EVERYWHERE].std()
-    assert quality.aliasing(off, truth, EVERYWHERE) == pytest.approx(0.5)
-    assert measures.likeness(3 - 2 * truth, truth, EVERYWHERE) == pytest.approx(-1)
-    assert abs(measures.likeness(noise(rng), noise(rng), EVERYWHERE)) < 0.05
-
-
-def test_blur_takes_sharpness(rng: np.random.Generator) -> None:
-    picture = noise(rng, 1.0, 1.0)
-    blurred = gaussian_filter(picture, 2)
-    before, after = (measures.sharpness(p, EVERYWHERE) for p in (picture, blurred))
-    assert after < 0.3 * before

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from paper.redundancy import Redundancy, error_in_texels, redundancy
-from paper.redundancy.prediction import Predictor, SliceGrid
 
 
 def some_times(field: FlowField, count: int) -> FlowField:
@@ -52,27 +50,6 @@ def sides(slices: TraceSlices) -> NDArray[np.floating]:
 def off_by(one: TraceSlices, other: TraceSlices) -> Floats:
     """Error of each entry along i and j, in cells, (S, T, M, J, I, 2)."""
     return np.asarray(np.abs(sides(one).astype(float) - sides(other).astype(float)))
-
-
-# --- prediction -----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("degree", [1, 2, 3])
-def test_a_polynomial_in_lag_is_predicted_exactly(degree: int, rng: np.random.Generator) -> None:
-    slices = slices_of("steady gyre")
-    lags = slices.lags
-    factors = rng.normal(size=(degree, *slices.rate.shape))
-    rate = factors[0]
-    data = [sum(f * lag ** (n + 1) for n, f in enumerate(factors)) for lag in lags]
-    predictor = Predictor(SliceGrid.of(slices), rate, slices.reach)
-    ways = (f"path {degree}", f"mean {degree - 1}")
-    checked = 0
-    for displacement in data:
-        for way in set(ways) & set(predictor.ways()):
-            np.testing.assert_allclose(predictor.predict(way), displacement, atol=1e-9)
-            checked += 1
-        predictor.add(np.asarray(displacement))
-    assert checked >= 2 * (len(lags) - degree)
 
 
 # --- exactly --------------------------------------------------------------------------------
@@ -121,33 +98,6 @@ def test_no_entry_is_off_by_more_than_the_bound(name: str, bound: float) -> None
     assert decoded.displacement.dtype == slices.displacement.dtype
 
 
-def test_texels_count_where_the_paths_lead() -> None:
-    """Noise with a hundred times as many texels on the right: paths that end there matter."""
-    slices = slices_of("steady gyre")
-    i = slices.nodes[..., 0]
-    texels = np.stack([np.where(i > 40, 100.0, 1.0)] * 2, axis=-1)
-    bound = 0.5
-    even, uneven = (redundancy(slices, bound, texels=t) for t in (1.0, texels))
-    assert uneven.by_neighbours.mean() > even.by_neighbours.mean()
-
-    def worst(decoded: TraceSlices) -> float:
-        largest = 0.0
-        for true, error in zip(
-            sides(slices).reshape(-1, *i.shape, 2),
-            off_by(slices, decoded).reshape(-1, *i.shape, 2),
-            strict=True,
-        ):
-            a, b = np.moveaxis(slices.nodes + true, -1, 0)
-            density = map_coordinates(texels[..., 0], [b, a], order=1, mode="nearest")
-            largest = max(largest, float((error.sum(axis=-1) * density).max()))
-        return largest
-
-    assert worst(uneven.decoded) <= bound
-    assert worst(even.decoded) > 10 * bound
-    error = error_in_texels(slices, even.decoded, texels)
-    assert error == pytest.approx(worst(even.decoded))
-
-
 # --- the redundancy -------------------------------------------------------------------------
 
 
@@ -170,11 +120,3 @@ def test_fewer_bits_are_left(name: str, exact: float, bounded: float) -> None:
     assert factor(redundancy(slices)) > exact
     assert factor(redundancy(slices, 0.1)) > bounded
     assert redundancy(halved(slices)).by_neighbours.mean() < 4.5
-
-
-def test_noise_predicts_nothing_of_its_neighbours(rng: np.random.Generator) -> None:
-    slices = slices_of("gyre")
-    data = rng.normal(size=slices.displacement.shape).astype(np.float32)
-    measured = redundancy(replace(slices, displacement=data))
-    assert measured.share < 0.05
-    assert measured.by_neighbours.min() > 22

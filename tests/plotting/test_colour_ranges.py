@@ -106,23 +106,6 @@ def test_hidden_and_missing_values_have_no_part_in_the_range() -> None:
     assert high == pytest.approx(mesh["p"][rest].max())
 
 
-def test_slices_of_a_series_have_range_of_all_steps() -> None:
-    steps = [volume() for _ in range(3)]
-    for n, mesh in enumerate(steps):
-        mesh["p"] *= 1 + n
-    scene = Scene.of(steps, slice="z=0.1", scalars="p")
-    assert scene.scalar_limits == pytest.approx((0, steps[-1].get_data_range("p")[1]))
-
-
-def test_blocks_that_are_cut_together_have_one_range() -> None:
-    left, right = volume(), volume()
-    right.origin = (2, -1.6, -1)
-    right["p"] += 10
-    scene = Scene.of(pv.MultiBlock([left, right]), slice="z=0.5", scalars="p")
-    ends = left.get_data_range("p")[0], right.get_data_range("p")[1]
-    assert scene.scalar_limits == pytest.approx(ends)
-
-
 def test_large_volume_has_exact_extremes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.sources.meshes.volume.MOST_VALUES", 2000)
     mesh = volume()
@@ -143,18 +126,6 @@ def test_moving_slice_keeps_its_colours(window: Any) -> None:
         assert bar.GetRange() == pytest.approx(mesh.get_data_range("p"))
         values = read_back(image, bar.values, bar.GetRange())
         assert np.abs(values - true)[inside].max() < 0.02 * np.ptp(bar.GetRange())
-
-
-def test_surfaces_without_a_volume_keep_the_range_of_the_first(window: Any) -> None:
-    cuts = [volume().slice("z", origin=(0, 0, z)) for z in (0.1, 0.9)]
-    handle = window.flowtex.add(cuts[0], scalars="p", **PLAIN)
-    first = handle.scene.scalar_limits
-    handle.set_surface(cuts[1])
-    assert handle.actor.mapper.scalar_range == pytest.approx(cuts[0].get_data_range("p"))
-    assert handle.scene.scalar_limits == first
-    assert handle.scene.beyond == (False, True)
-    handle.clim = None
-    assert handle.actor.mapper.scalar_range == pytest.approx(cuts[1].get_data_range("p"))
 
 
 def pair() -> tuple[Any, Any]:

@@ -131,9 +131,3 @@ def test_another_surface_is_drawn_as_if_it_were_the_first(plotter: Any) -> None:
     before = shot(plotter)
     handle.settings.contrast = 0.2
     assert np.abs(shot(plotter) - before).max() > 10
-
-
-def test_a_handle_has_its_mesh(plotter: Any) -> None:
-    handle = plotter.flowtex.add(heights())
-    assert handle.mesh is handle.actor.mapper.dataset
-    assert handle.mesh.bounds == pytest.approx(pv.wrap(heights().points.reshape(-1, 3)).bounds)

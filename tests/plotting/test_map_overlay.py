@@ -19,7 +19,7 @@ from flowtex._util.colours import rgb
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.rendering.camera import Camera, read_camera
-from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
+from flowtex.rendering.map_overlay import globe_radius, land_cells
 from flowtex.scene.options import LAND_COLOR
 
 pytestmark = [
@@ -142,20 +142,6 @@ def test_a_globe_is_below_what_does_not_cover_the_earth() -> None:
     assert radius is not None and 0.999 * EARTH_RADIUS < radius < EARTH_RADIUS
 
 
-def test_lines_end_where_a_map_does() -> None:
-    field = ocean("lambert")
-    low, high = (
-        field.surface.points.reshape(-1, 3).min(0),
-        field.surface.points.reshape(-1, 3).max(0),
-    )
-    for lines in map_lines(field, has_globe=False).values():
-        margin = 2e5
-        assert ((lines.points > low - margin) & (lines.points < high + margin)).all()
-    everywhere = map_lines(ocean("globe"), has_globe=True)["coastlines"]
-    near = map_lines(ocean("globe"), has_globe=False)["coastlines"]
-    assert len(near.points) < 0.1 * len(everywhere.points)
-
-
 @pytest.mark.parametrize("name", ["globe", "lambert"])
 def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
     found: list[tuple[Any, ...]] = []
@@ -227,17 +213,3 @@ def test_a_mesh_has_the_colours_of_the_same_flow_on_a_grid(view: dict[str, Any])
     coarse = [p[:200, :240].reshape(10, 20, 12, 20, 3).mean(axis=(1, 3)) for p in (mesh, grid)]
     assert np.abs(coarse[0] - coarse[1]).mean() < 12
     assert coarse[0].std() > 20
-
-
-def test_lines_and_land_of_a_part_of_the_earth() -> None:
-    (ds,) = ugrid(globe(2000))
-    lat = globe(2000).middles[1]
-    part = ds.isel(nFace=np.flatnonzero(np.abs(lat) < 50))
-    field = flowtex.FlowField.from_xarray(part, globe=True)
-    radius = globe_radius(field)
-    assert radius is not None and 0.98 * EARTH_RADIUS < radius < EARTH_RADIUS
-    assert not land_cells(field).any()
-    assert all(len(lines.points) for lines in map_lines(field, has_globe=False).values())
-    assert globe_radius(flowtex.FlowField.from_xarray(ds, globe=True)) is None
-    dry = part.assign(ucx=part.ucx.where(np.abs(lat[np.abs(lat) < 50]) < 20))
-    assert 0.3 < land_cells(flowtex.FlowField.from_xarray(dry, globe=True)).mean() < 0.7

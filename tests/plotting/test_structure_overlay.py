@@ -130,24 +130,6 @@ def test_fields_without_a_sign_are_refused() -> None:
     assert scene.settings.critical_points == 0
 
 
-def test_the_strongest_come_first_and_noise_last() -> None:
-    rng = np.random.default_rng(0)
-    x, y = np.meshgrid(np.linspace(0, 2, 201), np.linspace(0, 1, 101))
-    x, y = np.pi * x, np.pi * y
-    gyres = np.stack([-np.sin(x) * np.cos(y), np.cos(x) * np.sin(y)], axis=-1)
-    noisy = gyres + 0.1 * rng.normal(size=gyres.shape)
-    points = flowtex.critical_points(
-        FlowField.from_arrays(np.stack([x, y], axis=-1) / np.pi, noisy)
-    )
-    assert len(points) > 40
-    turning = [p for p in points.strongest(12) if p.kind != "saddle"]
-    for center in ((0.5, 0.5), (1.5, 0.5)):
-        assert min(np.hypot(*(p.position[:2] - center)) for p in turning) < 0.05
-    strengths = [p.strength for p in points.strongest(len(points))]
-    assert strengths == sorted(strengths, reverse=True)
-    assert np.median(strengths) < 0.1 * strengths[0]
-
-
 def test_a_nullcline_of_a_formula_is_exact_at_a_zoom_of_5000() -> None:
     field = flowtex.formula("x^2 + y^2 - 1", "y - x", x=(-2, 2), y=(-2, 2))
     look: dict[str, Any] = {"size": (240, 180), "scalars": False, "samples": 3}

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +11,11 @@ from camera_moves import rotate
 from earth_fields import winds
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
 from strategies import property_test
 
 import flowtex
 from flowtex import FlowField
 from flowtex._util.colours import colour_table, rgb
-from flowtex.cli import main
 from flowtex.errors import Notice
 from flowtex.field.dates import time_text
 from flowtex.plotting.offscreen.movie import frames
@@ -29,7 +25,6 @@ from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COL
 from flowtex.scene.annotations import (
     Plate,
     _Writer,
-    difference_text,
     layout,
     length_text,
     round_length,
@@ -133,24 +128,6 @@ def test_annotations_cover_no_flow_in_small_pictures(
         assert bottom <= found.above or top >= size[1] - found.below
 
 
-def contrast(ink: Any, ground: Any) -> float:
-    """Contrast of two colours as WCAG defines it."""
-    values = np.stack([ink, ground]) / 255
-    linear = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-    low, high = sorted(linear @ (0.2126, 0.7152, 0.0722))
-    return float((high + 0.05) / (low + 0.05))
-
-
-@pytest.mark.parametrize("background", ["white", "#808080", "black", "red", "#00c000", "#3060ff"])
-def test_small_pictures_have_readable_text(opengl: None, background: str) -> None:
-    picture = flowtex.render(
-        patch(), size=(320, 240), samples=3, annotations=True, background=background
-    )
-    title, ground = picture[:20, :100].reshape(-1, 3), picture[0, 160]
-    ink = title[np.abs(title.astype(int) - ground).sum(axis=-1).argmax()]
-    assert contrast(ink, ground) > 3.5
-
-
 @pytest.mark.parametrize(
     ("field", "options", "missing"),
     [
@@ -212,35 +189,6 @@ def test_a_legend_has_name_unit_and_round_values(texts: list[str]) -> None:
     texts.clear()
     written(Scene.of(patch(), scalars="pressure", clim=(-0.1, 0.1)))
     assert texts[1:4] == ["-0.1", "0", "0.1"]
-
-
-@pytest.mark.parametrize(
-    ("limits", "log_scale", "numbers"),
-    [
-        ((1e-3, 1e3), True, ["0.001", "0.1", "10", "1000"]),
-        ((1e3, 1e7), False, ["0", "5e6", "1e7"]),
-        ((-2e-5, 3e-5), False, ["-2e-5", "0", "2e-5"]),
-    ],
-)
-def test_numbers_of_a_legend_stand_apart_below_their_colours(
-    monkeypatch: pytest.MonkeyPatch,
-    limits: tuple[float, float],
-    log_scale: bool,
-    numbers: list[str],
-) -> None:
-    places: dict[str, tuple[float, float]] = {}
-
-    def write(self: Any, draw: Any, x: int, y: int, text: str) -> None:
-        places[text] = (x, x + self._width(text))
-
-    monkeypatch.setattr(_Writer, "_write", write)
-    written(Scene.of(patch(), scalars="pressure", clim=limits, log_scale=log_scale))
-    found = [places[text] for text in numbers]
-    assert all(one[1] < other[0] for one, other in pairwise(found))
-    middles = np.array([sum(ends) / 2 for ends in found])
-    values = np.array([float(text) for text in numbers])
-    along = np.log10(values) if log_scale else values
-    assert np.abs(np.polyval(np.polyfit(along, middles, 1), along) - middles).max() < 1
 
 
 def test_a_legend_has_the_colours_of_the_picture() -> None:
@@ -315,18 +263,6 @@ def test_each_frame_of_a_movie_has_its_time(opengl: None, texts: list[str]) -> N
     assert first == times[0] and times == ["t = 0.00 s", "t = 0.25 s", "t = 0.50 s", "t = 0.75 s"]
 
 
-def test_the_flag_of_the_shell(opengl: None, tmp_path: Path) -> None:
-    path = tmp_path / "gyre.vts"
-    flowtex.examples.double_gyre(2.5).save(path)
-    shots = []
-    for name, flags in (("plain", []), ("written", ["--annotations"])):
-        words = ["render", str(path), "-o", str(tmp_path / f"{name}.png")]
-        assert main([*words, "--size", "300x200", "--samples", "3", *flags]) == 0
-        with Image.open(tmp_path / f"{name}.png") as picture:
-            shots.append(np.asarray(picture))
-    assert (shots[0] != shots[1]).any()
-
-
 @pytest.mark.parametrize(
     ("length", "unit", "text"),
     [
@@ -389,10 +325,3 @@ def test_a_legend_of_one_value_has_it_once(texts: list[str]) -> None:
     )
     written(Scene.of(field, scalars="level"))
     assert texts[0] == "level" and len(set(texts[1:3])) == len(texts[1:3])
-
-
-def test_a_comparison_names_the_lines_that_are_drawn() -> None:
-    few = flowtex.examples.double_gyre_field(shape=(11, 21), time_varying=True)
-    scene = Scene(few, Settings(lines="auto", lod=False))
-    text = difference_text(scene, {"lines": "auto", "lod": False, "cmap": "turbo"})
-    assert text == f"lines = {scene.lines}, lod = False"

@@ -16,7 +16,7 @@ from strategies import junk, property_test
 
 import flowtex
 from flowtex.errors import FieldError
-from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
@@ -42,14 +42,6 @@ def test_signature_and_docstring_show_every_option(function: Any) -> None:
             assert name in parameters
             assert name in lines
     assert "{options}" not in lines
-
-
-def test_an_argument_that_a_function_names_itself_stands_once() -> None:
-    @accepts_options(ViewOptions)
-    def draw(mesh: Any, zoom: float = 2.0, **options: Any) -> None:
-        pass
-
-    assert list(inspect.signature(draw).parameters)[:3] == ["mesh", "zoom", "focus"]
 
 
 def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
@@ -122,11 +114,6 @@ def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
     zoom = {"zoom": 20.0, **view}
     with pytest.warns(UserWarning, match="^The surface is outside the picture"):
         flowtex.render(gyre(), size=(60, 40), samples=3, **zoom)
-
-
-def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
-    options: dict[str, Any] = {"zoom": 50, "scalars": False, "color": "black", "strength": 0.0}
-    assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0
 
 
 def test_no_land_has_two_names() -> None:

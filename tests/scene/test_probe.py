@@ -151,12 +151,6 @@ def check_shapes(got: Probe) -> None:
         assert along == pytest.approx(got.points[:, axis], abs=0.01 * spread + 1e-9)
 
 
-def test_a_width_on_a_curved_surface_is_that_width() -> None:
-    got = probe(view_of(torus()), (6.3, 11.2), pixel=0.01)
-    assert got.pixel == pytest.approx(0.01)
-    assert got.grain == pytest.approx(0.015, rel=1e-2)
-
-
 # --- exact solutions ------------------------------------------------------------------------
 
 
@@ -206,24 +200,6 @@ def test_a_large_field_is_read_in_its_coarser_form() -> None:
     one, other = (probe(s, at, pixel=2e-3) for s, at in ((whole, (120, 560)), (small, (24, 112))))
     np.testing.assert_allclose(one.field_values.position, [1.4, 0.3, 0], atol=1e-12)
     np.testing.assert_allclose(one.points, other.points, atol=2e-4)
-
-
-def test_each_doubling_of_the_pixel_is_a_level() -> None:
-    view = view_of(wind(), samples=5)
-    near, far = (probe(view, (20, 30), pixel=pixel) for pixel in (0.002, 0.004))
-    assert far.level - near.level == pytest.approx(1)
-    assert far.grain / near.grain == pytest.approx(2)
-    assert far.step / near.step == pytest.approx(2, rel=1e-3)
-    assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
-
-
-def test_a_picture_is_met_in_its_colours() -> None:
-    dye = np.zeros((8, 8, 4), np.uint8)
-    dye[...] = [255, 0, 0, 255]
-    got = probe(view_of(gyre(), noise="image", image=dye), (14, 33), pixel=0.01)
-    assert got.noise == pytest.approx(np.tile([1.0, 0.0, 0.0, 1.0], (len(got.lags), 1)))
-    assert got.value == pytest.approx([1, 0, 0, 1])
-    assert got.gain == pytest.approx(1)
 
 
 # --- ends, seams and faults -------------------------------------------------------------------

@@ -64,12 +64,6 @@ def test_time_lies_between_two_steps() -> None:
     assert scene.moment == (1, 2, 1.0)
 
 
-def test_time_outside_is_refused() -> None:
-    scene = Scene(field(3))
-    with pytest.raises(ValueError, match=r"^time is 4.5; expected 0 to 4, the times of the field$"):
-        scene.time = 4.5
-
-
 def test_only_the_steps_that_are_shown_are_traced() -> None:
     scene = Scene(field(5), Settings())
     scene.textures.layers(3)

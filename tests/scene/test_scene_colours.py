@@ -94,12 +94,6 @@ def test_a_change_is_told_and_a_wrong_one_changes_nothing() -> None:
     assert told == ["appearance"] and scene.appearance.scalars == "p"
 
 
-def test_units_of_scalars_and_of_the_speed() -> None:
-    flow = field(SIGNED, units={"p": "Pa"}, length_unit="m", time_unit="s")
-    assert [flow.unit_of(name) for name in ("speed", "p", "q")] == ["m/s", "Pa", ""]
-    assert field(SIGNED).unit_of("speed") == ""
-
-
 def test_the_range_of_a_large_surface_is_of_the_speed_along_it() -> None:
     """A wind across a sphere is even in space, and along the sphere it goes from none to all."""
     points, triangles = sphere(6)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import delta_wing_run
 import numpy as np
 import ocean_run
@@ -36,13 +34,6 @@ def test_the_file_of_the_winds_is_the_computation() -> None:
     np.testing.assert_allclose(file.longitude, longitude)
     np.testing.assert_allclose(file.latitude, latitude)
     assert file.level.values.tolist() == list(weather_run.LEVELS)
-
-
-def test_a_dataset_is_the_same_bytes_again(tmp_path: Path) -> None:
-    for name in ("first", "second"):
-        weather_run.write(tmp_path / name)
-    first, second = ((tmp_path / n / _shipped.WEATHER).read_bytes() for n in ("first", "second"))
-    assert first == second
 
 
 def test_the_file_of_the_wing_is_the_computation() -> None:

@@ -38,13 +38,6 @@ def test_a_test_concerns_itself(concerned_tests: Callable[[set[str]], list[str]]
     assert concerned_tests({"tests/test_gone.py", "CHANGELOG.md"}) == []
 
 
-def test_files_beside_the_package_have_tests(
-    concerned_tests: Callable[[set[str]], list[str]],
-) -> None:
-    assert concerned_tests({"docs/guide.md"}) == ["tests/test_docs.py"]
-    assert "tests/test_release.py" in concerned_tests({".github/workflows/tests.yml"})
-
-
 @pytest.fixture(scope="module")
 def uv_settings() -> Callable[[str], dict[str, str]]:
     found: Callable[[str], dict[str, str]] = runpy.run_path(str(ROOT / "tools" / "run_uv.py"))[
@@ -66,20 +59,6 @@ freeze.index-url='https://other.example/simple'"""
         "UV_FIND_LINKS": "/wheels,/more,wheels",
         "UV_INDEX": "https://one.example/simple file:///two/simple",
         "UV_INDEX_STRATEGY": "unsafe-best-match",
-    }
-
-
-def test_settings_prevail_as_in_pip(uv_settings: Callable[[str], dict[str, str]]) -> None:
-    listed = """:env:.index-url='https://environment.example'
-:env:.timeout='9'
-global.index-url='https://file.example'
-global.trusted-host='file.example'
-install.index-url='https://command.example'
-install.trusted-host='command.example'"""
-    assert uv_settings(listed) == {
-        "UV_DEFAULT_INDEX": "https://environment.example",
-        "UV_HTTP_TIMEOUT": "9",
-        "UV_INSECURE_HOST": "command.example",
     }
 
 

@@ -49,16 +49,6 @@ def test_data_of_the_earth_are_in_degrees(figure: Figure) -> None:
     figure.canvas.draw()
 
 
-def test_a_region_across_the_date_line_is_in_degrees_east(figure: Figure) -> None:
-    ax = figure.add_subplot()
-    flowtex.axes(ax, winds(*REGION), samples=3)
-    x, y = np.array([ax.get_xlim(), ax.get_ylim()])
-    assert np.ptp(x) == pytest.approx(60) and np.sort(x % 360) == pytest.approx([150, 210])
-    assert y == pytest.approx([-60, -32])
-    assert ax.get_aspect() == pytest.approx(1 / np.cos(np.radians(-46)))
-    assert {"170°E", "170°W"} & set(ticks(ax.xaxis).values())
-
-
 def test_limits_that_have_been_set_are_kept(figure: Figure) -> None:
     ax = figure.add_subplot()
     ax.set(xlim=(-20, 40))

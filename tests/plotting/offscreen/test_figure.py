@@ -117,16 +117,6 @@ def test_axes_show_a_flow_where_it_is_at_every_zoom(figure: Figure) -> None:
     assert seen[-1][0] == pytest.approx(box.height, abs=2)
 
 
-def test_axes_draw_again_only_where_they_change(figure: Figure) -> None:
-    image = flowtex.axes(figure.add_subplot(), edge(), samples=3)
-    first = image.make_image(None)[0]
-    assert image.make_image(None)[0] is first
-    figure.set_dpi(200)  # as many pixels as there are
-    assert image.make_image(None)[0].shape[:2] == pytest.approx(
-        2 * np.array(first.shape[:2]), abs=2
-    )
-
-
 def test_axes_follow_time(figure: Figure) -> None:
     field = flowtex.examples.double_gyre_field(time_varying=True, shape=(11, 21))
     image = flowtex.axes(figure.add_subplot(), field, time=float(field.times[0]), samples=3)
@@ -197,18 +187,6 @@ def test_changes_by_matplotlib_are_those_of_arguments(
     share = np.linspace(0, 1)
     np.testing.assert_array_equal(image.cmap(share), expected.cmap(share))
     np.testing.assert_array_equal(shot, of_one_place(figure, expected))
-
-
-@pytest.mark.parametrize("before", [True, False])
-def test_a_title_at_the_left_replaces_that_of_the_data(figure: Figure, *, before: bool) -> None:
-    ax = figure.add_subplot()
-    if before:
-        ax.set_title("(a)", loc="left")
-    flowtex.axes(ax, flowtex.examples.ocean(), samples=3)
-    assert before or ax.get_title()
-    ax.set_title("(a)", loc="left")
-    pixels(figure)
-    assert not ax.get_title()
 
 
 def test_drawing_sets_no_title_again(figure: Figure, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -269,12 +269,6 @@ def test_an_error_leaves_nothing(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_one_picture_is_a_movie(tmp_path: Path) -> None:
-    for kind in ("mp4", "gif", "webp"):
-        write_movie(tmp_path / f"a.{kind}", smooth_pictures(1), 5.0)
-    assert len(mp4(tmp_path / "a.mp4")[1]) == 1
-
-
 def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
     with pytest.raises(ModuleNotFoundError, match=r"(?s)needs PyAV.*\[movie\]"):
