@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -258,73 +258,6 @@ NAMES: dict[str, Callable[[], FlowField]] = {
 }
 
 
-def cylinder() -> pv.StructuredGrid:
-    """Return the last time of :func:`~flowtex.examples.cylinder_field`.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        161 x 65 x 1 nodes with arrays ``velocity`` and ``vorticity``, and ``TimeValue``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.cylinder().point_data.keys()
-    ['velocity', 'vorticity']
-    """
-    return to_grid(cylinder_field())
-
-
-def cylinder_series() -> list[pv.StructuredGrid]:
-    """Return the 31 times of :func:`~flowtex.examples.cylinder_field`.
-
-    Returns
-    -------
-    list of pyvista.StructuredGrid
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> meshes = flowtex.examples.cylinder_series()
-    >>> flowtex.FlowField.from_pyvista(meshes).steady
-    False
-    """
-    return to_series(cylinder_field())
-
-
-def vortex() -> pv.StructuredGrid:
-    """Return the last time of :func:`~flowtex.examples.vortex_field`.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        100 x 100 x 1 nodes with arrays ``velocity`` and ``vorticity``, and ``TimeValue``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.vortex().dimensions
-    (100, 100, 1)
-    """
-    return to_grid(vortex_field())
-
-
-def vortex_series() -> list[pv.StructuredGrid]:
-    """Return the 31 times of :func:`~flowtex.examples.vortex_field`.
-
-    Returns
-    -------
-    list of pyvista.StructuredGrid
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> len(flowtex.examples.vortex_series())
-    31
-    """
-    return to_series(vortex_field())
-
-
 def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
     """Return the double gyre at one time of its period of 10.
 
@@ -363,40 +296,6 @@ def double_gyre_series() -> list[pv.StructuredGrid]:
     10.0
     """
     return to_series(double_gyre_field(time_varying=True))
-
-
-def airfoil() -> pv.StructuredGrid:
-    """Return :func:`~flowtex.examples.airfoil_field` as a mesh.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        193 x 65 x 1 nodes with arrays ``velocity`` and ``pressure``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.airfoil().dimensions
-    (193, 65, 1)
-    """
-    return to_grid(airfoil_field())
-
-
-def delta_wing() -> pv.StructuredGrid:
-    """Return :func:`~flowtex.examples.delta_wing_field` as a mesh.
-
-    Returns
-    -------
-    pyvista.StructuredGrid
-        62 x 52 x 1 nodes with arrays ``velocity`` and ``height``.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.examples.delta_wing().n_points
-    3224
-    """
-    return to_grid(delta_wing_field())
 
 
 def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
@@ -456,6 +355,41 @@ def to_series(field: FlowField) -> list[pv.StructuredGrid]:
     31
     """
     return [to_grid(field, step) for step in range(len(field.times))]
+
+
+_DOC = """Return {times} of :func:`~flowtex.examples.{field}`, {form}.
+
+Returns
+-------
+pyvista.StructuredGrid or list of pyvista.StructuredGrid
+
+Examples
+--------
+>>> import flowtex
+>>> made = flowtex.examples.{name}()
+"""
+
+
+def _made(field: Callable[..., FlowField], convert: Callable[[FlowField], Any]) -> Any:
+    """Return the function of an example that converts its field to meshes."""
+
+    def make() -> Any:
+        return convert(field())
+
+    times, form, suffix = "the last time", "as from :func:`to_grid`", ""
+    if convert is to_series:
+        times, form, suffix = "all times", "as from :func:`to_series`", "_series"
+    make.__name__ = make.__qualname__ = name = field.__name__.replace("_field", suffix)
+    make.__doc__ = _DOC.format(times=times, field=field.__name__, form=form, name=name)
+    return make
+
+
+cylinder: Callable[[], pv.StructuredGrid] = _made(cylinder_field, to_grid)
+cylinder_series: Callable[[], list[pv.StructuredGrid]] = _made(cylinder_field, to_series)
+vortex: Callable[[], pv.StructuredGrid] = _made(vortex_field, to_grid)
+vortex_series: Callable[[], list[pv.StructuredGrid]] = _made(vortex_field, to_series)
+airfoil: Callable[[], pv.StructuredGrid] = _made(airfoil_field, to_grid)
+delta_wing: Callable[[], pv.StructuredGrid] = _made(delta_wing_field, to_grid)
 
 
 def double_gyre_velocity(
