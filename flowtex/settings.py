@@ -41,12 +41,9 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "speed_in": _NEEDS_MOTION,
     "period": _NEEDS_MOTION,
 }
-#: Labels that are not the name.
-LABELS = {"lod": "Level of detail"}
-#: Widest range of a slider.
-SLIDER_RANGE = 500
-#: Most steps of a slider.
-SLIDER_STEPS = 400
+LABELS = {"lod": "Level of detail"}  #: Labels that are not the name.
+SLIDER_RANGE = 500  #: Widest range of a slider.
+SLIDER_STEPS = 400  #: Most steps of a slider.
 #: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
 LOGARITHMIC_RATIO = 60
 #: Words for the two values of a switch; the first two are used for output.

@@ -39,10 +39,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FlowtexAccessor"]
 
-#: Height of a panel in inches.
-PANEL_SIZE = 3.0
-#: Width of a panel over its height.
-PANEL_ASPECT = 1.6
+PANEL_SIZE = 3.0  #: Height of a panel in inches.
+PANEL_ASPECT = 1.6  #: Width of a panel over its height.
 
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]

@@ -29,8 +29,7 @@ SYNONYMS = {
     "window_size": "size",
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
 }
-#: Longest value that is written in a message, in letters.
-LONGEST_SHOWN = 100
+LONGEST_SHOWN = 100  #: Longest value that is written in a message, in letters.
 
 
 def brief(value: Any) -> str:

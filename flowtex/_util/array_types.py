@@ -15,5 +15,4 @@ Complexes: TypeAlias = NDArray[np.complex64]
 Bools: TypeAlias = NDArray[np.bool_]
 Bytes: TypeAlias = NDArray[np.uint8]
 Ints: TypeAlias = NDArray[np.int64]
-#: Integers that index an array.
-Indices: TypeAlias = NDArray[np.intp]
+Indices: TypeAlias = NDArray[np.intp]  #: Integers that index an array.

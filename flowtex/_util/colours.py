@@ -21,10 +21,8 @@ from flowtex.errors import FieldError
 
 DEFAULT_CMAP = "viridis"  #: Colour map of most values.
 SIGNED_CMAP = "RdBu_r"  #: Colour map of values around zero.
-#: Luminance from which black has more contrast than white.
-LIGHT_FROM = 0.18
-#: Entries of a colour map.
-ENTRIES = 256
+LIGHT_FROM = 0.18  #: Luminance from which black has more contrast than white.
+ENTRIES = 256  #: Entries of a colour map.
 #: Share of the larger end of a range, or of the range, below which a difference is rounding.
 ZERO_SHARE = 1e-5
 #: Colour maps to choose from: even steps of lightness first, those that diverge after them.
@@ -32,8 +30,7 @@ CMAPS = (
     *("viridis", "cividis", "magma", "inferno", "plasma", "gray", "Blues_r", "YlGnBu_r", "turbo"),
     *("coolwarm", "RdBu_r", "twilight"),
 )
-#: Packages whose maps are found by their names.
-PACKAGES = ("cmocean", "cmcrameri", "colorcet")
+PACKAGES = ("cmocean", "cmcrameri", "colorcet")  #: Packages whose maps are found by their names.
 #: Maps with a middle, by the names of matplotlib, cmocean and cmcrameri.
 DIVERGING = frozenset(
     (
@@ -44,18 +41,14 @@ DIVERGING = frozenset(
     )
 )
 
-#: Colours of the table of a norm.
-NORM_ENTRIES = 1024
-#: Steps of bisection that find where a colour of a norm begins.
-BISECTIONS = 120
-#: Share of the colour map by which a norm may decrease: rounding.
-ROUNDING = 1e-9
+NORM_ENTRIES = 1024  #: Colours of the table of a norm.
+BISECTIONS = 120  #: Steps of bisection that find where a colour of a norm begins.
+ROUNDING = 1e-9  #: Share of the colour map by which a norm may decrease: rounding.
 BAR_SIZE = (3.0, 1.0)  #: Size in inches of a colour bar for choosing ticks.
 TICK_GAP = 0.12  #: Least distance of two ticks, as a share of the bar.
 DIGITS = range(3, 9)  #: Possible numbers of digits in the labels of a colour bar.
 LARGE = 1e6  #: Value from which on labels have an exponent.
-#: The table of no colours.
-NO_COLOURS = np.zeros((0, 4), np.uint8)
+NO_COLOURS = np.zeros((0, 4), np.uint8)  #: The table of no colours.
 
 Colour = tuple[float, float, float]
 
@@ -179,8 +172,7 @@ class ColourScale:
     log_scale: bool = False
     #: Values at which the colours of a norm begin, and the last one ends, (N + 1,), not decreasing.
     edges: Floats | None = None
-    #: Colours from 0 to 1: those of the ends of the table by default.
-    below: Colour | None = None
+    below: Colour | None = None  #: Colours from 0 to 1: those of the ends of the table by default.
     above: Colour | None = None
     nan: Colour = (0.663, 0.663, 0.663)
     norm: Any = None

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-#: Memory that is assumed if the system does not report it.
-UNKNOWN_BYTES = 4_000_000_000
+UNKNOWN_BYTES = 4_000_000_000  #: Memory that is assumed if the system does not report it.
 
 
 def available_bytes(root: Path = Path("/")) -> int:

@@ -62,8 +62,7 @@ class _Caller(Executor):
         return future
 
 
-#: Time before a bar appears.
-BAR_DELAY_S = 1.0
+BAR_DELAY_S = 1.0  #: Time before a bar appears.
 
 _waiting: list[Status] = []
 _cancelled: ContextVar[Callable[[], bool] | None] = ContextVar("cancelled", default=None)

@@ -30,10 +30,8 @@ try:
 except ModuleNotFoundError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-#: Names of temporary folders.
-NAME = re.compile(r"flowtex-\w{8}\.tmp")
-#: Characters of the name of a file that are in that of its part.
-STEM_LENGTH = 40
+NAME = re.compile(r"flowtex-\w{8}\.tmp")  #: Names of temporary folders.
+STEM_LENGTH = 40  #: Characters of the name of a file that are in that of its part.
 
 
 def remove_stale_folders() -> None:

@@ -19,8 +19,7 @@ class UnreadableError(FieldError):
 class Form:
     """How the values of an argument are written."""
 
-    #: Help of a shell for the argument, where it differs from that of Python.
-    words: str = ""
+    words: str = ""  #: Help of a shell for the argument, where it differs from that of Python.
     #: Returns the value of a text, or of all texts; an UnreadableError says what was expected.
     read: Callable[[Any], Any] = str
     write: Callable[[Any], str] = str  #: Returns the text of a value.

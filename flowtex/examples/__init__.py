@@ -471,11 +471,9 @@ CENTER = -0.1 + 0.08j
 INCIDENCE = np.radians(8.0)  #: Angle between the free stream and the x axis.
 RADIUS = abs(1.0 - CENTER)  #: Radius of the circle.
 EDGE = np.angle(1.0 - CENTER)  #: Angle of the trailing edge on the circle.
-#: Circulation, clockwise.
-CIRCULATION = 4.0 * np.pi * RADIUS * np.sin(INCIDENCE - EDGE)
+CIRCULATION = 4.0 * np.pi * RADIUS * np.sin(INCIDENCE - EDGE)  #: Circulation, clockwise.
 _CIRCLE = CENTER + RADIUS * np.exp(1j * (EDGE + np.linspace(0.0, 2.0 * np.pi, 4001)))
-#: Extent of the mapped airfoil along x.
-CHORD = np.ptp((_CIRCLE + 1.0 / _CIRCLE).real)
+CHORD = np.ptp((_CIRCLE + 1.0 / _CIRCLE).real)  #: Extent of the mapped airfoil along x.
 
 
 def airfoil_arrays(shape: tuple[int, int], extent: float) -> tuple[Floats, Floats]:

@@ -21,8 +21,7 @@ from flowtex.field.earth import DEGREE
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Folder of the shipped files.
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent / "data"  #: Folder of the shipped files.
 CYLINDER = "cylinder.npz"  #: Vortex shedding behind a cylinder.
 VORTEX = "vortex.npz"  #: Two-dimensional turbulence.
 DELTA_WING = "delta_wing.npz"  #: Flow along a winged body.

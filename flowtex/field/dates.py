@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 DAY_S = 86_400.0  #: Seconds in a day.
-#: Most decimals of a time without an exponent.
-MOST_DECIMALS = 6
-#: Time from which on an exponent is used.
-LONGEST_TIME = 1e9
-#: Greatest length of a time unit to show.
-UNIT_LENGTH = 8
+MOST_DECIMALS = 6  #: Most decimals of a time without an exponent.
+LONGEST_TIME = 1e9  #: Time from which on an exponent is used.
+UNIT_LENGTH = 8  #: Greatest length of a time unit to show.
 #: Text of a date of any precision.
 _DATE = re.compile(
     r"(\d{1,4})(?:-(\d\d?)(?:-(\d\d?)(?:[T ](\d\d)(?::(\d\d)(?::(\d\d)(?:\.(\d+))?)?)?)?)?)?Z?"

@@ -72,8 +72,7 @@ class Reading(tuple[ReadingStep, ...]):
         return "\n".join(f"{step.step}: {step.text}" for step in self)
 
 
-#: The reading of arrays.
-NOTHING = Reading()
+NOTHING = Reading()  #: The reading of arrays.
 
 
 class SectionAxes(NamedTuple):
@@ -103,8 +102,7 @@ class FieldArrays:
     projection: Projection | None = None
     reading: Reading = NOTHING
     vectors: str = ""
-    #: Names of the scalars that are components of other vectors.
-    parts: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()  #: Names of the scalars that are components of other vectors.
     #: Share of the flow normal to the surface from which on a notice says so.
     notable_normal: float = 0.5
     volume_values: Mapping[str, Any] = field(default_factory=dict)

@@ -29,18 +29,15 @@ from flowtex.field.triangles.triangle_surface import Surface
 
 START_NODES = 4  #: Number of nodes around a point at which walks begin.
 WALK_STEPS = 96  #: Most triangles in a walk.
-#: Height of a triangle over a side, squared, below which it has no area.
-FLAT_TRIANGLE = 1e-20
+FLAT_TRIANGLE = 1e-20  #: Height of a triangle over a side, squared, below which it has no area.
 CURVED_TOLERANCE = 0.1  #: Tolerance in cells for points on a curved surface.
 FLAT_TOLERANCE = 1e-6  #: Tolerance in cells for points on a flat surface.
 EARTH_TOLERANCE = 1e-4  #: Tolerance in cells on the Earth, for inverse projections.
 EARTH_SKEW = 1e-3  #: Greatest deviation from a parallelogram of a bilinear cell on the Earth.
 MOST_CELLS = 8  #: Most candidate cells for a place.
 ROUNDING = 1e-9  #: Tolerance for rounding, as a share of a cell.
-#: Latitude from which on a node has the longitude of the one beside it.
-POLE_LATITUDE = 90 - 1e-6
-#: The globe on which places of the Earth are looked up.
-EARTH = Projection(GLOBE)
+POLE_LATITUDE = 90 - 1e-6  #: Latitude from which on a node has the longitude of the one beside it.
+EARTH = Projection(GLOBE)  #: The globe on which places of the Earth are looked up.
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,8 +23,7 @@ SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25
 OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
 #: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-#: Arguments for datasets.
-OF_DATASETS = ("vectors", *OF_EARTH, "uncertainty")
+OF_DATASETS = ("vectors", *OF_EARTH, "uncertainty")  #: Arguments for datasets.
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

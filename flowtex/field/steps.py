@@ -99,8 +99,7 @@ class LazySteps:
         return result
 
 
-#: Nodal values at all time steps, (T, J, I, ...), in memory or read late.
-Steps: TypeAlias = Any
+Steps: TypeAlias = Any  #: Nodal values at all time steps, (T, J, I, ...), in memory or read late.
 
 
 class Nodes(NamedTuple):

@@ -19,12 +19,9 @@ from flowtex.field.interpolation import fill_blanked
 from flowtex.field.steps import LazySteps, Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import nodal_means
 
-#: A :class:`flowtex.FlowField`.
-Field = TypeVar("Field")
-#: Offsets of the cells around a node.
-CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
-#: Name of the scalar of an uncertainty that is an array.
-UNCERTAINTY = "uncertainty"
+Field = TypeVar("Field")  #: A :class:`flowtex.FlowField`.
+CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))  #: Offsets of the cells around a node.
+UNCERTAINTY = "uncertainty"  #: Name of the scalar of an uncertainty that is an array.
 
 
 def spread_name(dim: str) -> str:

@@ -8,8 +8,7 @@ from typing import Any
 
 from flowtex.errors import FieldError, import_extra
 
-#: Texts of data without a unit.
-NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")
+NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")  #: Texts of data without a unit.
 LENGTHS = ("[length]", "[printing_unit]")  #: Dimensions of lengths in pint; images have pixels.
 TIMES = ("[time]", "[frame]")  #: Dimensions of times in pint; images have frames.
 PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Dimensions of pressures in pint.

@@ -19,12 +19,10 @@ from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps, map_steps, typical_steps
 from flowtex.field.units import speed_unit, velocity_units
 
-#: A surface narrower than this share of its length is a line.
-LINE_WIDTH = 1e-7
+LINE_WIDTH = 1e-7  #: A surface narrower than this share of its length is a line.
 LENGTHS = (1e-30, 1e30)  #: Range of lengths in single precision.
 MAGNITUDES = (1e-100, 1e100)  #: Range of speeds and times with finite squares.
-#: The scalar that is 1 where there are no data, 0 elsewhere.
-NO_DATA = "no data"
+NO_DATA = "no data"  #: The scalar that is 1 where there are no data, 0 elsewhere.
 
 
 def node_positions(points: Any) -> Any:

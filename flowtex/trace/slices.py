@@ -34,14 +34,11 @@ NODE_AXES = {
 FIRST_CELLS = 0.25  #: First lag in cells.
 LAST_EXTENTS = 0.25  #: Last lag, as a share of the surface's extent.
 MOST_CHOSEN_LAGS = 24  #: Most lags.
-#: Parts of an octave to which a chosen last lag is rounded.
-LAST_PARTS = 8
-#: Percentile of the sizes of cells that counts as that of small ones.
-SMALL_CELLS = 5
+LAST_PARTS = 8  #: Parts of an octave to which a chosen last lag is rounded.
+SMALL_CELLS = 5  #: Percentile of the sizes of cells that counts as that of small ones.
 LEAST_CELL = 0.25  #: Least size of cells in multiples of a common unit.
 MOST_CELL = 16.0  #: Greatest size of cells in multiples of a common unit.
-#: Quotient of one lag and the one before.
-RATIO = 2.0
+RATIO = 2.0  #: Quotient of one lag and the one before.
 #: Least number of lags that are drawn; the uncertainty of a flow lies in the layer of one more.
 LEAST_LAGS = 2
 

@@ -20,18 +20,14 @@ from flowtex.trace.compose import landings
 from flowtex.trace.slices import FIRST_CELLS, TraceSlices, drawn_lags, longest_path
 from flowtex.trace.trace import trace
 
-#: Size of the slices that are cached, besides the ones in use.
-CACHE_BYTES = 512_000_000
-#: Most bytes of late steps in memory for tracing paths to one time.
-HELD_BYTES = 500_000_000
+CACHE_BYTES = 512_000_000  #: Size of the slices that are cached, besides the ones in use.
+HELD_BYTES = 500_000_000  #: Most bytes of late steps in memory for tracing paths to one time.
 STEP_BYTES = 72  #: Bytes per node of a step: velocity, speed, and samples.
 LEAST_HELD = 8  #: Least number of steps that remain when they are thinned out.
 STREAK_EXTENTS = 0.05  #: Length of a streak, as a share of the surface.
 MOST_CHANGE = 0.5  #: Greatest relative change of velocity along a streak.
-#: Most nodes where it changes by more, as a share, for pathlines.
-MOST_CHANGING = 0.05
-#: Most nodes along each axis, and pairs of steps, that are sampled.
-MOST_JUDGED = 100
+MOST_CHANGING = 0.05  #: Most nodes where it changes by more, as a share, for pathlines.
+MOST_JUDGED = 100  #: Most nodes along each axis, and pairs of steps, that are sampled.
 
 
 class SliceStore:
@@ -63,8 +59,7 @@ class SliceStore:
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"
-        #: Whether the slices were traced elsewhere.
-        self.given = slices is not None
+        self.given = slices is not None  #: Whether the slices were traced elsewhere.
         self._whole = slices
         self._compose = compose
         self._nodes = nodes

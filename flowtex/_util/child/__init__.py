@@ -47,22 +47,14 @@ FORKS = sys.platform == "linux"
 if FORKS:
     import fcntl
 
-#: Seconds between two checks whether the caller still wants an answer.
-CHECK_INTERVAL_S = 0.05
-#: Longest wait in seconds for the status of a child that has closed its pipe.
-STATUS_WAIT_S = 5.0
-#: Share of the available memory that a child may take.
-MEMORY_SHARE = 0.6
-#: How a child ended whose status is unknown, as when the fork server has died.
-ENDED = "ended"
-#: Bytes that may wait in the pipe of answers.
-PIPE_BYTES = 1 << 20
-#: Bytes of a request.
-REQUEST_BYTES = 65_536
-#: Bytes of a status.
-STATUS_BYTES = 4
-#: Seconds that a child has to end by itself.
-ENDING_S = 1.0
+CHECK_INTERVAL_S = 0.05  #: Seconds between two checks whether the caller still wants an answer.
+STATUS_WAIT_S = 5.0  #: Longest wait in seconds for the status of a child that has closed its pipe.
+MEMORY_SHARE = 0.6  #: Share of the available memory that a child may take.
+ENDED = "ended"  #: How a child ended whose status is unknown, as when the fork server has died.
+PIPE_BYTES = 1 << 20  #: Bytes that may wait in the pipe of answers.
+REQUEST_BYTES = 65_536  #: Bytes of a request.
+STATUS_BYTES = 4  #: Bytes of a status.
+ENDING_S = 1.0  #: Seconds that a child has to end by itself.
 
 _servers: dict[tuple[str, ...], ForkServer] = {}
 _lock = threading.Lock()
@@ -80,8 +72,7 @@ class ChildError(Exception):
         self.kind, self.trace = kind, trace
 
 
-#: The header of an answer, and its arrays.
-_Received = tuple[dict[str, Any], list[AnyArray]]
+_Received = tuple[dict[str, Any], list[AnyArray]]  #: The header of an answer, and its arrays.
 
 
 @dataclass(frozen=True)

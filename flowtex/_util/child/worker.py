@@ -23,27 +23,20 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import stoppable
 from flowtex._util.whole_file import remove_folders
 
-#: A value of JSON, and arrays.
-Answer = tuple[Any, Sequence[AnyArray]]
-#: Answers a request, which is a value of JSON.
-Handler = Callable[[Any], Answer]
+Answer = tuple[Any, Sequence[AnyArray]]  #: A value of JSON, and arrays.
+Handler = Callable[[Any], Answer]  #: Answers a request, which is a value of JSON.
 _PROGRAM = (
     "import json, sys; from importlib import import_module; start = json.loads(sys.argv[1]); "
     "sys.path[:] = start['path']; module, function = start['entry']; "
     "getattr(import_module(module), function)(**start['arguments'])"
 )
-#: Priority, 0 to 1000, with which the system ends the child if memory runs out.
-OOM_SCORE = "800"
+OOM_SCORE = "800"  #: Priority, 0 to 1000, with which the system ends the child if memory runs out.
 #: Errors whose text is sufficient without a trace.
 QUIET = ("Stopped", "MemoryError", "FieldError")
-#: Greatest length of an error text.
-TEXT_LENGTH = 4_000
-#: Length of the header.
-_PREFIX = struct.Struct(">I")
-#: Most bytes of a header.
-HEADER_BYTES = 16_000_000
-#: Types of arrays: numbers and truth values.
-_TYPE = re.compile(r"[<>|][biuf]\d{1,2}")
+TEXT_LENGTH = 4_000  #: Greatest length of an error text.
+_PREFIX = struct.Struct(">I")  #: Length of the header.
+HEADER_BYTES = 16_000_000  #: Most bytes of a header.
+_TYPE = re.compile(r"[<>|][biuf]\d{1,2}")  #: Types of arrays: numbers and truth values.
 
 
 def command(function: Callable[..., Any], **arguments: Any) -> list[str]:

@@ -29,20 +29,17 @@ DERIVED: dict[str, Callable[[Floats], Floats]] = {
     "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
     "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
 }
-#: Derived scalars of both signs.
-SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))
+SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))  #: Derived scalars of both signs.
 #: Scalars for which particles are followed over a horizon, by the field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
 #: Names such as those that other programs give to the components of a vector.
 COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 #: Long names that differ from the names.
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
-#: Letters of the components, along the axes of space.
-LETTERS = "xyz"
+LETTERS = "xyz"  #: Letters of the components, along the axes of space.
 #: Component letter by its name, a number or a letter.
 COMPONENTS = {**dict(zip("012", LETTERS, strict=True)), **{x: x for x in LETTERS}}
-#: Name of vectors that have none.
-UNNAMED = "velocity"
+UNNAMED = "velocity"  #: Name of vectors that have none.
 #: Words of a velocity, also with a number or a letter of a component or a height.
 _VELOCITY = re.compile(
     r"vel|velo|velocit(y|ies)|winds?|currents?|flow|drift|speed|"

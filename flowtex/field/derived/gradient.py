@@ -26,10 +26,8 @@ from flowtex.field.validation import finite_nodes
 COLLAPSED_AREA = 1e-10
 QUADRATIC_NEIGHBOURS = 5  #: Least number of neighbours for a quadratic fit.
 REGULARISATION = 1e-12  #: Regularisation of a fit, as a share of the largest entry.
-#: Determinant of the correlations of the terms of a fit, at least.
-LEAST_INDEPENDENCE = 1e-9
-#: Approximate number of nodes by which the side of a surface is determined.
-MOST_JUDGED = 40_000
+LEAST_INDEPENDENCE = 1e-9  #: Determinant of the correlations of the terms of a fit, at least.
+MOST_JUDGED = 40_000  #: Approximate number of nodes by which the side of a surface is determined.
 
 
 def true_positions(points: Floats, projection: Projection | None) -> Floats:

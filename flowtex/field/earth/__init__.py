@@ -20,12 +20,9 @@ from flowtex.errors import FieldError, import_extra
 if TYPE_CHECKING:
     from pyproj import CRS, Transformer
 
-#: Mean radius of the Earth in metres.
-EARTH_RADIUS = 6_371_000.0
-#: Metres of a degree of latitude.
-DEGREE = math.radians(EARTH_RADIUS)
-#: The name of the sphere among the projections.
-GLOBE = "globe"
+EARTH_RADIUS = 6_371_000.0  #: Mean radius of the Earth in metres.
+DEGREE = math.radians(EARTH_RADIUS)  #: Metres of a degree of latitude.
+GLOBE = "globe"  #: The name of the sphere among the projections.
 #: Projections of PROJ by common names.
 NAMES = {
     "platecarree": "+proj=eqc",
@@ -51,33 +48,22 @@ METHODS = {
 #: its pieces, so shorter steps turn directions by up to 3 degrees.
 STEP = 0.02
 NEAREST_POLE = 0.5  #: Least distance in degrees from a pole for computing derivatives.
-#: A step that is longer than the opposite one by this factor crosses a tear.
-TORN = 2.0
-#: Factor by which a position outside the map is moved towards its middle.
-INSIDE = 1 - 1e-7
-#: File of the coastlines.
-COASTS = Path(__file__).with_name("coastlines.npz")
-#: Stored steps of a degree, as in tools/coastlines.py.
-STEPS_PER_DEGREE = 100
-#: Longest piece of a line in degrees.
-LONGEST_PIECE = 1.0
-#: A piece may be torn if it bends by more than this share of its length.
-BENT = 0.05
+TORN = 2.0  #: A step that is longer than the opposite one by this factor crosses a tear.
+INSIDE = 1 - 1e-7  #: Factor by which a position outside the map is moved towards its middle.
+COASTS = Path(__file__).with_name("coastlines.npz")  #: File of the coastlines.
+STEPS_PER_DEGREE = 100  #: Stored steps of a degree, as in tools/coastlines.py.
+LONGEST_PIECE = 1.0  #: Longest piece of a line in degrees.
+BENT = 0.05  #: A piece may be torn if it bends by more than this share of its length.
 MOST_BENT = 0.2  #: Share beyond which it is torn, as along the outline of a map.
-#: Share of a torn piece that its tear is wide, at least.
-LEAST_TEAR = 0.02
-#: Scale beyond which a map has no lines: they go to infinity, as at a pole.
-MOST_STRETCHED = 20.0
+LEAST_TEAR = 0.02  #: Share of a torn piece that its tear is wide, at least.
+MOST_STRETCHED = 20.0  #: Scale beyond which a map has no lines: they go to infinity, as at a pole.
 #: Least length of a thinned line in spacings: islands of that length are some pixels wide.
 FEWEST_SPACINGS = 4
-#: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
-HALVINGS = 14
+HALVINGS = 14  #: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
 #: Possible spacings of a graticule in degrees.
 STEPS = (30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
-#: Most graticule lines across a map.
-MOST_LINES = 6
-#: Least pieces of a line between two that cross it.
-FEWEST_PIECES = 8
+MOST_LINES = 6  #: Most graticule lines across a map.
+FEWEST_PIECES = 8  #: Least pieces of a line between two that cross it.
 #: Places along each side of the box where longitude and latitude are looked up.
 LOOKS = {True: 25, False: 65}
 

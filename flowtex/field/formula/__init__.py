@@ -19,12 +19,9 @@ from flowtex.field.formula.grammar import FormulaError, Tree, Values, evaluate, 
 __all__ = ["Formula", "FormulaError", "Parameter"]
 
 RANGE = (-5.0, 5.0)  #: Default range of a coordinate.
-#: Greatest speed and length; values beyond are blanked.
-MOST = 1e30
-#: Step of the differences for tangents, as a share of a range.
-TANGENT_SHARE = 1e-5
-#: Names of positions and of the time.
-VARIABLES = ("x", "y", "z", "u", "v", "t")
+MOST = 1e30  #: Greatest speed and length; values beyond are blanked.
+TANGENT_SHARE = 1e-5  #: Step of the differences for tangents, as a share of a range.
+VARIABLES = ("x", "y", "z", "u", "v", "t")  #: Names of positions and of the time.
 _TURN = (-np.pi, np.pi)
 #: Surfaces by name: x, y and z, and the ranges of u and v.
 SURFACES: Mapping[str, tuple[tuple[str, str, str], Mapping[str, tuple[float, float]]]] = {

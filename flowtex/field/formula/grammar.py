@@ -22,8 +22,7 @@ from flowtex._util.arguments import near_names
 from flowtex.errors import FieldError
 
 Tree = float | str | tuple[Any, ...]
-#: Numbers or arrays by name.
-Values = Mapping[str, Any]
+Values = Mapping[str, Any]  #: Numbers or arrays by name.
 
 #: Functions of one argument with the same name in NumPy.
 SAME_NAMES = (

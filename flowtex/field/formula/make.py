@@ -23,10 +23,8 @@ NODES = 257  #: Nodes along the longer side of a plane.
 SURFACE_NODES = 129  #: The same for a surface, whose poles slow down tracing.
 LEAST_NODES = 33  #: Least number of nodes along the shorter side.
 MOST_NODES = 10_000  #: Greatest resolution that users may request.
-#: Share of the size of a surface within which places are the same.
-SAME_PLACE = 1e-9
-#: Letters of a caption.
-MOST_TITLE = 60
+SAME_PLACE = 1e-9  #: Share of the size of a surface within which places are the same.
+MOST_TITLE = 60  #: Letters of a caption.
 MOST_LETTERS = 4000  #: Greatest length of a line of text.
 MOST_TIMES = 200  #: Most time steps of a line of text.
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)

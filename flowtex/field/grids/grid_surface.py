@@ -24,14 +24,12 @@ from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.validation import finite_nodes
 
-#: Nodes closer than this share of the surface's extent lie at one point.
-SAME_POINT_SHARE = 1e-12
+SAME_POINT_SHARE = 1e-12  #: Nodes closer than this share of the surface's extent lie at one point.
 #: Corners of the two triangles of a cell, as (j, i) from its first corner.
 CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
 #: Steps (j, i) to the cells across the edges opposite to these corners.
 ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
-#: Lines from a pole over which the size of the cells turns into their length.
-POLE_LINES = 8
+POLE_LINES = 8  #: Lines from a pole over which the size of the cells turns into their length.
 
 
 class GridSurface(NodeSurface):

@@ -22,8 +22,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 
 #: Nodes closer than this share of the distance to the next line lie at one point.
 SAME_POINT_SHARE = 1e-3
-#: Distance in cells from evenly spread lines up to which lines are even.
-EVEN_CELLS = 1e-6
+EVEN_CELLS = 1e-6  #: Distance in cells from evenly spread lines up to which lines are even.
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,7 @@ from flowtex.field.validation import (
 
 #: Twice the area of a triangle over the square of its longest side, below which it is flat.
 FLAT_TRIANGLE = 1e-12
-#: Nodes on borders closer than this share of the surface's extent are one.
-SAME_NODE_SHARE = 1e-9
+SAME_NODE_SHARE = 1e-9  #: Nodes on borders closer than this share of the surface's extent are one.
 #: Direction without symmetry, of at most unit length: points of usual meshes differ along it.
 GENERIC = np.array([0.36787944, 0.69314718, 0.61983])
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.

@@ -29,8 +29,7 @@ from flowtex.field.triangles.triangle_nodes import (
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
 MOST_SHARE = 1 - 1e-7
-#: Least size of cells at a node over that at the nodes beside it.
-LEAST_BESIDE = 0.2
+LEAST_BESIDE = 0.2  #: Least size of cells at a node over that at the nodes beside it.
 
 
 class TriangleSurface(NodeSurface):
@@ -256,5 +255,4 @@ class TriangleSurface(NodeSurface):
         return sharp[None]
 
 
-#: A surface of either kind.
-Surface: TypeAlias = GridSurface | TriangleSurface
+Surface: TypeAlias = GridSurface | TriangleSurface  #: A surface of either kind.

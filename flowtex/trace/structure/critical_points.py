@@ -37,17 +37,13 @@ if TYPE_CHECKING:
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink", "degenerate")
 ROUNDING = 1e-9  #: Greatest ratio to the other eigenvalue of one that counts as zero.
 REAL_SHARE = 1e-6  #: Greatest imaginary part of a real eigenvalue, as a share of it.
-#: Least ratio of growth to rotation of a spiral on any grid.
-SPIRAL_SHARE = 0.25
+SPIRAL_SHARE = 0.25  #: Least ratio of growth to rotation of a spiral on any grid.
 #: Error of the velocity's gradient, in its change over a cell: in a cell the interpolated gradient
 #: is that of its middle, half a cell away.
 ERROR_CELLS = 0.5
-#: Points closer than this, in cells, that have the same index are one.
-SAME_POINT_CELLS = 1e-3
-#: Speed as a share of the largest at which a node is at rest.
-REST_SHARE = 1e-12
-#: Share of a neighbour's velocity that replaces one that is zero.
-LEAST_SHARE = 1e-7
+SAME_POINT_CELLS = 1e-3  #: Points closer than this, in cells, that have the same index are one.
+REST_SHARE = 1e-12  #: Speed as a share of the largest at which a node is at rest.
+LEAST_SHARE = 1e-7  #: Share of a neighbour's velocity that replaces one that is zero.
 
 
 def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> Iterator[FlowField]:

@@ -36,8 +36,7 @@ SINGULAR = 1e-13  #: Determinant that counts as zero, relative to the gradient.
 ROUNDING = 1e-9  #: Trace that counts as zero, relative to the gradient.
 AROUND = 0.1  #: Distance from a degenerate point at which the search for others begins.
 ON_LINE = 0.02  #: Greatest distance from there to another one on the same line of rest.
-#: Area of a cell of a surface at its poles, as a share of that in the middle.
-POLE_AREA = 1e-6
+POLE_AREA = 1e-6  #: Area of a cell of a surface at its poles, as a share of that in the middle.
 RADIUS = 0.05  #: Radius of the circle around a point for its index.
 CIRCLE = 720  #: Points on this circle.
 MOST_DIRECTIONS = 24  #: Most directions at a degenerate point.
@@ -45,16 +44,14 @@ TURN_RADIUS = 2.0  #: Radius of the turn around a possible centre.
 TURN_STEPS = 400  #: Steps of this turn.
 RETURNED = 1e-7  #: Least growth of the radius that is no error.
 _SIDES = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], float)
-#: Longest step along a line, as a share of the diagonal.
-STEP = 1 / 700
+STEP = 1 / 700  #: Longest step along a line, as a share of the diagonal.
 ALMOST = 0.8  #: Least share of the estimated period after which an orbit may return.
 TURNS = 12  #: Most turns until an orbit closes.
 CLOSED = 1e-7  #: Greatest gap of a closed orbit, as a share of the diagonal.
 POINTS = 4000  #: Points of an orbit in the integration.
 TOLERANCE = 1e-10  #: Tolerance of this integration.
 LEAST_GROWTH = 1e-6  #: Least exponent of growth in a turn beside an orbit.
-#: A component counts as zero up to this share of its usual value.
-ZERO_SHARE = 1e-12
+ZERO_SHARE = 1e-12  #: A component counts as zero up to this share of its usual value.
 USUAL_SHARE = 0.9  #: Quantile of the usual value, because values beside a pole are huge.
 HALVINGS = 12  #: Bisections on the side of a triangle for the crossing of a line.
 #: Greatest share of a value that remains at a zero; at a pole or a jump more remains.

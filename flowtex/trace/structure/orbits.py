@@ -37,15 +37,13 @@ RATIO = 1.2  #: Ratio of successive distances on a ray.
 EXTENT_SHARE = 0.03  #: Greatest distance between points of a ray, as a share of the extent.
 MOVED_CELLS = 0.05  #: Least radial displacement in a turn, in cells.
 MOVED_SHARE = 0.05  #: Least radial displacement in a turn, as a share of the radius.
-#: This share for the lines of a formula.
-MOVED_EXACT = 1e-6
+MOVED_EXACT = 1e-6  #: This share for the lines of a formula.
 CLOSED_CELLS = 0.1  #: Greatest gap of a closed orbit, in cells.
 PARTS = 64  #: Parts of a section of a ray with an orbit.
 ROUNDS = 2  #: Number of times that the section is divided.
 REST_CELLS = 0.25  #: Distance from a critical point at which a line ends, in cells.
 WALL_CELLS = 0.05  #: Distance from a wall at which a line ends, in cells.
-#: Critical points around which orbits are searched for, the strongest ones.
-MOST_RAYS = 8
+MOST_RAYS = 8  #: Critical points around which orbits are searched for, the strongest ones.
 
 
 @dataclass(frozen=True, eq=False)

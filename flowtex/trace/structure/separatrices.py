@@ -33,10 +33,8 @@ LENGTH_EXTENTS = 3.0  #: Length of a line, as a share of the surface's extent.
 MOST_POINTS = 4000  #: Most points of a line.
 FIRST_POINTS = 4  #: Points of a line that cannot end at a critical point.
 REST_CELLS = 0.25  #: Distance from a critical point at which tracing stops, in cells.
-#: Distance in cells between two turns of a line at which it is a closed orbit.
-CLOSED_CELLS = 0.02
-#: The same where it winds up, in distances of its points.
-WOUND_POINTS = 2.0
+CLOSED_CELLS = 0.02  #: Distance in cells between two turns of a line at which it is a closed orbit.
+WOUND_POINTS = 2.0  #: The same where it winds up, in distances of its points.
 END_CELLS = 0.75  #: Distance from a critical point at which a line is joined to it, in cells.
 LEAST_TURN = 8  #: Least number of points in a turn.
 
