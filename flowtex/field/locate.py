@@ -4,9 +4,9 @@ Values are linear in the triangles that renderers draw, and bilinear in cells th
 parallelograms, in space or in longitude and latitude. On the Earth places are looked up by these,
 so that values do not depend on the map.
 
-To find a point in space, the nearest nodes are looked up in a tree. From the triangles around them
+To find a point in space, the triangles with the nearest middles are looked up in a tree. From them
 a walk leads over the surface, across the side on which the point lies as long as that leads nearer:
-of cells thousands of times longer than wide, the nearest node may belong to another one.
+of cells thousands of times longer than wide, the nearest middle may be that of another one.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.triangles.triangle_nodes import solid_triangles
 from flowtex.field.triangles.triangle_surface import Surface
 
-START_NODES = 4  #: Number of nodes around a point at which walks begin.
+STARTS = 12  #: Number of triangles around a point at which walks begin.
 WALK_STEPS = 96  #: Most triangles in a walk.
 FLAT_TRIANGLE = 1e-20  #: Height of a triangle over a side, squared, below which it has no area.
 CURVED_TOLERANCE = 0.1  #: Tolerance in cells for points on a curved surface.
@@ -122,15 +123,10 @@ class Locator:
     def __init__(self, surface: Surface) -> None:
         self.surface = surface
         self._points = surface.points.reshape(-1, 3)
-        nodes = surface.corners_of(surface.drawn).ravel()
-        usable = surface.apart.ravel()[nodes]
-        drawn, nodes = np.repeat(surface.drawn, 3)[usable], nodes[usable]
-        order = np.argsort(nodes, kind="stable")
-        self._around = drawn[order]
-        self._nodes, self._first, self._count = np.unique(
-            nodes[order], return_index=True, return_counts=True
-        )
-        self._tree = scipy.spatial.cKDTree(self._points[self._nodes])
+        corners = surface.corners_of(surface.drawn)
+        solid = solid_triangles(self._points, corners)
+        self._drawn = surface.drawn[solid]
+        self._tree = scipy.spatial.cKDTree(self._points[corners[solid]].mean(axis=1))
         # A periodic axis goes around in space, or is repeated at a period's distance.
         far = np.logical_and(surface.periodic, np.logical_not(surface.closes))
         turns = [(0.0, -1.0, 1.0) if repeats else (0.0,) for repeats in far]
@@ -144,17 +140,14 @@ class Locator:
         Returns them as (j, i), (P, 2), and their distances in sizes of their cell, (P,). On a flat
         map of one period, points in the periods beside it count as well.
         """
-        starts = min(START_NODES, len(self._nodes))
+        starts = min(STARTS, len(self._drawn))
         at = (points[:, None] - self._shifts).reshape(-1, 3)
         near = np.reshape(self._tree.query(at, k=np.arange(1, starts + 1))[1], (-1, starts))
         best = np.full(len(at), np.inf)
         triangle = np.zeros(len(at), dtype=np.intp)
         shares = np.zeros((len(at), 3))
-        for node in near.T:
-            for turn in range(int(self._count[node].max())):
-                numbers = np.flatnonzero(self._count[node] > turn)
-                beside = self._around[self._first[node[numbers]] + turn]
-                self._try(at, numbers, beside, (best, triangle, shares))
+        for middle in near.T:
+            self._try(at, np.arange(len(at)), self._drawn[middle], (best, triangle, shares))
         self._walk(at, (best, triangle, shares))
         corners = self._points[self.surface.corners_of(triangle)]
         # The diagonal of a cell is not its size.

@@ -24,7 +24,6 @@ from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.validation import finite_nodes
 
-SAME_POINT_SHARE = 1e-12  #: Nodes closer than this share of the surface's extent lie at one point.
 #: Corners of the two triangles of a cell, as (j, i) from its first corner.
 CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
 #: Steps (j, i) to the cells across the edges opposite to these corners.
@@ -150,25 +149,6 @@ class GridSurface(NodeSurface):
             f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point on the "
             "drawn surface"
         )
-
-    @cached_property
-    def apart(self) -> Bools:
-        """Drawn nodes at distinct places, (J, I); all drawn nodes where none is.
-
-        Where many nodes lie at one point, those nearest to a point beside it may be on the far
-        side; the nodes of the next line are more useful.
-        """
-        drawn, shared = np.zeros((2, *self.shape), dtype=bool)
-        drawn.ravel()[self.corners_of(self.drawn)] = True
-        for axis in (0, 1):
-            lines, same = np.swapaxes(self.points, 0, axis), np.swapaxes(shared, 0, axis)
-            steps = np.linalg.norm(np.diff(lines, axis=0), axis=-1)
-            together = steps <= SAME_POINT_SHARE * self.extent
-            same[:-1] |= together
-            same[1:] |= together
-        for pole in self.poles or ():
-            pole.lines(shared)[pole.line] = True
-        return drawn & ~shared if (drawn & ~shared).any() else drawn
 
     @cached_property
     def padded(self) -> Floats:

@@ -186,13 +186,6 @@ class TriangleSurface(NodeSurface):
             )
         return index, int(j), self.corners_at(index[::-1])[1]
 
-    @cached_property
-    def apart(self) -> Bools:
-        """Nodes of drawn triangles, (1, N); those at one place are one."""
-        used = np.zeros(self.shape, dtype=bool)
-        used[0, self.triangles[self.cells]] = True
-        return used
-
     def node_near(self, index: Sequence[float]) -> tuple[int, int]:
         """Return the first node of the triangle at a position (j, i)."""
         return 0, int(self.triangles[int(index[0])][0])
