@@ -43,7 +43,6 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
 }
 LABELS = {"lod": "Level of detail"}  #: Labels that are not the name.
 SLIDER_RANGE = 500  #: Widest range of a slider.
-SLIDER_STEPS = 400  #: Most steps of a slider.
 #: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
 LOGARITHMIC_RATIO = 60
 #: Words for the two values of a switch; the first two are used for output.
@@ -139,18 +138,6 @@ class Setting:
     def logarithmic(self) -> bool:
         """Whether the slider is logarithmic."""
         return bool(self.low and self.high and self.high / self.low > LOGARITHMIC_RATIO)
-
-    @property
-    def step(self) -> float:
-        """Step of a slider: a round number, of which the default is a multiple."""
-        if self.kind is int:
-            return 1
-        low, high = self.low or 0.0, self.high or 1.0
-        for step in (0.01, 0.02, 0.05, 0.1):
-            steps = (self.default - low) / step
-            if (high - low) / step <= SLIDER_STEPS and abs(steps - round(steps)) < 1e-6:
-                return step
-        return 0.25
 
     @property
     def expected(self) -> str:

@@ -231,7 +231,6 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([lambda q: q, "y"], "takes q; expected one of: x, y"),
         ([lambda x: x[:2], "y"], "does not return numbers at nodes of shape"),
         (["pendulu"], "known formula; did you mean 'pendulum'"),
-        (["pendulum", "on"], "'pendulum' is a known formula and ... ; omit 'on'"),
     ],
     partial(flowtex.formula, "pendulum"): [({"c": 1}, "Pendulum has no parameter 'c'; ... : b")],
     line_field: [
@@ -323,7 +322,6 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"clim": "ab"}, "clim is 'ab'; expected two numbers, (low, high), the lower one"),
         ({"clim": (2, 1)}, 'clim is (2, 1); expected ... the lower one first, or "robust"'),
         ({"cmap": "virdis"}, "colour map 'virdis' does not exist; did you mean 'viridis'"),
-        ({"cmap": "cmocean.speed"}, "install cmocean, and give its name there"),
         ({"cmap": 3}, "the colour map 3 does not exist; expected a name"),
         ({"color": "greyy"}, "greyy"),
         ({"axes": "bar"}, "axes is 'bar'; expected 'ticks', 'scale', 'none', or None"),

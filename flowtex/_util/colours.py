@@ -30,7 +30,6 @@ CMAPS = (
     *("viridis", "cividis", "magma", "inferno", "plasma", "gray", "Blues_r", "YlGnBu_r", "turbo"),
     *("coolwarm", "RdBu_r", "twilight"),
 )
-PACKAGES = ("cmocean", "cmcrameri", "colorcet")  #: Packages whose maps are found by their names.
 #: Maps with a middle, by the names of matplotlib, cmocean and cmcrameri.
 DIVERGING = frozenset(
     (
@@ -128,9 +127,6 @@ def _named_table(name: Any, count: int) -> Bytes:
         return _resampled(np.asarray(pv.LookupTable(name, n_values=count).values), count)
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"
-        package, _, rest = str(name).partition(".")
-        if package in PACKAGES:
-            hint = f"install {package}, and give its name there, {rest!r}"
         raise FieldError(f"the colour map {name!r} does not exist; {hint}") from error
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import is_number
-from flowtex.errors import FieldError, import_extra, notify
+from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -138,14 +138,6 @@ def time_within(start: Any, times: Any, date: Any) -> float:
     time = seconds_since(start, date)
     if not float(times[0]) <= time <= float(times[-1]):
         raise FieldError(f"time is {date!r}; expected {expected_times(start, times)}")
-    if start is not None and isinstance(date, (int, np.integer)) and 0 < date < len(times):
-        step = float(times[1] - times[0])
-        if date < step:
-            text = date_text(start, float(times[int(date)]), step)
-            notify(
-                f"time is {date}, in seconds since {date_text(start, 0, step)}, and the steps are "
-                f"{step:g} s apart; a step is named by its date, as in time={text!r}"
-            )
     return time
 
 

@@ -72,14 +72,3 @@ def test_what_a_steady_field_has_no_use_for_is_said() -> None:
         scene = Scene.of(field, lines="pathlines")
     with pytest.warns(Notice, match="time is '2001-01-01', but the field is steady"):
         scene.time = "2001-01-01"
-
-
-def test_a_number_of_seconds_before_the_second_date_is_told() -> None:
-    days = np.datetime64("2002-01-01", "ns") + np.arange(8) * np.timedelta64(1, "D")
-    points, velocity = np.zeros((2, 3, 2)), np.ones((8, 2, 3, 2))
-    points[..., 0], points[..., 1] = np.meshgrid(range(3), range(2))
-    scene = Scene(FlowField.from_arrays(points, velocity, times=days))
-    with pytest.warns(Notice, match=r"^time is 4, in seconds .* as in time='2002-01-05'$"):
-        scene.time = 4
-    scene.time = 4.0  # of a slider
-    scene.time = 86400

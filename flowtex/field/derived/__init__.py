@@ -92,8 +92,9 @@ def steps_of(field: Any, name: str) -> Steps:
         return field.speed
     if name in (other := with_vector_scalar(field, name)).scalars:
         return other.scalars[name]
-    known = ("speed", *field.scalars, *vector_names(field), *DERIVED)
-    names = ", ".join(map(repr, dict.fromkeys(known)))
+    vectors = [field.vectors or UNNAMED, *(part[:-2] for part in field.parts)]
+    vectors = [] if field.projection is not None else vectors
+    names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *DERIVED])))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
     if COMPONENT.search(name):
         msg += "; a component is named as in 'U_x', or chosen by component=0"
@@ -180,10 +181,3 @@ def with_vector_scalar(field: Any, name: str) -> Any:
         units={**field.units, **({name: unit} if unit else {})},
         long_names={**field.long_names, name: long_name},
     )
-
-
-def vector_names(field: Any) -> tuple[str, ...]:
-    """Return the names of the vectors of a field whose magnitudes and components are scalars."""
-    if field.projection is not None:
-        return ()
-    return tuple(dict.fromkeys([field.vectors or UNNAMED, *(n[:-2] for n in field.parts)]))

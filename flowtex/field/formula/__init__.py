@@ -90,13 +90,10 @@ class Parameter:
         except (TypeError, ValueError, OverflowError):
             value = low = high = np.nan
         if not (low <= value <= high and low < high and np.isfinite(high - low)):
-            msg = (
+            raise FieldError(
                 f"{name} is {raw!r}; expected a number, or value, low and high of a slider, such "
                 "as (0.2, 0, 1)"
             )
-            if np.shape(raw) == (2,):
-                msg += ". If it is a coordinate, name it x or y, in the expressions as well"
-            raise FieldError(msg)
         return cls(value, float(low), float(high))
 
 

@@ -122,11 +122,6 @@ def formula(
             if key not in defaults:
                 raise FieldError(f"{title} has no parameter {key!r}; {near_names(key, defaults)}")
         parameters = {**defaults, **parameters}
-    elif expressions and isinstance(expressions[0], str) and expressions[0] in KNOWN:
-        rest = " and ".join(map(repr, expressions[1:]))
-        raise FieldError(
-            f"{expressions[0]!r} is a known formula and takes no other expression; omit {rest}"
-        )
     steps = None if times is None else _times(times)
     ranges = {"x": x, "y": y, "u": u, "v": v}
     flow = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
