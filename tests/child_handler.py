@@ -86,9 +86,9 @@ class Handler:
 
 
 class TrickyReader(Reader):
-    """A reader of files that does what the level which it is requested says."""
+    """A reader of files that does what it is told."""
 
-    def do_plane_of(self, level: float | str) -> Answer:
+    def do_trick(self, level: str) -> Answer:
         """Return the number of this process, change the file, or end badly."""
         if level == "crash":
             ctypes.string_at(0)
@@ -104,7 +104,7 @@ class TrickyReader(Reader):
 
     def do_step(self, steps: int, number: int) -> Answer:
         """Read a step, but for the third."""
-        return self.do_plane_of("crash") if number == 2 else super().do_step(steps, number)
+        return self.do_trick("crash") if number == 2 else super().do_step(steps, number)
 
 
 class ChangingReader(Reader):

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from flowtex import examples
-from flowtex._util.progress import waiting
 from flowtex.cli.commands import begin, serve_library, serve_processes
 from flowtex.cli.console import check_lines, drawing, load_field
 from flowtex.cli.options import (
@@ -28,7 +27,6 @@ from flowtex.examples import NAMES
 from flowtex.field.formula.make import KNOWN
 
 if TYPE_CHECKING:
-    from flowtex.app import Library
     from flowtex.field import FlowField
     from flowtex.sources.open_source import MeshSource
 
@@ -77,7 +75,6 @@ def demo(
     makers |= {name.replace("_", " "): partial(formula, name) for name in KNOWN}
     library = Library(
         {title: partial(_source, make) for title, make in makers.items()},
-        python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
         looks=FIRST_LOOKS,
         typed=True,
     )
@@ -139,44 +136,16 @@ def _show_page(
     from flowtex.app import Library
     from flowtex.pyramid.source import has_parts
 
-    if len(files) == 1 and has_parts(files[0]):
-        return serve_library(Library.of(load_field(files, choice)), page, options)
     is_one_flow = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
-    if is_one_flow and (library := _earth_library(files, choice)) is not None:
-        return serve_library(library, page, {**options, **choice})
-    if is_one_flow and any(name in choice for name in FIELD_OPTIONS):
+    if is_one_flow and (any(name in choice for name in FIELD_OPTIONS) or has_parts(files[0])):
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         raise UsageError(
             f"--{misplaced[0].replace('_', '-')} can be used with one file, not with several "
             "files or a folder"
         )
-    return serve_library(Library.of(*files), page, {**options, **choice})
-
-
-def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
-    """Return a library of data of the Earth, or ``None`` where the page cannot have one."""
-    from flowtex.app import Library
-    from flowtex.field.earth import GLOBE, NAMES
-    from flowtex.sources.opening.dataset_files import dataset_paths
-
-    choices_of_page = {"vectors", "projection", "globe", "level"}
-    if not dataset_paths(files) or set(choice) - choices_of_page:
-        return None
-    block = GLOBE if choice.get("globe") else choice.get("projection", "")
-    if block not in ("", GLOBE, *NAMES):
-        return None
-    library = Library.of(list(files))
-    level = choice.pop("level", None)
-    for name in ("projection", "globe"):
-        choice.pop(name, None)
-    with waiting(f"Reading {files[0].name}"):
-        source = library.source(library.names[0])
-        if level is not None:
-            choice["plane"] = source.plane_of(level)
-    if block:
-        choice["block"] = block
-    return library
+    library = Library.of(list(files)) if is_one_flow else Library.of(*files)
+    return serve_library(library, page, {**options, **choice})
 
 
 def _is_folder(path: Path) -> bool:

@@ -20,7 +20,7 @@ from flowtex.errors import FieldError, Notice
 from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
 from flowtex.field.options import FieldOptions
-from flowtex.sources.datasets.axes import LEVEL, Choice, axis_values, choose
+from flowtex.sources.datasets.axes import axis_values
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.maps import projection_of
@@ -124,10 +124,6 @@ class FlowSource:
         if number.isdecimal() and int(number) < len(words):
             return words[int(number)]
         return "outer surface" if axis == OUTER else plane.replace("=", " = ")
-
-    def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, in the form of :attr:`default_plane`."""
-        raise FieldError(f"level is {level!r}; expected a dataset, but this is a mesh")
 
     def field(
         self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
@@ -311,13 +307,6 @@ class DatasetSource(FlowSource):
         if name := next(iter(self.axes), ""):
             self.default_plane = f"{name}={flow.drawn.numbers.get(name, 0)}"
         self._datasets.close()
-
-    def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :meth:`FlowSource.plane_of` does."""
-        array = variable(self._datasets, str(two_names(self.vectors[0])[0]))
-        drawn = choose(array, Choice({LEVEL: level}), Record())
-        self._datasets.close()
-        return f"{LEVEL}={drawn.numbers.get(LEVEL, 0)}"
 
     def part(self, block: str | None = None) -> FlowSource:
         """Return this source, which draws on any of the maps."""

@@ -100,10 +100,6 @@ class Reader:
         """Describe the choices of a block."""
         return describe_source(self._opened.part(block)), []
 
-    def do_plane_of(self, level: float | str) -> Answer:
-        """Find the plane of a level."""
-        return self._opened.plane_of(level), []
-
     def do_field(self, **options: Any) -> Answer:
         """Make a field."""
         return pack_field(self._opened.field(**options), self._keep)
@@ -245,10 +241,6 @@ class RemoteSource(FlowSource):
             self._parts[block] = part
             self.nbytes += part.nbytes if self.reads_late else 0
         return self._parts[block]
-
-    def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :meth:`FlowSource.plane_of` does."""
-        return str(self._file.ask("plane_of", level=level)[0])
 
     def field(
         self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any

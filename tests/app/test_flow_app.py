@@ -20,7 +20,6 @@ from flowtex import examples
 from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
-from flowtex.sources.open_source import MeshSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -90,11 +89,3 @@ def test_a_file_that_cannot_be_drawn_does_not_hide_the_others(tmp_path: Path) ->
         first_choice(Library.of(tmp_path), {})
     write_flow(tmp_path / "c.vti")
     assert first_choice(Library.of(tmp_path), {})[0] == "c.vti"
-
-
-def test_lines_of_python_make_the_flow_that_is_shown(tmp_path: Path) -> None:
-    write_flow(tmp_path / "c.vti")
-    assert Library.of(tmp_path).python("c.vti") is None
-    made = Library({"one": lambda: MeshSource(None)}, python={"one": "make()"})
-    assert made.python("one") == "make()"
-    compile(f"field = {Library.of(pv.read(tmp_path / 'c.vti')).python('flow')}", "lines", "exec")

@@ -122,18 +122,13 @@ def test_what_another_process_reads_is_the_same(
     there.close()
 
 
-def test_levels_are_found_and_several_files_are_one_series(tmp_path: Path) -> None:
+def test_several_files_are_one_series(tmp_path: Path) -> None:
     ds = xr.open_dataset(weather(tmp_path / "all.nc", "standard"))
     paths = [tmp_path / f"winds_{n}.nc" for n in range(2)]
     for n, path in enumerate(paths):
         ds.isel(time=slice(2 * n, 2 * n + 2)).to_netcdf(path)
     source = open_remote(paths)
-    assert source.name == "winds" and source.plane_of(200) == "level=0"
-    assert len(source.field().times) == 4
-    with pytest.raises(FieldError, match="level is 'nowhere'"):
-        source.plane_of("nowhere")
-    with pytest.raises(FieldError, match="but this is a mesh"):
-        open_remote([volume(tmp_path / "block.vts")]).plane_of(20)
+    assert source.name == "winds" and len(source.field().times) == 4
 
 
 def tricky(path: Path, monkeypatch: pytest.MonkeyPatch, kind: str = "Tricky") -> RemoteSource:
@@ -149,16 +144,16 @@ def test_a_reader_that_dies_is_told_of(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(
         FieldError, match=fault + r"damaged, or needs more than [\d.]+ GB of memory"
     ):
-        source.plane_of("crash")
+        source._file.ask("trick", level="crash")
     with pytest.raises(FieldError, match=fault):
         source.field()
     assert not source.alive and field.speed.max() > 1
     monkeypatch.setattr("flowtex.sources.remote.REQUEST_TIMEOUT_S", 20.0)
     source = tricky(path, monkeypatch)
-    pid = source.plane_of("")
+    pid, _ = source._file.ask("trick", level="")
     source._file._timeout = 0.2
     with pytest.raises(FieldError, match=r"block\.vts: the reader of this file did not end within"):
-        source.plane_of("hang")
+        source._file.ask("trick", level="hang")
     wait_until(lambda: is_gone(pid))
 
 
@@ -178,10 +173,10 @@ def test_a_reader_that_fails_and_one_that_warns(
         caplog.at_level(logging.ERROR),
         pytest.raises(FieldError, match=r"block\.vts: cannot be read: '"),
     ):
-        source.plane_of("fail")
-    assert "do_plane_of" in caplog.text and "\x1b" not in caplog.text
+        source._file.ask("trick", level="fail")
+    assert "do_trick" in caplog.text and "\x1b" not in caplog.text
     with pytest.warns(Warning) as caught:
-        source.plane_of("warn")
+        source._file.ask("trick", level="warn")
     assert [(w.category, str(w.message)) for w in caught] == [
         (Notice, "something was chosen"),
         (UserWarning, "odd"),
@@ -192,7 +187,7 @@ def test_steps_are_read_later_by_the_process_that_has_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     source = tricky(weather(tmp_path / "weather.nc"), monkeypatch)
-    pid = source.plane_of("")
+    pid, _ = source._file.ask("trick", level="")
     field = source.field()
     del source
     gc.collect()
@@ -210,7 +205,7 @@ def test_the_process_ends_with_what_needs_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     source = tricky(weather(tmp_path / "weather.nc"), monkeypatch)
-    pid = source.plane_of("")
+    pid, _ = source._file.ask("trick", level="")
     part, field = source.part("globe"), source.field()
     del source, part
     gc.collect()

@@ -388,7 +388,7 @@ class FileBeside(FlowOpener):
 
     def _read(self, request: LoadRequest) -> tuple[Choice, TracedFlow]:
         """Read a flow, and make the traces for its first picture."""
-        choice = self.library.nearest(request.name, request.choice)
+        choice = self.library.complete(request.name, request.choice, nearest=True)
         field = self.library.field(request.name, choice)
         flow = TracedFlow.of(field, self.settings)
         for step in sorted(set(steps_around(field.times, time_in(self.area.scene, field))[:2])):

@@ -16,14 +16,13 @@ from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from flowtex._util.arguments import checked_source
-from flowtex._util.cache import ByteCache
+from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.app.server.page import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.formula.make import is_line, line_field, line_python
+from flowtex.field.formula.make import is_line, line_field
 from flowtex.field.options import FieldOptions
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
@@ -84,8 +83,6 @@ class Library:
         Functions that open the flows, by name.
     folder
         A folder that is searched for further flows.
-    python
-        Python expressions that make the fields, by name, where they are known.
     looks
         Initial zoom and focus of flows, by name; the others are first shown as a whole.
     typed
@@ -111,14 +108,13 @@ class Library:
         self,
         openers: Mapping[str, Opener],
         folder: Path | None = None,
-        python: Mapping[str, str] | None = None,
         looks: Mapping[str, Look] | None = None,
         *,
         typed: bool = False,
     ) -> None:
         self.typed = typed
         self._named = dict(openers)
-        self._python, self._looks = dict(python or {}), dict(looks or {})
+        self._looks = dict(looks or {})
         self._folder = None if folder is None else checked_source(folder)
         #: Flows that a branch has for itself, and all that could be opened when last listed.
         self._own: dict[str, Opener] = {}
@@ -129,9 +125,7 @@ class Library:
         self._sources: ByteCache[Opener, FlowSource] = ByteCache(
             SOURCE_BYTES, max_count=MOST_SOURCES
         )
-        self._fields = WeakValueDictionary[tuple[Opener, Choice], FlowField]()
-        #: The state of the files from which each field was made.
-        self._identities = WeakKeyDictionary[FlowField, Identity]()
+        self._fields: WeakCache[FlowField] = WeakCache()
         self._making: defaultdict[Opener, threading.Lock] = defaultdict(threading.Lock)
         if self._folder is not None or any(isinstance(o, _Files) for o in openers.values()):
             prepare_readers()
@@ -227,31 +221,24 @@ class Library:
         """Return the initial zoom and focus of a flow."""
         return self._looks.get(name, (1.0, None))
 
-    def python(self, name: str) -> str | None:
-        """Return the expression that makes a flow, or ``None`` for a file."""
-        if self.is_file(name):
-            return None
-        if self._is_line(name):
-            return line_python(name)
-        return self._python.get(name, "...  # the mesh or the field that was given")
+    def complete(self, name: str, choice: Choice, *, nearest: bool = False) -> Choice:
+        """Complete a choice with the middle plane and the first array of vectors.
 
-    def complete(self, name: str, choice: Choice) -> Choice:
-        """Complete a choice with the middle plane and the first array of vectors."""
-        source = self.source(name)
-        block = choice.block or (source.blocks[0] if source.blocks else "")
+        With ``nearest`` only those parts of it are used that the file has.
+        """
+        source, (block, vectors, plane) = (
+            self.source(name),
+            (choice.block, choice.vectors, choice.plane),
+        )
+        if nearest and block not in source.blocks:
+            block = ""
+        block = block or next(iter(source.blocks), "")
         part = source.part(block or None)
-        plane = choice.plane or part.default_plane
-        vectors = choice.vectors or (part.vectors[0] if part.vectors else "")
-        return Choice(vectors, plane, block)
-
-    def nearest(self, name: str, choice: Choice) -> Choice:
-        """Complete a choice, of which only the parts that the file has are used."""
-        source = self.source(name)
-        block = choice.block if choice.block in source.blocks else ""
-        part = source.part(block or (source.blocks[0] if source.blocks else None))
-        vectors = choice.vectors if choice.vectors in part.vectors else ""
-        plane = "" if part.plane_number(choice.plane) is None else choice.plane
-        return self.complete(name, Choice(vectors, plane, block))
+        if nearest:
+            vectors = vectors if vectors in part.vectors else ""
+            plane = "" if part.plane_number(plane) is None else plane
+        vectors = vectors or next(iter(part.vectors), "")
+        return Choice(vectors, plane or part.default_plane, block)
 
     def field(self, name: str, choice: Choice) -> FlowField:
         """Return a flow, and make it if necessary; nothing is traced.
@@ -262,16 +249,13 @@ class Library:
             When the file does not exist, or the choice does not contain a flow.
         """
         opener = self._opener(name)
-        field = self._fields.get((opener, choice))
-        if field is None or self._identities[field] != _identity(opener):
+
+        def make() -> FlowField:
             source = self.source(name)
             with self._making[opener]:
-                field = source.field(
-                    vectors=choice.vectors or None, plane=choice.plane, block=choice.block or None
-                )
-            self._identities[field] = source.identity
-            self._fields[opener, choice] = field
-        return field
+                return source.field(choice.vectors or None, choice.plane, choice.block or None)
+
+        return self._fields.get((opener, choice, _identity(opener)), make)
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
@@ -340,23 +324,19 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
     from flowtex.sources.meshes.plot3d import find_grid
 
     files: list[tuple[str, Path]] = []
-    waiting = [(folder, 0)]
-    while waiting and len(files) < MOST_FILES:
-        parent, depth = waiting.pop(0)
-        try:
-            paths = sorted(parent.iterdir())
-        except OSError:
-            continue
-        for path in paths:
+    for parent, folders, names in os.walk(folder):
+        here = Path(parent)
+        stores = [n for n in folders if is_dataset_file(here / n) and not (here / n).is_symlink()]
+        depth = len(here.relative_to(folder).parts)
+        hidden = {name for name in (*folders, *names) if name.startswith(".")}
+        folders[:] = sorted(set(folders) - {*stores, *hidden}) if depth < FOLDER_DEPTH else []
+        for path in (here / name for name in sorted({*stores, *names} - hidden)):
             real = Path(os.path.realpath(path))
-            if path.name.startswith(".") or not real.is_relative_to(folder):
-                continue
-            if path.is_dir() and not path.is_symlink() and is_dataset_file(path):
+            is_known = path.suffix.lower() in SUFFIXES | {".bin"} and path.is_file()
+            if real.is_relative_to(folder) and (is_known or path.name in stores):
                 files.append((path.relative_to(folder).as_posix(), path))
-            elif path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
-                waiting.append((path, depth + 1))
-            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
-                files.append((path.relative_to(folder).as_posix(), path))
+        if len(files) >= MOST_FILES:
+            break
     files = files[:MOST_FILES]
     members = {member for _, path in files for member in members_of(path)}
     # The solution of a PLOT3D pair is opened along with its grid.

@@ -172,13 +172,13 @@ class Sharing(Controller):
     def show_state(self) -> None:
         """Show the link and the lines of Python on the page."""
         state, beside = self.present_state(), self._beside.name
-        python = self.context.library.python
+        is_file = self.context.library.is_file
         self.state.set(
             link="#" + to_link(state),
             python=to_python(
                 state,
-                source=python(self._data.name),
-                source_beside=python(beside) if beside else None,
+                source=None if is_file(self._data.name) else "field",
+                source_beside=None if is_file(beside) else "field_beside",
                 size=self.viewport.pane_size,
             ),
         )

@@ -242,13 +242,3 @@ def with_parameter(line: str, field: FlowField, name: str, value: float) -> str:
     others = [p.strip() for p in line.split(";") if (m := _NAMED.match(p)) is None or m[1] != name]
     value = min(max(value, parameter.low), parameter.high)
     return "; ".join([*others, f"{name}={value!r},{parameter.low!r},{parameter.high!r}"])
-
-
-def line_python(line: str) -> str:
-    """Return the expression of Python that makes the flow of a line."""
-    expressions, named = line_arguments(line)
-    times = named.pop("times", None)
-    inputs = [*map(repr, expressions), *(f"{name}={value!r}" for name, value in named.items())]
-    if times is not None:
-        inputs.append(f"times=np.linspace({float(times[0])!r}, {float(times[-1])!r}, {len(times)})")
-    return f"flowtex.formula({', '.join(inputs)})"

@@ -18,7 +18,7 @@ import flowtex
 from flowtex import FieldError
 from flowtex.field.formula import FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
-from flowtex.field.formula.make import KNOWN, is_line, line_field, line_python, with_parameter
+from flowtex.field.formula.make import KNOWN, is_line, line_field, with_parameter
 from flowtex.rendering.webgl.velocity import client_formula
 from flowtex.scene.scene import Scene
 
@@ -188,19 +188,18 @@ def test_known_formulas_have_names(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "python"),
+    "line",
     [
-        ("y; -sin(x) - b*y; x=-7,7; b=0.2", "'y', '-sin(x) - b*y', x=(-7.0, 7.0), b=0.2"),
-        ("van der pol", "'van der pol'"),
-        ("pendulum; b=0.5,0,2", "'pendulum', b=(0.5, 0.0, 2.0)"),
-        ("cos(t); x; t=0,1,3", "'cos(t)', 'x', times=np.linspace(0.0, 1.0, 3)"),
-        ("1; 0; surface=torus", "'1', '0', surface='torus'"),
-        ("where(x >= 0, 1, 2); y", "'where(x >= 0, 1, 2)', 'y'"),
+        "y; -sin(x) - b*y; x=-7,7; b=0.2",
+        "van der pol",
+        "pendulum; b=0.5,0,2",
+        "cos(t); x; t=0,1,3",
+        "1; 0; surface=torus",
+        "where(x >= 0, 1, 2); y",
     ],
 )
-def test_a_line_is_a_flow(line: str, python: str) -> None:
+def test_a_line_is_a_flow(line: str) -> None:
     assert is_line(line) and not is_line("wing.vtu")
-    assert line_python(line) == f"flowtex.formula({python})"
     given = line.partition("; b=0.5")[0]
     field = line_field(line)
     assert field.formula is not None

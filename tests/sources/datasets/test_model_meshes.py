@@ -205,7 +205,6 @@ def test_a_source_offers_levels_and_maps() -> None:
     source = DatasetSource(fvcom(globe(200)))
     assert source.vectors == ("u,v", "ua,va") and source.planes == {"level": 3}
     assert source.default_plane == "level=0" and source.plane_text("level=2") == "-0.9"
-    assert source.plane_of(-0.5) == "level=1"
     assert source.blocks[:2] == ("platecarree", "globe")
     field = source.field(plane="level=1", block="globe")
     assert field.name == "siglay -0.5" and field.surface.on_globe
