@@ -91,7 +91,7 @@ class FlowApp:
         The view, what it draws, and the stream of pictures to the page.
     state
         The state of the page, whose names are prefixed for this application.
-    context, controllers
+    context, data, beside, appearance, viewpoint, sharing
         The parts that act on the view.
 
     Raises
@@ -123,10 +123,14 @@ class FlowApp:
         self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
         self.state.set(panel=False, group="View", help=False, problem="")
-        self.controllers = Controllers(self.context, name, choice, self.restore)
+        self.data = Data(self.context, name, choice)
+        self.beside = FileBeside(self.context, self.data)
+        self.appearance = Appearance(self.context, self.beside)
+        self.viewpoint = Viewpoint(self.context)
+        self.sharing = Sharing(self.context, self.data, self.beside, self.restore)
         self.context.field_changed.connect(self._name_page)
         self._name_page()
-        self.layout = build_page(self.controllers)
+        self.layout = build_page(self)
 
     @property
     def field(self) -> FlowField:
@@ -139,12 +143,12 @@ class FlowApp:
 
     def restore(self, state: State) -> None:
         """Show the state of a link."""
-        data = self.controllers.data
         choice = Choice(*(str(state.get(name, "")) for name in CHOICE_ARGUMENTS))
         if "file" not in state and choice == Choice():
             self._restore(state)
         else:
-            data.open(str(state.get("file", data.name)), choice, lambda: self._restore(state))
+            name = str(state.get("file", self.data.name))
+            self.data.open(name, choice, lambda: self._restore(state))
 
     def _restore(self, state: State) -> None:
         try:
@@ -153,6 +157,11 @@ class FlowApp:
         except FieldError as error:
             self.context.complain(error)
         self.area.changed()
+
+    def cancel_opening(self) -> None:
+        """Stop opening files, in either pane."""
+        self.data.cancel()
+        self.beside.cancel()
 
     def close(self) -> None:
         """End the tasks and free the graphics memory."""
@@ -195,25 +204,6 @@ class Viewpoint(Controller):
             self.area.look(saved["camera"])
         if "time" in saved and not self.viewport.field.steady:
             self.area.player.go_to(float(saved["time"]))
-
-
-class Controllers:
-    """All controllers of a page; ``restore_state`` is called with the state that a link holds."""
-
-    def __init__(
-        self, context: Context, name: str, choice: Choice, restore_state: Callable[[State], None]
-    ) -> None:
-        self.context = context
-        self.data = Data(context, name, choice)
-        self.beside = FileBeside(context, self.data)
-        self.appearance = Appearance(context, self.beside)
-        self.viewpoint = Viewpoint(context)
-        self.sharing = Sharing(context, self.data, self.beside, restore_state)
-
-    def cancel_opening(self) -> None:
-        """Stop opening files, in either pane."""
-        self.data.cancel()
-        self.beside.cancel()
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
@@ -323,31 +313,30 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
     return lambda server: FlowApp(library, server=server, **options)
 
 
-def build_page(controllers: Controllers) -> Any:
+def build_page(app: FlowApp) -> Any:
     """Build the page; return trame's layout, whose ``html`` is the text of the page."""
-    context, data, sharing = controllers.context, controllers.data, controllers.sharing
-    state, server = context.state, context.state.server
+    state, data, sharing = app.state, app.data, app.sharing
     actions = {
         "list_files": data.list_files,
         "reload": data.reload,
-        "cancel_opening": controllers.cancel_opening,
-        "look_from": controllers.viewpoint.look_from,
+        "cancel_opening": app.cancel_opening,
+        "look_from": app.viewpoint.look_from,
         "save": sharing.start,
         "cancel_saving": sharing.cancel,
         "show_state": sharing.show_state,
         "take_link": sharing.take_link,
     }
-    words = {**WORDS, **{name: server.trigger_name(call) for name, call in actions.items()}}
-    words["TYPED"] = "true" if context.library.typed else "false"
+    words = {**WORDS, **{name: app.server.trigger_name(call) for name, call in actions.items()}}
+    words["TYPED"] = "true" if app.context.library.typed else "false"
     # All other names are those of values of the page's state.
     page = re.sub(
         r"%(\w+)", lambda m: words.get(m[1], state.key(m[1])), TEMPLATE.read_text("utf-8")
     )
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
     before, after = page.split(VIEW)
-    with VAppLayout(server, vuetify_config=config) as layout:
+    with VAppLayout(app.server, vuetify_config=config) as layout:
         layout.root.theme = (state.key("theme"),)
         layout.root.add_child(before)
-        context.area.ui(classes="flowtex-area")
+        app.area.ui(classes="flowtex-area")
         layout.root.add_child(after)
     return layout

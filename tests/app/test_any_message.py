@@ -33,14 +33,14 @@ def app() -> Iterator[FlowApp]:
 @property_test(40)
 @given(junk(), junk(), links())
 def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link: str) -> None:
-    controllers, element = app.controllers, app.area.element
+    element = app.area.element
     names = ("theme", "background", "compare", "painter")
     before = {name: app.state.get(name) for name in names}
     look = app.area.scene.appearance
 
     async def story() -> None:
         element.begin(one)
-        controllers.viewpoint.look_from(one)
+        app.viewpoint.look_from(one)
         for setting in (one, ["samples", two], [one, two]):
             element.take_setting(setting)
         element.take_colours(one)
@@ -50,8 +50,8 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link
         element.take_time(one)
         element.take_clock(two)
         element.take_playing(one)
-        controllers.sharing.take_link(one)
-        controllers.sharing.take_link(link)
+        app.sharing.take_link(one)
+        app.sharing.take_link(link)
         element.take_camera(two)
         element.take_camera({"position": [one, two, 0], "parallel_scale": two})
         for at in (one, {"place": [one, two]}, {"index": [two, one]}, {"position": [one, two, 0]}):
@@ -61,9 +61,9 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link
         app.stream.on_interaction("test", one)
         app.state.set(**dict.fromkeys(names, one))
         for take in (
-            controllers.appearance.take_background,
-            controllers.appearance.take_comparison,
-            controllers.appearance.take_painter,
+            app.appearance.take_background,
+            app.appearance.take_comparison,
+            app.appearance.take_painter,
         ):
             take()
 

@@ -50,7 +50,7 @@ def block(size: tuple[int, int, int] = (9, 8, 7), *arrays: str) -> pv.ImageData:
 
 def opened(app: FlowApp) -> bool:
     """Return whether nothing is being opened."""
-    return app.controllers.data._opening is None or app.controllers.data._opening.done()
+    return app.data._opening is None or app.data._opening.done()
 
 
 @pytest.fixture(scope="module")
@@ -110,10 +110,10 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
     for junk in [j for j in JUNK if j not in (2.5, True)]:
         app.state.set(**{"out_format": "PNG" if name == "out_width" else "GIF", name: junk})
         app.state.set(problem="")
-        app.controllers.sharing.start()
+        app.sharing.start()
         assert 0 < len(app.state.get("problem")) < 1000
         assert app.state.get("out_progress") is None
-        assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
+        assert list(app.sharing.downloads.folder.iterdir()) == []
     app.state.set(**before, problem="")
 
 
@@ -122,7 +122,7 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
 
 async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
     app = small_page(Library.of(block(), small(name="other")))
-    data = app.controllers.data
+    data = app.data
 
     async def send(name: str, junk: Any, before: tuple[str, Choice]) -> None:
         app.state.set(problem="", **{name: junk})
@@ -148,7 +148,7 @@ async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
 def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.Event]:
     """Let each plane be opened when its event is set, or when it is not wanted any more."""
     gates: dict[str, threading.Event] = {}
-    library = app.controllers.data.library
+    library = app.data.library
     read = library.field
 
     def waiting(name: str, choice: Choice) -> Any:
@@ -168,7 +168,7 @@ async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.Mo
     show = app.context.show
 
     def noted(*arguments: Any, **options: Any) -> None:
-        shown.append(app.controllers.data.choice.plane)
+        shown.append(app.data.choice.plane)
         show(*arguments, **options)
 
     monkeypatch.setattr(app.context, "show", noted)
@@ -181,7 +181,7 @@ async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.Mo
             await until(lambda index=index: told[-1:] == [index] and "k=4" in gates)
         for gate in ("k=4", "k=5", "k=6"):
             gates.setdefault(gate, threading.Event()).set()
-        await until(lambda: app.controllers.data.choice.plane == "k=6" and opened(app))
+        await until(lambda: app.data.choice.plane == "k=6" and opened(app))
         # What had begun was seen on the way, and the slider heard nothing of it.
         assert shown == ["k=4", "k=6"] and told == [4, 5, 6]
         # Away and back again before the other one was there: it stays away.
@@ -202,7 +202,7 @@ async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
     async with playing(app):
         before, failing = app.field, raising(RuntimeError("reader crashed"))
         places: list[tuple[Any, str]] = [
-            (app.controllers.data.library, "field"),
+            (app.data.library, "field"),
             (TracedFlow, "of"),
             (app.context, "show"),
         ]
@@ -213,11 +213,11 @@ async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
                 await until(lambda: "reader crashed" in app.state.get("problem"))
                 await until(lambda: opened(app))
             assert app.field is before and app.state.get("busy") == ""
-            assert app.state.get("file") == app.controllers.data.name != "other"
+            assert app.state.get("file") == app.data.name != "other"
             assert app.state.get("index") == 3 and "reader crashed" in caplog.text
             app.state.send(problem="")
         app.state.send(file="other")
-        await until(lambda: app.controllers.data.name == "other" and app.state.get("axes") == [])
+        await until(lambda: app.data.name == "other" and app.state.get("axes") == [])
 
 
 async def test_blocks_have_planes_of_their_own() -> None:
@@ -228,18 +228,18 @@ async def test_blocks_have_planes_of_their_own() -> None:
     app, beside = small_page(library), small_page(library)
     async with playing(app):
         app.state.send(index=15)
-        await until(lambda: app.controllers.data.choice.plane == "k=15")
+        await until(lambda: app.data.choice.plane == "k=15")
         app.state.send(block="small")
-        await until(lambda: app.controllers.data.choice == Choice("other", "k=2", "small"))
+        await until(lambda: app.data.choice == Choice("other", "k=2", "small"))
         await until(lambda: app.state.get("planes") == 3)
         assert app.state.get("vectors_choices") == ["other", "third"]
         # Another page, which shows the other block, sees nothing of it.
-        assert beside.controllers.data._options()["planes"] == 19
-        beside.controllers.data.take_choice()
-        assert beside.controllers.data._opening is None
+        assert beside.data._options()["planes"] == 19
+        beside.data.take_choice()
+        assert beside.data._opening is None
         beside.close()
         app.state.send(block="large")
-        await until(lambda: app.controllers.data.choice == Choice("velocity", "k=10", "large"))
+        await until(lambda: app.data.choice == Choice("velocity", "k=10", "large"))
 
 
 async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None:
@@ -251,12 +251,12 @@ async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -
         app.area.element.take_time(1.0)
         app.viewport.camera = camera = pan(app.viewport.camera, 0.2, 0.1, app.viewport.aspect)
         app.state.send(index=5)
-        await until(lambda: app.controllers.data.choice.plane == "k=5")
+        await until(lambda: app.data.choice.plane == "k=5")
         assert app.viewport.handle.time == 1.0
         assert app.area.scene.scalar_limits == (-1.0, 99.0)
         assert app.viewport.camera == camera
         app.state.send(file="other")
-        await until(lambda: app.controllers.data.name == "other" and app.field.steady)
+        await until(lambda: app.data.name == "other" and app.field.steady)
         assert app.area.scalars == "speed" and app.area.clim is None
 
 
@@ -295,7 +295,7 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
     app.viewport.camera = pan(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
     app.area.reset_camera()
     assert 0.5 < seen() <= 1.0
-    for view in app.controllers.viewpoint.views:
-        app.controllers.viewpoint.look_from(view)
+    for view in app.viewpoint.views:
+        app.viewpoint.look_from(view)
         assert 0.3 < seen() <= 1.0
     app.close()

@@ -37,8 +37,7 @@ class Context:
         self.state, self.area, self.library = state, area, library
         self.routes = Routes.of(state.server)  #: The files that the page may fetch.
         self.controllers: list[Controller] = []  #: All, in the order in which they were made.
-        #: Signals after another flow is shown, and after a change of the file beside it.
-        self.field_changed, self.beside_changed = Signal(), Signal()
+        self.field_changed = Signal()  #: Signal after another flow is shown.
         area.element.failed.connect(self.complain)
 
     def complain(self, problem: object) -> None:

@@ -305,7 +305,6 @@ class FileBeside(FlowOpener):
         """Forget the file, after another second pane or none has replaced it."""
         self._active = False
         self._forget()
-        self.context.beside_changed.emit()
 
     def cancel(self) -> None:
         """Stop opening; one pane is shown until a file is chosen."""
@@ -406,14 +405,12 @@ class FileBeside(FlowOpener):
         self.area.element.names = self._names()
         if self.viewport.differences.get("field") is not flow.field:
             self.area.compare({"field": flow.field})
-        self.context.beside_changed.emit()
         self.show_names()
 
     def _fail(self) -> None:
         """Show one pane, until another file is chosen."""
         self._forget()
         self.area.compare(None)
-        self.context.beside_changed.emit()
         self.state.send(file_beside="", busy="")
 
     def _forget(self) -> None:

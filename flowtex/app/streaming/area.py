@@ -32,7 +32,6 @@ from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import Change, Scene
-from flowtex.settings import Signal
 
 
 class FlowArea(AppearanceAttributes):
@@ -58,8 +57,6 @@ class FlowArea(AppearanceAttributes):
         The element on the page, and the values at points.
     scalars, cmap, clim, log_scale, color, opacity, visible, lighting
         Arguments of ``plotter.flowtex.add``, which can be changed.
-    appearance_changed
-        Signal that is sent after a change of these.
 
     Raises
     ------
@@ -89,7 +86,6 @@ class FlowArea(AppearanceAttributes):
         self.player = Player(self.viewport, self.stream)
         self.element = Element(self.state, self.viewport, self.stream, self.player, axes)
         self.points = PointReader(self.viewport)
-        self.appearance_changed = Signal()
         self._tasks: list[asyncio.Task[None]] = []
         settings = self.settings.observe(lambda name, value: self._changed())
         self._ends = (settings, self.scene.observe(self._scene_changed))
@@ -190,7 +186,6 @@ class FlowArea(AppearanceAttributes):
 
     def _scene_changed(self, affects: Change) -> None:
         if affects == "appearance":
-            self.appearance_changed.emit()
             self._changed()
 
     def _changed(self) -> None:

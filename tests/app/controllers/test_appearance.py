@@ -18,15 +18,15 @@ pytestmark = pytest.mark.usefixtures("opengl")
 
 def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat: FlowApp) -> None:
     flat.state.set(compare="Colour by: height")
-    flat.controllers.appearance.take_comparison()
+    flat.appearance.take_comparison()
     first, second = (pane.scene for pane in flat.viewport.panes)
     assert (first.scalar_name, second.scalar_name) == ("speed", "height")
     flat.area.clim, flat.area.cmap = (0.0, 1.0), "magma"
     assert second.appearance.cmap == "magma" and second.scalar_limits == (0.0, 3.0)
     flat.area.clim, flat.area.cmap = None, "viridis"
     flat.state.set(compare="nothing")
-    flat.controllers.appearance.take_comparison()
-    appearance, viewport = series.controllers.appearance, series.viewport
+    flat.appearance.take_comparison()
+    appearance, viewport = series.appearance, series.viewport
     now = viewport.handle.time
     series.state.set(compare="Another time")
     appearance.take_comparison()
@@ -53,7 +53,7 @@ def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
 
 
 def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
-    area, appearance = flat.area, flat.controllers.appearance
+    area, appearance = flat.area, flat.appearance
     before = area.scene.appearance
     look = {"colour": "height", "cmap": "magma", "clim": (0.5, 2.0)}
     appearance.restore({**look, "log_scale": True, "opacity": 0.25})
@@ -73,9 +73,9 @@ def test_a_link_switches_lines_of_a_map() -> None:
         app.area.element.take_colours({"coastlines": False})
         assert app.area.coastlines is False and app.area.graticule is not False
         assert difference(with_lines, picture(app)) > 0.2
-        saved = app.controllers.appearance.describe()
+        saved = app.appearance.describe()
         assert (saved["coastlines"], saved["graticule"]) == (False, True)
-        app.controllers.appearance.restore({"coastlines": True})
+        app.appearance.restore({"coastlines": True})
         assert difference(picture(app), with_lines) == 0
     finally:
         app.close()

@@ -43,7 +43,7 @@ async def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) ->
     examples.double_gyre(0.0).save(path)
     app = small_page(Library.of(path), 5, 120, 80)
     async with playing(app):
-        data, source = app.controllers.data, app.controllers.data._current.source
+        data, source = app.data, app.data._current.source
         assert app.state.get("is_file")
         data.reload()
         await until(lambda: data._opening is not None and data._opening.done())

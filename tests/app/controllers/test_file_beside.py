@@ -47,7 +47,7 @@ async def beside(app: FlowApp, name: str | None = None) -> None:
         app.state.send(compare=FILE)
     if name is not None:
         app.state.send(file_beside=name)
-    await until(lambda: app.controllers.beside.name == app.state.get("file_beside") != "")
+    await until(lambda: app.beside.name == app.state.get("file_beside") != "")
 
 
 async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
@@ -71,7 +71,7 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         assert second.scalars == "speed" and second.clim is None
         app.state.send(compare="nothing")
         assert len(app.viewport.panes) == 1 and not app.area.element.names
-        assert "beside_file" not in app.controllers.sharing.present_state()
+        assert "beside_file" not in app.sharing.present_state()
 
 
 async def test_the_time_is_that_of_the_first_or_the_last() -> None:
@@ -87,7 +87,7 @@ async def test_the_time_is_that_of_the_first_or_the_last() -> None:
         await beside(app, "three")
         app.state.send(file="three")
         # The file beside is the first one now, and the next one comes beside it.
-        await until(lambda: app.controllers.beside.name == "one")
+        await until(lambda: app.beside.name == "one")
         assert app.area.element.names == ("three", "one")
 
 
@@ -112,16 +112,16 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         return float(app.viewport.panes[1].field.points[0, 0, 2])
 
     async with playing(app):
-        shown = app.controllers.beside
+        shown = app.beside
         app.state.send(index=4)
-        await until(lambda: app.controllers.data.choice.plane == "k=4")
+        await until(lambda: app.data.choice.plane == "k=4")
         await beside(app)
         assert shown.name == "b.vts" and height() == pytest.approx(0.8)
         app.state.send(index=1)
-        await until(lambda: app.controllers.data.choice.plane == "k=1")
+        await until(lambda: app.data.choice.plane == "k=1")
         await until(lambda: height() == pytest.approx(0.2))
         app.state.send(index=5)
-        await until(lambda: app.controllers.data.choice.plane == "k=5")
+        await until(lambda: app.data.choice.plane == "k=5")
         await beside(app, "c.vts")
         # It has no such plane, and says which one it is.
         assert app.area.element.names == ("a.vts", "c.vts · k=1")
@@ -133,7 +133,7 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         assert len(app.viewport.panes) == 1 and not app.area.element.names
         assert (app.state.get("compare"), app.state.get("file_beside")) == (FILE, "")
         app.state.send(index=2)  # nothing is beside it that would follow
-        await until(lambda: app.controllers.data.choice.plane == "k=2")
+        await until(lambda: app.data.choice.plane == "k=2")
         await beside(app, "b.vts")
         assert height() == pytest.approx(0.4)
         before = app.viewport.panes[1]
@@ -149,13 +149,13 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
 async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(one=small(), two=other(), three=other(steps=3))
     held = threading.Event()
-    read = app.controllers.beside._read
+    read = app.beside._read
 
     def slowly(request: Any) -> Any:
         assert held.wait(PATIENCE_S)
         return read(request)
 
-    monkeypatch.setattr(app.controllers.beside, "_read", slowly)
+    monkeypatch.setattr(app.beside, "_read", slowly)
     async with playing(app):
         app.state.send(compare=FILE)
         await until(lambda: app.state.get("busy") == "Opening two")
@@ -165,12 +165,12 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
         app.state.send(file_beside="two")
         app.state.send(file_beside="three")
         held.set()
-        await until(lambda: app.controllers.beside.name)
-        assert app.controllers.beside.name == "three"
+        await until(lambda: app.beside.name)
+        assert app.beside.name == "three"
         assert len(app.viewport.panes[1].field.times) == 3
         app.state.send(file_beside="two")
         app.state.send(compare="nothing")
-        opening = app.controllers.beside._opening
+        opening = app.beside._opening
         assert opening is not None
         await until(opening.done)
         assert len(app.viewport.panes) == 1
@@ -193,7 +193,7 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         app.area.player.go_to(3.0)
         await beside(app, "two")
         app.area.scalars = "height"
-        sharing = app.controllers.sharing
+        sharing = app.sharing
         state = sharing.present_state()
         assert state["beside"]["scalars"] == "speed" and state["beside"]["time"] == 1.5
         link = to_link(state)
@@ -205,9 +205,9 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         app.area.scalars = "speed"
         app.state.send(compare="nothing")
         app.restore(from_link(link))
-        await until(lambda: app.controllers.beside.name == "two")
+        await until(lambda: app.beside.name == "two")
         app.restore(from_link(link.replace("beside_file=two", "beside_file=three")))
-        await until(lambda: app.controllers.beside.name == "three")
+        await until(lambda: app.beside.name == "three")
         app.restore(from_link(link.replace("beside_file=two", "beside_file=../four")))
         await until(lambda: app.state.get("problem"))
         assert "the file '../four'" in app.state.get("problem")
