@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias
 
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.library import Choice, Library
@@ -17,12 +17,14 @@ from flowtex.app.server.page import PageState, shortened
 from flowtex.app.streaming.area import FlowArea
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.interpolation import steps_around
+from flowtex.scene.fields import TracedFlow
 from flowtex.settings import Settings, Signal
+from flowtex.sources.open_source import FlowSource
 
 #: The state of a page by name, as in :mod:`.serialization`.
 State: TypeAlias = Mapping[str, Any]
 _log = logging.getLogger(__name__)
-T = TypeVar("T")
 #: Seconds after which the page says that something is being opened.
 BUSY_DELAY_S = 0.3
 #: Characters of a name in a message.
@@ -85,14 +87,17 @@ class LoadRequest:
     choice: Choice
     then: Callable[[], None] | None = None
     cancelled: bool = False  #: Whether its result is not to be shown.
-    #: Whether another flow was requested since, as always while a slider moves. Results of quick
-    #: work are shown nevertheless, or nothing would be seen on the way.
-    superseded: bool = False
 
-    @property
-    def over(self) -> bool:
-        """Whether it is not the latest request."""
-        return self.cancelled or self.superseded
+
+@dataclass(frozen=True, eq=False)
+class LoadedFlow:
+    """A flow that was read, with the traces of its first picture."""
+
+    name: str
+    choice: Choice
+    source: FlowSource  #: Kept here, because the library may drop it and it is slow to read again.
+    field: FlowField
+    traced: TracedFlow | None = None
 
 
 class FlowOpener(Controller):
@@ -106,21 +111,25 @@ class FlowOpener(Controller):
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
 
     def _begin(self, request: LoadRequest, *, follows: bool) -> None:
-        """Open a flow instead of the one being opened, which may be shown if this one follows."""
-        if self._request is not None and follows:
-            self._request.superseded = True
-        elif self._request is not None:
-            self._request.cancelled = True
+        """Open a flow instead of the one being opened, which may be shown if this one follows.
+
+        While a slider moves, each request follows: without results on the way nothing would be
+        seen.
+        """
+        if self._request is not None:
+            self._request.cancelled |= not follows
         self._request = request
         self._opening = asyncio.ensure_future(self._announced(request))
 
     async def _open(self, request: LoadRequest) -> None:
-        """Read and show a flow."""
         raise NotImplementedError
 
     def _fail(self) -> None:
         """Return to the old view."""
         raise NotImplementedError
+
+    def _is_latest(self, request: LoadRequest) -> bool:
+        return request is self._request and not request.cancelled
 
     async def _announced(self, request: LoadRequest) -> None:
         """Open a flow, with its progress on the page, or the reason why it fails."""
@@ -128,7 +137,7 @@ class FlowOpener(Controller):
 
         async def show_busy() -> None:
             await asyncio.sleep(BUSY_DELAY_S)
-            if not request.over:
+            if self._is_latest(request):
                 self.state.send(busy=f"Opening {name}")
 
         announcement = asyncio.create_task(show_busy())
@@ -143,31 +152,36 @@ class FlowOpener(Controller):
             problem = f"{name} could not be opened: {str(error) or type(error).__name__}"
         finally:
             announcement.cancel()
-            if not request.over:
+            if self._is_latest(request):
                 self.state.send(busy="")
-        if problem and not request.over:
+        if problem and self._is_latest(request):
             self.context.complain(problem)
             self._fail()
 
-    async def _in_thread(self, request: LoadRequest, work: Callable[[], T], *, quick: bool) -> T:
-        """Do work for a request in a thread; raises ``Stopped`` if the result is not wanted.
+    async def _read(
+        self, request: LoadRequest, time: Callable[[FlowField], float], *, nearest: bool = False
+    ) -> LoadedFlow:
+        """Read a flow, and trace it at a time, in a thread; ``Stopped`` if it is not wanted.
 
-        Quick work that has begun is finished even if another flow was requested.
+        Work that has begun is finished even if another flow was requested.
         """
 
-        def unwanted() -> bool:
-            return request.cancelled if quick else request.over
-
-        def guarded() -> T:
-            if request.over:
+        def read() -> LoadedFlow:
+            if not self._is_latest(request):
                 raise Stopped
-            with stoppable(unwanted):
-                return work()
+            with stoppable(lambda: request.cancelled):
+                choice = self.library.complete(request.name, request.choice, nearest=nearest)
+                source = self.library.source(request.name)
+                field = self.library.field(request.name, choice)
+                traced = TracedFlow.of(field, self.settings)
+                for step in sorted(set(steps_around(field.times, time(field))[:2])):
+                    traced.store.at(step)
+                return LoadedFlow(request.name, choice, source, field, traced.keep())
 
-        result = await asyncio.get_running_loop().run_in_executor(self._worker, guarded)
-        if unwanted():
+        flow = await asyncio.get_running_loop().run_in_executor(self._worker, read)
+        if request.cancelled:
             raise Stopped
-        return result
+        return flow
 
     def close(self) -> None:
         """End running tasks."""

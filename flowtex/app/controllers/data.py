@@ -1,20 +1,27 @@
 """Choice of the flow: files, arrays, and planes of a mesh of three dimensions.
 
-Reading and tracing continue in a thread. A new request cancels the one before; a large flow is
-first shown with few of its nodes, and the view on the page stays until another one can replace it.
+Reading and tracing continue in a thread. A new request cancels the one before, and the view on the
+page stays until another one can replace it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, astuple, dataclass, replace
+from dataclasses import asdict, astuple
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flowtex.app.controllers.context import Context, FlowOpener, LoadRequest, State, without_folder
+from flowtex.app.controllers.context import (
+    Context,
+    FlowOpener,
+    LoadedFlow,
+    LoadRequest,
+    State,
+    without_folder,
+)
 from flowtex.app.controllers.library import Choice
 from flowtex.app.server.files import Uploads
 from flowtex.app.server.page import clipped, name_among
@@ -22,32 +29,7 @@ from flowtex.app.streaming.viewport import time_in
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, with_parameter
-from flowtex.field.interpolation import steps_around
-from flowtex.scene.fields import TracedFlow
 from flowtex.sources.open_source import FlowSource
-from flowtex.textures.tiles.shared import coarsened_field
-
-#: Nodes of another file above which it is first shown coarser, and how many it then has.
-FILE_PREVIEW = 40_000, 8_000
-#: The same for another part of the data that is shown: a slider redraws while it moves.
-PART_PREVIEW = 5_000, 2_500
-
-
-@dataclass(frozen=True, eq=False)
-class LoadedFlow:
-    """A flow that was read, and its form that is shown, with all nodes or few."""
-
-    name: str
-    choice: Choice
-    source: FlowSource
-    field: FlowField
-    shown: FlowField
-    traced: TracedFlow | None = None
-
-    @property
-    def whole(self) -> bool:
-        """Whether all nodes are shown."""
-        return self.shown is self.field
 
 
 class Data(FlowOpener):
@@ -57,9 +39,7 @@ class Data(FlowOpener):
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
-        # This keeps the source, which the library may drop and which is slow to read again.
-        source, field = self.library.source(name), self.viewport.field
-        self._current = LoadedFlow(name, choice, source, field, field)
+        self._current = LoadedFlow(name, choice, self.library.source(name), self.viewport.field)
         self._goal = (name, choice)
         self.uploads = Uploads(context.routes, self.take_upload)
         self.state.set(busy="", file=name, upload=self.uploads.address, **self._options())
@@ -107,10 +87,8 @@ class Data(FlowOpener):
                 self.open(self.name, choice)
         elif self._goal == (self.name, choice) or self._goal[0] != self.name:
             self.state.set(**self._options())
-        elif self._current.whole:
-            self.cancel()  # the slider is back at the present plane
         else:
-            self.open(self.name, choice)
+            self.cancel()  # the slider is back at the present plane
 
     def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
@@ -143,38 +121,19 @@ class Data(FlowOpener):
         self._begin(LoadRequest(name, choice, then), follows=is_similar and then is None)
 
     async def _open(self, request: LoadRequest) -> None:
-        flow = await self._in_thread(request, lambda: self._preview(request), quick=True)
+        flow = await self._read(request, self._first_time)
         self._show(flow, request)
-        if not flow.whole:
-            complete = partial(self._traced, replace(flow, shown=flow.field))
-            self._show(await self._in_thread(request, complete, quick=False), request)
-        if request.then is not None and not request.over:
+        if request.then is not None and self._is_latest(request):
             request.then()
+
+    def _first_time(self, field: FlowField) -> float:
+        """Return the time of another flow that is shown: the same, for a part of the same data."""
+        same = np.array_equal(field.times, self.viewport.field.times)
+        return self.viewport.handle.time if same else float(field.times[0])
 
     def _fail(self) -> None:
         self._goal = (self.name, self.choice)
         self._show_choice()
-        if not self._current.whole:  # the old view is a preview
-            self.open(self.name, self.choice)
-
-    def _preview(self, request: LoadRequest) -> LoadedFlow:
-        """Read a flow, and trace it with as many nodes as there is time for."""
-        name, choice = request.name, self.library.complete(request.name, request.choice)
-        source, field = self.library.source(name), self.library.field(name, choice)
-        limit, nodes = FILE_PREVIEW if name != self.name else PART_PREVIEW
-        shown = coarsened_field(field, nodes) if field.valid.size > limit else field
-        return self._traced(LoadedFlow(name, choice, source, field, shown))
-
-    def _traced(self, flow: LoadedFlow) -> LoadedFlow:
-        """Trace the nodes of a flow that are to be shown."""
-        times, traced = flow.shown.times, TracedFlow.of(flow.shown, self.settings)
-        steps = {len(times) - 1}
-        # Another part of the same data is shown at the same time.
-        if np.array_equal(times, self.viewport.field.times):
-            steps.update(steps_around(times, self.viewport.handle.time)[:2])
-        for step in sorted(steps):
-            traced.store.at(step)
-        return replace(flow, traced=traced.keep())
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Replace the flow by another one; if that fails, it stays."""
@@ -188,10 +147,10 @@ class Data(FlowOpener):
         # A file that has changed has other values.
         same = same and flow.source.identity == self._current.source.identity
         self._current = flow
-        if not request.superseded:
+        if self._is_latest(request):
             self._goal = (flow.name, new)
         try:
-            self.context.show(flow.shown, keep_view=keep, keep_range=same)
+            self.context.show(flow.field, keep_view=keep, keep_range=same)
             if not keep:
                 zoom, focus = self.library.look(flow.name)
                 self.viewport.home(zoom=zoom, focus=focus)
@@ -286,7 +245,7 @@ class FileBeside(FlowOpener):
         self.data = data
         self._name, self._choice = "", Choice()
         self._active = False
-        self._flow: TracedFlow | None = None  #: The flow that is shown, with its traces.
+        self._flow: LoadedFlow | None = None  #: The flow that is shown, with its traces.
         self.state.set(file_beside="")
         self.state.on(self.take_file, "file_beside")
         context.field_changed.connect(self.follow)
@@ -382,26 +341,14 @@ class FileBeside(FlowOpener):
         return names[(position + 1) % len(names)]
 
     async def _open(self, request: LoadRequest) -> None:
-        found = await self._in_thread(request, lambda: self._read(request), quick=True)
-        self._show(request, *found)
-
-    def _read(self, request: LoadRequest) -> tuple[Choice, TracedFlow]:
-        """Read a flow, and make the traces for its first picture."""
-        choice = self.library.complete(request.name, request.choice, nearest=True)
-        field = self.library.field(request.name, choice)
-        flow = TracedFlow.of(field, self.settings)
-        for step in sorted(set(steps_around(field.times, time_in(self.area.scene, field))[:2])):
-            flow.store.at(step)
-        return choice, flow.keep()
-
-    def _show(self, request: LoadRequest, choice: Choice, flow: TracedFlow) -> None:
+        flow = await self._read(request, partial(time_in, self.area.scene), nearest=True)
         units = [field.length_unit for field in (self.viewport.field, flow.field)]
         if all(units) and units[0] != units[1]:
             raise FieldError(
                 f"{request.name} is in {units[1]} and {self.data.name} in {units[0]}; expected "
                 "the same unit of length in both files, because they share one camera"
             )
-        self._name, self._choice, self._flow = request.name, choice, flow
+        self._name, self._choice, self._flow = request.name, flow.choice, flow
         self.area.element.names = self._names()
         if self.viewport.differences.get("field") is not flow.field:
             self.area.compare({"field": flow.field})

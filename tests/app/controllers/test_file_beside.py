@@ -149,17 +149,17 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
 async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(one=small(), two=other(), three=other(steps=3))
     held = threading.Event()
-    read = app.beside._read
+    complete = app.beside.library.complete
 
-    def slowly(request: Any) -> Any:
+    def slowly(name: str, choice: Choice, **options: Any) -> Choice:
         assert held.wait(PATIENCE_S)
-        return read(request)
+        return complete(name, choice, **options)
 
-    monkeypatch.setattr(app.beside, "_read", slowly)
+    monkeypatch.setattr(app.beside.library, "complete", slowly)
     async with playing(app):
         app.state.send(compare=FILE)
         await until(lambda: app.state.get("busy") == "Opening two")
-        app.controllers.cancel_opening()
+        app.cancel_opening()
         assert (app.state.get("busy"), app.state.get("file_beside")) == ("", "")
         app.state.send(file_beside="three")
         app.state.send(file_beside="two")
