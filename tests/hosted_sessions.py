@@ -65,7 +65,7 @@ class Plain:
         self.closed = False
         routes = Routes.of(server)
         server.state.update({"flow0_pid": os.getpid(), "flow0_value": 1})
-        server.state.flow0_file = routes.give("a b.txt", lambda: (b"words", "text/plain", "ä.txt"))
+        server.state.flow0_file = routes.give("a b", lambda _: (b"words", "text/plain", "ä.txt"))
         server.state.flow0_sends = routes.take("sent", self.take)
 
     async def take(self, name: str, chunks: AsyncIterable[bytes]) -> None:

@@ -16,7 +16,7 @@ import shutil
 from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 from urllib.parse import quote
 
 from aiohttp import web
@@ -39,10 +39,12 @@ DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)\s*(\.|$)", re.IGNORECASE)
 #: Content of a file: its bytes or its path; its media type; and the name under which it is saved,
 #: or ``None`` for files that the page uses itself.
 Content = tuple[bytes | Path, str, str | None]
-#: Returns the content of a file.
-Give = Callable[[], Content | Awaitable[Content]]
+#: Returns the content of a file by the rest of its name; a LookupError or a ValueError without one.
+Give = Callable[[str], Content | Awaitable[Content]]
 #: Receives a file: its name, which may be any text, and its bytes.
 Take = Callable[[str, AsyncIterable[bytes]], Awaitable[None]]
+#: Answers a request for a file, or an upload, by its name.
+Respond = Callable[[str, web.Request], Awaitable[web.StreamResponse]]
 EXPIRED = "This download has expired. Save the picture or the movie again on the page."
 #: Key of a session's routes in trame's context, which only the server sees.
 KEY = "flowtex_routes"
@@ -63,7 +65,6 @@ class Routes:
     def __init__(self) -> None:
         self.token = new_secret()
         self._content: dict[str, Give] = {}
-        self._families: dict[str, Callable[[str], Give]] = {}
         self._takers: dict[str, Take] = {}
 
     @classmethod
@@ -79,26 +80,20 @@ class Routes:
         """Add the route where trame has a web server of its own."""
         application = getattr(web_server, "app", None)
         if application is not None:
-            add_route(application, {self.token: self}.get)
+            add_route(application, {self.token: self.respond}.get)
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
         """Answer a request for a file, or an upload."""
         is_upload = request.method == "POST"
         return await (self.receive(name, request) if is_upload else self.answer(name))
 
-    def give(self, name: str, content: Give) -> str:
-        """Serve a file, whose content is called at each request; return its address."""
-        self._content[name] = content
-        return self._address(name)
+    def give(self, stem: str, content: Give) -> str:
+        """Serve files, whose names begin with a stem and a full stop; return its address.
 
-    def give_each(self, stem: str, content: Callable[[str], Give]) -> str:
-        """Serve files of many names; return the common part of their addresses.
-
-        ``content`` is called with the rest of a name, and raises a ``LookupError`` or a
-        ``ValueError`` where the file does not exist. The stem has no full stop.
+        ``content`` is called at each request.
         """
-        self._families[stem] = content
-        return f"{self._address(stem)}."
+        self._content[stem] = content
+        return self._address(stem)
 
     def take(self, name: str, taker: Take) -> str:
         """Receive files at the address returned, with ``?name=``; a taker's FieldError is shown."""
@@ -110,12 +105,12 @@ class Routes:
 
     def withdraw(self, stem: str) -> None:
         """Stop serving the files of a stem."""
-        self._families.pop(stem, None)
+        self._content.pop(stem, None)
 
     def close(self) -> None:
         """Stop serving and receiving files."""
-        for files in (self._content, self._families, self._takers):
-            files.clear()
+        self._content.clear()
+        self._takers.clear()
 
     async def receive(self, name: str, request: web.Request) -> web.StreamResponse:
         """Receive a file; raises ``HTTPNotFound`` if the name receives none."""
@@ -132,12 +127,9 @@ class Routes:
         """Return a file; raises ``HTTPNotFound`` if it does not exist."""
         stem, _, rest = name.partition(".")
         try:
-            content = (self._content.get(name) or self._families[stem](rest))()
-        except (LookupError, ValueError):
-            raise web.HTTPNotFound from None
-        try:
+            content = self._content[stem](rest)
             body, kind, saved_as = await content if inspect.isawaitable(content) else content
-        except FileNotFoundError:
+        except (LookupError, ValueError, FileNotFoundError):
             raise web.HTTPNotFound from None
         headers = {
             "Content-Type": kind,
@@ -155,27 +147,18 @@ class Routes:
         return web.Response(body=body, headers=headers)
 
 
-class Handler(Protocol):
-    """Answers requests for files, below a ``token`` that cannot be guessed."""
-
-    token: str
-
-    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Answer a request for a file, or an upload."""
-
-
-def add_route(application: web.Application, find: Callable[[str], Handler | None]) -> None:
-    """Serve files below ``/flowtex`` of a web application; ``find`` has the handler of a token."""
+def add_route(application: web.Application, find: Callable[[str], Respond | None]) -> None:
+    """Serve files below ``/flowtex``; ``find`` returns what answers below a token."""
 
     async def respond(request: web.Request) -> web.StreamResponse:
-        handler = find(request.match_info["token"])
-        if handler is None:
+        answer = find(request.match_info["token"])
+        if answer is None:
             raise web.HTTPNotFound
         if encoding := request.headers.get("Content-Encoding"):
             raise web.HTTPUnsupportedMediaType(
                 text=f"The upload has the encoding {encoding[:40]!r}; send the file as it is.\n"
             )
-        return await handler.respond(request.match_info["name"], request)
+        return await answer(request.match_info["name"], request)
 
     application.router.add_get("/flowtex/{token}/{name}", respond)
     application.router.add_post("/flowtex/{token}/{name}", respond)
@@ -188,7 +171,7 @@ class Downloads:
         self._folder = TemporaryFolder()
         self.folder = self._folder.path
         self._routes = routes
-        self._files: dict[str, Path] = {}
+        self._paths: list[Path] = []
 
     def reserve(self, name: str) -> Path:
         """Return the path of a new file of this name, in its own folder."""
@@ -196,28 +179,19 @@ class Downloads:
 
     def add(self, path: Path) -> str:
         """Serve a file from :meth:`reserve`; return its address, relative to the page."""
-        for oldest in list(self._files)[: 1 - MOST_DOWNLOADS]:
-            self.remove(oldest)
-        token = new_secret()
-        self._files[token] = path
-        return self._routes.give(token, partial(self._content, token))
-
-    def remove(self, token: str) -> None:
-        """Remove the file of a token, if it exists."""
-        if (path := self._files.pop(token, None)) is not None:
-            shutil.rmtree(path.parent, ignore_errors=True)
+        self._paths.append(path)
+        if len(self._paths) > MOST_DOWNLOADS:
+            shutil.rmtree(self._paths.pop(0).parent, ignore_errors=True)
+        return self._routes.give(new_secret(), partial(self._content, path))
 
     def close(self) -> None:
         """Remove all files; nothing can be added any more."""
-        self._files.clear()
         self._folder.close()
 
-    def _content(self, token: str) -> Content:
-        path = self._files.get(token)
-        if path is None or not path.is_file():
+    def _content(self, path: Path, _rest: str) -> Content:
+        if not path.is_file():
             raise web.HTTPGone(text=EXPIRED, headers={"Cache-Control": "no-store"})
-        kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
-        return path, kind, path.name
+        return path, mimetypes.guess_type(path.name)[0] or "application/octet-stream", path.name
 
 
 def plain_name(name: str) -> str:

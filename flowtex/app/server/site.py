@@ -122,7 +122,7 @@ class Site:
         router.add_get("/page/{token}/index.html", self._page)
         router.add_get("/page/{token}/ws", self._connection)
         router.add_post("/flowtex/session", self._session)
-        add_route(application, self.sessions.routes)
+        add_route(application, self.sessions.files)
         index = (Path(static["/"]) / "index.html").read_text(encoding="utf-8")
         # Everything but the connection is two folders above; the first base has precedence.
         self._index = index.replace("<head>", '<head><base href="../../" />', 1)

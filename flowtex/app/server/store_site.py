@@ -28,7 +28,6 @@ from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import (
     DOCUMENT,
-    PyramidError,
     ReadFault,
     fault_words,
     is_refused,
@@ -51,7 +50,6 @@ class ServedStore:
 
     def __init__(self, place: str | Path) -> None:
         self._folder = None if is_remote(place) else Path(place_text(place))
-        self._check_links()
         levels = Levels(place)
         self.run = secrets.token_hex(4)  #: A word that is unique to this run.
         self._origin = objects_at(levels.place)
@@ -67,16 +65,6 @@ class ServedStore:
         names = [f"{name}/{DOCUMENT}" for name, _ in group.members(max_depth=None)]
         self._metadata = frozenset((DOCUMENT, *names))
 
-    def _check_links(self) -> None:
-        """Raise an error where a link leads out of a local store."""
-        for folder, folders, files in os.walk(self._folder) if self._folder else ():
-            for path in (Path(folder, name) for name in (*folders, *files)):
-                if path.is_symlink() and self._is_outside(path):
-                    raise PyramidError(
-                        f"{path} is a link to {path.readlink()}, outside of the store; put a copy "
-                        "in its place"
-                    )
-
     def _is_outside(self, path: Path) -> bool:
         return not Path(os.path.realpath(path)).is_relative_to(self._folder or "")
 
@@ -90,7 +78,7 @@ class ServedStore:
         )
         if not (is_chunk or name in self._metadata):
             raise LookupError(name)
-        if self._folder and self._is_outside(self._folder / name):  # since the start
+        if self._folder and self._is_outside(self._folder / name):
             raise LookupError(name)
         obstore = import_extra("obstore", "store")
         async with self._reads:

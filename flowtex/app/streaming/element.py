@@ -14,11 +14,12 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
-from flowtex.app.server.files import Content, Give, Routes
+from flowtex.app.server.files import Content, Routes
 from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop, start_task
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
@@ -72,11 +73,11 @@ class HandedScene:
         header = source.scene.header(pane.settings, time=pane.time, clock=pane.clock)
         return {
             "header": {**header, "generation": source.generation, **values},
-            "parts": self._routes.give_each(self._stem, lambda name: self._give(source, name)),
+            "parts": self._routes.give(self._stem, partial(self._content, source)) + ".",
         }
 
-    def _give(self, source: TileSource, name: str) -> Give:
-        """Return a function that makes the file of a tile, or of the whole, at time steps."""
+    async def _content(self, source: TileSource, name: str) -> Content:
+        """Return the file of a tile, or of the whole, at time steps."""
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
         kind = place if place in (*PART_GROUPS, *MARK_PARTS.values()) else ""
@@ -86,22 +87,18 @@ class HandedScene:
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
             raise LookupError(name)
-
-        async def content() -> Content:
-            try:
-                parts = await asyncio.wrap_future(source.ask(key, steps, kind=kind))
-            except Stopped:  # the scene is no longer shown
-                parts = {}
-            except Exception as error:
-                # Coarser tiles replace it.
-                part = "the surface" if key is None else f"tile {tuple(key)}"
-                _log.warning("%s could not be made: %s", part, error)
-                raise FileNotFoundError(name) from error
-            # Packing takes a while, and the loop has other pages to serve.
-            body = await asyncio.get_running_loop().run_in_executor(None, parts_file, parts)
-            return body, "application/octet-stream", None
-
-        return content
+        try:
+            parts = await asyncio.wrap_future(source.ask(key, steps, kind=kind))
+        except Stopped:  # the scene is no longer shown
+            parts = {}
+        except Exception as error:
+            # Coarser tiles replace it.
+            part = "the surface" if key is None else f"tile {tuple(key)}"
+            _log.warning("%s could not be made: %s", part, error)
+            raise FileNotFoundError(name) from error
+        # Packing takes a while, and the loop has other pages to serve.
+        body = await asyncio.get_running_loop().run_in_executor(None, parts_file, parts)
+        return body, "application/octet-stream", None
 
     def close(self) -> None:
         """Stop serving the parts."""
@@ -132,9 +129,10 @@ class Element:
         self._server, self._viewport, self._stream = state.server, viewport, stream
         self._player, self._axes = player, axes
         self._routes = Routes.of(state.server)
-        self._client = self._routes.give(
-            "client.js", lambda: (client_module().encode(), "text/javascript", None)
+        script = self._routes.give(
+            "client", lambda _rest: (client_module().encode(), "text/javascript", None)
         )
+        self._client = f"{script}.js"
         self._scenes: list[HandedScene] = []
         self._shown: tuple[object, ...] = ()
         self._sent: Header = {}

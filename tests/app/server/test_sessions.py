@@ -267,13 +267,13 @@ async def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> 
     film = tmp_path / "a.mp4"
     film.write_bytes(b"film")
 
-    async def later() -> Any:
+    async def later(_: str) -> Any:
         return b"later", "text/plain", None
 
     async with place() as here:
         routes = [Routes.of(app_of(here, await here.token()).server) for _ in range(2)]
-        address = routes[0].give("a b.png", lambda: (b"png", "image/png", 'Düse "1".png'))
-        async with here.http.get(here.bare + address) as answer:
+        address = routes[0].give("a b", lambda _: (b"png", "image/png", 'Düse "1".png'))
+        async with here.http.get(here.bare + address + ".png") as answer:
             assert (answer.status, await answer.read()) == (200, b"png")
             said = answer.headers
             assert said["Content-Type"] == "image/png"
@@ -282,7 +282,7 @@ async def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> 
             assert said["Content-Disposition"] == (
                 "attachment; filename=\"D?se _1_.png\"; filename*=UTF-8''D%C3%BCse%20%221%22.png"
             )
-        for give, body in ((later, b"later"), (lambda: (film, "video/mp4", "a.mp4"), b"film")):
+        for give, body in ((later, b"later"), (lambda _: (film, "video/mp4", "a.mp4"), b"film")):
             async with here.http.get(here.bare + routes[0].give("next", give)) as answer:
                 assert await answer.read() == body
                 assert answer.headers["Cache-Control"] == "no-store"

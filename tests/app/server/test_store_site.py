@@ -27,7 +27,6 @@ from served import start
 
 from flowtex import FlowField
 from flowtex.app.server.store_site import ServedStore, store_application
-from flowtex.errors import FieldError
 from flowtex.pyramid import build
 
 TILE = "0/flow/c/0/1/0/0"
@@ -117,8 +116,6 @@ def test_links_out_of_a_store_are_not_followed(store: Path, tmp_path: Path) -> N
     (place / TILE).symlink_to(secret)
     with pytest.raises(LookupError):
         asyncio.run(served.get(TILE))
-    with pytest.raises(FieldError, match=r"0 is a link to .*secret, outside of the store; put a c"):
-        ServedStore(place)
     (place / TILE).unlink()
     (place / TILE).symlink_to(store / TILE)
     secret.unlink()

@@ -134,8 +134,8 @@ class LocalSession(Session):
     """One application, and the end point of its trame server."""
 
     def __init__(self, app: Any) -> None:
-        super().__init__(Routes.of(app.server))
-        self.app = app
+        self.app, self._routes = app, Routes.of(app.server)
+        super().__init__(self._routes.token)
         self._endpoint: Any = None
         self._task: asyncio.Task[None] | None = None
 
@@ -163,6 +163,10 @@ class LocalSession(Session):
         self._endpoint = web_servers[0].ws
         restrict(self._endpoint)
         self.static = web_servers[0].config["static"]
+
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Answer a request for a file, or an upload."""
+        return await self._routes.respond(name, request)
 
     async def carry(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a page and its application until one of them ends."""
@@ -194,7 +198,7 @@ class LocalSession(Session):
     async def end(self) -> None:
         """Close the connection and the application, and forget the trame server."""
         server = self.app.server
-        Routes.of(server).close()
+        self._routes.close()
         await self.disconnect()
         try:
             self.app.close()

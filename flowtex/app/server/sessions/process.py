@@ -82,7 +82,7 @@ class ProcessSession(Session):
             skip_auto_headers=("Accept-Encoding",),  # bodies pass unchanged
             auto_decompress=False,
         )
-        super().__init__(_Files(about["files"], self._http), about["token"])
+        super().__init__(about["files"], about["token"])
         self.static = about["static"]
         self._child = child
         self._ending, self._ended = False, asyncio.Event()
@@ -106,6 +106,23 @@ class ProcessSession(Session):
         if not self._ending:
             self.lost(f"its process {how}")
             self._closing = asyncio.ensure_future(self.end())
+
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Pass on a request for a file, or an upload."""
+        del name
+        async with self._http.request(
+            request.method,
+            URL(request.raw_path, encoded=True),
+            headers={n: request.headers[n] for n in REQUEST_HEADERS if n in request.headers},
+            data=request.content if request.body_exists else None,
+        ) as answer:
+            headers = {key: answer.headers[key] for key in ANSWER_HEADERS if key in answer.headers}
+            response = web.StreamResponse(status=answer.status, headers=headers)
+            await response.prepare(request)
+            async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
+                await response.write(chunk)
+            await response.write_eof()
+        return response
 
     async def carry(self, socket: web.WebSocketResponse) -> None:
         """Carry messages between a page and the process until one of them ends."""
@@ -142,29 +159,6 @@ class ProcessSession(Session):
         self._child.close()
 
 
-class _Files:
-    """The files of a session in another process."""
-
-    def __init__(self, token: str, http: aiohttp.ClientSession) -> None:
-        self.token, self._http = token, http
-
-    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
-        del name
-        async with self._http.request(
-            request.method,
-            URL(request.raw_path, encoded=True),
-            headers={n: request.headers[n] for n in REQUEST_HEADERS if n in request.headers},
-            data=request.content if request.body_exists else None,
-        ) as answer:
-            headers = {key: answer.headers[key] for key in ANSWER_HEADERS if key in answer.headers}
-            response = web.StreamResponse(status=answer.status, headers=headers)
-            await response.prepare(request)
-            async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
-                await response.write(chunk)
-            await response.write_eof()
-        return response
-
-
 def _socket_path(folder: int) -> str:
     """Return the path of a page's socket in an open folder, whose own path may be too long."""
     return f"/proc/self/fd/{folder}/page"
@@ -198,7 +192,7 @@ class HostedSession:
         return {
             "folder": str(self._folder.path),
             "token": session.token,
-            "files": session.routes.token,
+            "files": session.files,
             "static": session.static,
         }
 

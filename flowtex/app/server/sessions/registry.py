@@ -22,7 +22,7 @@ from wslink.protocol import MAX_MSG_SIZE
 
 from flowtex._util.memory import available_bytes, give_back
 from flowtex._util.whole_file import remove_stale_folders
-from flowtex.app.server.files import Handler
+from flowtex.app.server.files import Respond
 from flowtex.app.server.security import new_secret
 
 #: Pages for each core, at most; pages at rest need none.
@@ -48,9 +48,9 @@ _log = logging.getLogger(__name__)
 class Session(ABC):
     """A session, its token, and the connection of its page."""
 
-    def __init__(self, routes: Handler, token: str = "") -> None:
+    def __init__(self, files: str, token: str = "") -> None:
         self.token = token or new_secret()  #: Known to the page alone.
-        self.routes = routes  #: Answers requests for files, below its own token.
+        self.files = files  #: Token below which the files of the session are.
         self.static: dict[str, str] = {}  #: Folders that all pages need, by route.
         #: Called with the reason when the session is lost.
         self.lost: Callable[[str], None] = _log.error
@@ -75,6 +75,10 @@ class Session(ABC):
     def is_idle(self, limit: float) -> bool:
         """Return whether no page has been connected for ``limit`` seconds, and none is loading."""
         return self.away > max(limit, LOADING_S if self._loading else 0.0)
+
+    @abstractmethod
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Answer a request for a file, or an upload."""
 
     @abstractmethod
     async def carry(self, socket: web.WebSocketResponse) -> None:
@@ -151,9 +155,9 @@ class Sessions:
         """Return the session of a token."""
         return self._by_token.get(token)
 
-    def routes(self, token: str) -> Handler | None:
-        """Return the routes of a token; it is not that of the session itself."""
-        return next((s.routes for s in self if s.routes.token == token), None)
+    def files(self, token: str) -> Respond | None:
+        """Return what answers for the files of a token; it is not that of the session itself."""
+        return next((session.respond for session in self if session.files == token), None)
 
     async def prepare(self) -> dict[str, str]:
         """Open the first session, whose errors so appear early; return the folders of all pages."""
