@@ -272,7 +272,7 @@ async def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> 
 
     async with place() as here:
         routes = [Routes.of(app_of(here, await here.token()).server) for _ in range(2)]
-        address = routes[0].give("a b", lambda _: (b"png", "image/png", 'Düse "1".png'))
+        address = routes[0].give("c d", lambda _: (b"png", "image/png", 'Düse "1".png'))
         async with here.http.get(here.bare + address + ".png") as answer:
             assert (answer.status, await answer.read()) == (200, b"png")
             said = answer.headers
@@ -288,7 +288,7 @@ async def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> 
                 assert answer.headers["Cache-Control"] == "no-store"
         for wrong in (
             address.replace(routes[0].token, routes[1].token),
-            address.replace("a%20b", "b"),
+            address.replace("c%20d", "d"),
             f"flowtex/{routes[0].token}/..%2Fnext",
         ):
             async with here.http.get(here.bare + wrong) as answer:
