@@ -7,12 +7,17 @@ background, not a border of a dozen pixels, and not where the flow nearly stands
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, sobel
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.progress import track
+from flowtex.plotting.offscreen.encoders import MovieWriter
 
 #: Standard deviation in pixels of the window in which streaks are told from noise.
 WINDOW = 4.0
@@ -55,3 +60,12 @@ def carried(
     if isinstance(margin, int):
         inside = (slice(margin, -margin), slice(margin, -margin))
     return float(np.corrcoef(moved[inside].ravel(), b[inside].ravel())[0, 1])
+
+
+def write_movie(path: Path, pictures: Iterable[AnyArray], fps: float, quality: int = 80) -> None:
+    """Write pictures as a movie, as :func:`flowtex.movie` does."""
+    first, *others = pictures
+    with closing(MovieWriter(path, first.shape[1::-1], fps, quality)) as writer:
+        for picture in track([first, *others], 1 + len(others), ""):
+            writer.add(picture)
+        writer.finish()

@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ import pytest
 import flowtex
 from flowtex._util.whole_file import WholeFile, whole_file
 from flowtex.host.view import web_views
-from flowtex.plotting.offscreen.encoders import write_movie
+from flowtex.plotting.offscreen.encoders import MovieWriter
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes, links and limits of POSIX")
 OLD = b"the old file"
@@ -55,7 +56,10 @@ def embed_scene(path: Path) -> None:
 
 
 def save_movie(path: Path) -> None:
-    write_movie(path, pictures(), 10.0)
+    with closing(MovieWriter(path, (64, 64), 10.0, 80)) as writer:
+        for picture in pictures():
+            writer.add(picture)
+        writer.finish()
 
 
 WRITERS: dict[str, Callable[[Path], None]] = {

@@ -281,11 +281,11 @@ class Job:
                     viewport.set_time(frames.times[n])
                 picture = await self._draw(0.95 * n / len(frames), 0.95 / len(frames))
                 await self._in_thread(writer.add, picture)
-            await self._in_thread(writer.finish, lambda: self.done)
+            await self._in_thread(writer.finish)
         finally:
             self.done = True
             # In the thread, after its present work.
-            await asyncio.wrap_future(self._pool.submit(writer.abandon))
+            await asyncio.wrap_future(self._pool.submit(writer.close))
 
     def _prepare(self) -> None:
         """Set the window and the density of the copy, and leave room for annotations."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Generator, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from itertools import pairwise
@@ -20,7 +20,7 @@ import numpy as np
 
 from flowtex._util.arguments import checked_path, checked_size, checked_target, is_number
 from flowtex._util.array_types import Bytes
-from flowtex._util.progress import Stopped
+from flowtex._util.progress import check
 from flowtex._util.whole_file import WholeFile
 from flowtex.errors import FieldError, install_extra
 
@@ -146,18 +146,14 @@ class MovieWriter:
             )
         self._encoder.send(np.ascontiguousarray(picture))
 
-    def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Complete the file, and put it in its place.
-
-        Raises :class:`Stopped` when ``cancelled()`` became true before.
-        """
+    def finish(self) -> None:
+        """Complete the file, and put it in its place, unless the work is cancelled before."""
         with suppress(StopIteration):
-            self._encoder.send(cancelled)
-        if cancelled():
-            raise Stopped
+            self._encoder.send(None)
+        check()
         self._file.keep()
 
-    def abandon(self) -> None:
+    def close(self) -> None:
         """Remove an incomplete file; does nothing after :meth:`finish`."""
         try:
             with suppress(OSError):  # a full disk: it has failed before, and the file goes
@@ -166,8 +162,8 @@ class MovieWriter:
             self._file.drop()
 
 
-#: Takes pictures, and at the end the function that tells whether it is cancelled.
-Encoder = Generator[None, Bytes | Callable[[], bool], None]
+#: Takes pictures, and at the end ``None``.
+Encoder = Generator[None, Bytes | None, None]
 
 
 def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:
@@ -191,7 +187,7 @@ def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder
         codec = stream.codec_context
         codec.colorspace, codec.color_primaries = BT709, BT709
         codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
-        while isinstance(picture := (yield), np.ndarray):
+        while (picture := (yield)) is not None:
             frame = av.VideoFrame.from_ndarray(picture, format="rgb24").reformat(**colours)
             movie.mux(stream.encode(frame))
         movie.mux(stream.encode(None))
@@ -206,7 +202,7 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
     most = 3 * PILLOW_MAX_PIXELS // math.prod(shape)
     with tempfile.TemporaryFile() as spool:
         count = 0
-        while isinstance(picture := (yield), np.ndarray):
+        while (picture := (yield)) is not None:
             count += 1
             if count > most:
                 raise MovieError(
@@ -215,7 +211,6 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
                 )
             spool.write(picture.data)
         spool.flush()
-        cancelled: Callable[[], bool] = picture
         kept = np.memmap(spool, np.uint8, "r", shape=(count, *shape))
         palette = None
         if kind == "GIF":  # one palette for pictures from the whole movie
@@ -227,8 +222,7 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
 
         def pictures() -> Iterator[Image.Image]:
             for picture in kept:
-                if cancelled():
-                    raise Stopped
+                check()
                 image = Image.fromarray(picture)
                 yield image if palette is None else image.quantize(palette=palette, dither=plain)
 
@@ -246,33 +240,3 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
             loop=0,
             **options,
         )
-
-
-def write_movie(
-    path: str | Path,
-    frames: Iterable[Bytes],
-    fps: float,
-    quality: int = DEFAULT_QUALITY,
-    *,
-    cancelled: Callable[[], bool] = lambda: False,
-) -> None:
-    """Write pictures (H, W, 3) uint8, all of one size, as a movie.
-
-    Each picture is taken when the one before is written; ``cancelled`` is asked before each, and
-    once it is true nothing is left behind. The other parameters are those of :class:`MovieWriter`.
-    Raises what that does, a MovieError when there are no pictures or one differs in size, and
-    :class:`Stopped` when it was cancelled.
-    """
-    writer: MovieWriter | None = None
-    try:
-        for picture in frames:
-            if cancelled():
-                raise Stopped
-            writer = writer or MovieWriter(path, picture.shape[1::-1], fps, quality)
-            writer.add(picture)
-        if writer is None:
-            raise MovieError(f"{path}: the movie has no pictures; expected one or more")
-        writer.finish(cancelled)
-    finally:
-        if writer is not None:
-            writer.abandon()

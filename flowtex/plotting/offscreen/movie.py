@@ -19,15 +19,15 @@ import numpy as np
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
-from flowtex._util.progress import track
+from flowtex._util.progress import stoppable, track
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
+    MovieWriter,
     check_movie,
     default_fps,
-    write_movie,
 )
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.uniforms import WAVE_PIXELS
@@ -235,9 +235,11 @@ def movie(
     check_movie(path, size, fps, quality)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     shown, drawn = _prepare(mesh, options, fps, seconds, **drawing)
-    with closing(drawn) as pictures:
-        tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
-        write_movie(path, tracked, fps, quality, cancelled=cancelled)
+    writer = MovieWriter(path, size, fps, quality)
+    with stoppable(cancelled), closing(drawn), closing(writer):
+        for picture in track(drawn, len(shown), "Drawing the movie", show=progress):
+            writer.add(picture)
+        writer.finish()
     path, count = Path(path), len(shown)
     return Movie(path, path.stat().st_size, size, count, fps, count / fps, shown.closed)
 
