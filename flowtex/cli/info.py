@@ -121,7 +121,6 @@ def _file_table(summary: FileSummary) -> Table:
     return _pairs(
         {
             "grid": f"{summary.grid}{f', {size}' if size else ''}",
-            "cells": ", ".join(f"{n:,} × {name}" for name, n in summary.cells.items()),
             "ends": "; ".join(ends),
             "cut by": f"--slice z={middle:.4g}, --contour NAME=VALUE" if summary.volume else "",
             "blanked": f"{summary.blanked:,} nodes" if summary.blanked else "",

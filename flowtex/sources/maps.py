@@ -84,29 +84,21 @@ class PlaneNodes:
 
 
 @dataclass(frozen=True, eq=False)
-class Moved:
-    """Nodes that lie between two others of a grid."""
-
-    at: Indices  #: Their rows and columns, (2, M).
-    first: Indices  #: Rows and columns of those between which they lie, (2, M).
-    second: Indices
-    share: Floats  #: Share of the way from the first to the second, (M,).
-
-
-@dataclass(frozen=True, eq=False)
 class Chosen:
     """Some rows and columns of a grid, of whose nodes some move to places between two."""
 
     rows: Indices | slice
     columns: Indices | slice
-    moved: Moved | None = None
+    #: Rows and columns of those that move, and of two others between which they lie, (2, M).
+    moved: tuple[Indices, Indices, Indices] | None = None
+    share: Floats | float = 0.0  #: Share of the way from one of these to the other, (M,).
 
     def __call__(self, values: Floats) -> Floats:
         """Return values at the nodes, from those of the grid, (J, I)."""
         chosen = np.array(values[self.rows][:, self.columns])
-        if (moved := self.moved) is not None:
-            one, other = values[tuple(moved.first)], values[tuple(moved.second)]
-            chosen[tuple(moved.at)] = (1 - moved.share) * one + moved.share * other
+        if self.moved is not None:
+            at, one, other = map(tuple, self.moved)
+            chosen[at] = (1 - self.share) * values[one] + self.share * values[other]
         return chosen
 
 
@@ -173,8 +165,8 @@ class NodeLines:
         row, number = np.indices((len(self.rows), len(columns))).reshape(2, -1)
         column = columns[number]
         one, other = (np.stack([self.rows[row], ends[column]]) for ends in self.columns)
-        moved = Moved(np.stack([row, column]), one, other, self.share[column])
-        return Chosen(self.rows, self.columns[0], moved)
+        moved = np.stack([row, column]), one, other
+        return Chosen(self.rows, self.columns[0], moved, self.share[column])
 
 
 def on_map(places: Places, name: str | None) -> MapNodes:
@@ -234,7 +226,7 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
         first = int(np.argmin((lon[0] + turn - west) % 360.0))
     columns = np.roll(columns, -first)
     lon = lon[0] + np.roll(turn + 360.0 * (np.arange(count) < first), -first)
-    gaps, blank = _gaps(np.diff(lon)), _blank_lines(places.a.size)
+    gaps, blank = _gaps(np.diff(lon)), math.ceil(math.sqrt(places.a.size / COARSE_NODES))
     # Columns to insert: before which, where, between which, and the share of the way there.
     new: list[tuple[Any, ...]]
     new = [(k + 1, np.nan, k, k, 0.0) for k in np.flatnonzero(gaps) for _ in range(blank)]
@@ -259,7 +251,9 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
     if new:
         at, more, one, other, shares = (np.array(values) for values in zip(*new, strict=True))
         lon, share, near = (
-            np.insert(x, at, y) for x, y in ((lon, more), (share, shares), (near, False))
+            np.insert(lon, at, more),
+            np.insert(share, at, shares),
+            np.insert(near, at, 0),
         )
         ends = np.insert(ends, at, columns[np.stack([one, other])], axis=1)
     if has_edge:
@@ -279,11 +273,6 @@ def _has_edge(projection: Projection) -> bool:
     before, across = (np.linalg.norm(step, axis=1) for step in (before, across))
     known = np.isfinite(across)
     return bool(known.any() and (across > 10 * before)[known].all())
-
-
-def _blank_lines(nodes: int) -> int:
-    """Return the number of blank lines between parts, of which a coarser view has at least one."""
-    return math.ceil(math.sqrt(nodes / COARSE_NODES))
 
 
 def _gaps(steps: Floats) -> Bools:
@@ -308,12 +297,10 @@ def _parts(
     """
     if axis == 0:
         lon, lat = lon.T, lat.T
-    if is_line:
-        parted = np.zeros((len(lon), lon.shape[1] - 1), dtype=bool)
-    else:
-        parted = _gaps(
-            np.linalg.norm(np.diff(Projection(GLOBE).positions(lon, lat), axis=1), axis=-1)
-        )
+    parted = np.zeros((len(lon), lon.shape[1] - 1), dtype=bool)
+    if not is_line:
+        steps = np.diff(Projection(GLOBE).positions(lon, lat), axis=1)
+        parted = _gaps(np.linalg.norm(steps, axis=-1))
     places, sides = np.stack([lon, lat], axis=-1), np.zeros((2, 0))
     row = column = np.zeros(0, dtype=np.intp)
     if not projection.is_globe:
@@ -340,7 +327,8 @@ def _parts(
         at = near[whole], number[whole]
         start[at] = np.maximum(sides[0][whole] - BESIDE, 0.0)
         stop[at] = np.minimum(sides[1][whole] + BESIDE, 1.0)
-    blank = min(_blank_lines(lon.size), max(lon.shape[1] // (4 * len(columns)), 1))
+    most = max(lon.shape[1] // (4 * len(columns)), 1)
+    blank = min(math.ceil(math.sqrt(lon.size / COARSE_NODES)), most)
     copies = np.ones(lon.shape[1], dtype=int)
     copies[columns] += blank
     chosen, first = np.repeat(np.arange(len(copies)), copies), np.cumsum(copies) - copies
@@ -356,9 +344,9 @@ def _parts(
     places[tuple(new[:, is_blank])] = np.nan
     lon, lat = np.moveaxis(places, -1, 0)
     if axis == 1:
-        return lon, lat, Chosen(slice(None), chosen, Moved(new, one, other, share))
-    moved = Moved(new[::-1], one[::-1], other[::-1], share)
-    return lon.T, lat.T, Chosen(chosen, slice(None), moved)
+        return lon, lat, Chosen(slice(None), chosen, (new, one, other), share)
+    moved = new[::-1], one[::-1], other[::-1]
+    return lon.T, lat.T, Chosen(chosen, slice(None), moved, share)
 
 
 def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[Bools, Bools]:
@@ -373,9 +361,8 @@ def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[
         scale = length / true
         known = scale[np.isfinite(scale)]
         scale /= np.median(known) if known.size else 1.0
-        return scale > PLAIN, (scale > WIDE) & (
-            length > FAR * np.nanmax(np.abs(points), initial=0.0)
-        )
+        is_long = length > FAR * np.nanmax(np.abs(points), initial=0.0)
+        return scale > PLAIN, (scale > WIDE) & is_long
 
 
 def shown_rows(points: Floats) -> slice:
@@ -404,7 +391,6 @@ def projection_of(places: Places, name: str | None) -> Projection:
 
 
 def _has_pole(places: Places) -> bool:
-    """Return whether the edge of a grid goes around a pole."""
     lon = places.a
     edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
     steps = np.diff(edge[np.isfinite(edge)])
@@ -473,7 +459,7 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     numbers = np.arange(len(mesh.a))
     nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
     west = projection.center[0] - 180.0
-    lon, lat, triangles = mesh.a, mesh.b, mesh.triangles
+    lon, lat, (triangles, _) = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
         members = np.arange(len(triangles))

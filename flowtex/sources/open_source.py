@@ -222,7 +222,6 @@ class MeshSource(FlowSource):
         return errors_of_file(self._path) if is_reader(self._mesh) and self._path else nullcontext()
 
     def _describe(self, mesh: Any) -> None:
-        """Set the dimensions, the planes and the names of the vectors."""
         self.vectors = self._names(mesh)
         if is_structured(mesh):
             i, j, k = map(int, mesh.dimensions)
@@ -241,7 +240,6 @@ class MeshSource(FlowSource):
             self.default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
-        """Return the names of possible velocities of a grid, the preferred one first."""
         names = [array.name for array in candidates(grid)]
         first = grid.active_vectors_name if self._velocity is None else self._velocity
         preferred = [first] if self._velocity is not None or first in names else []
@@ -251,7 +249,8 @@ class MeshSource(FlowSource):
         """Return the mesh of the first step or block; series that fit stay in memory."""
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
-        if self._block is None and (blocks := _choices(first, series=series)):
+        one = self._block is not None or isinstance(first, (list, tuple))
+        if blocks := {} if one else _choices(first, series=series):
             self.blocks = tuple(blocks)
             self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
             if not series:
@@ -270,8 +269,6 @@ class MeshSource(FlowSource):
 
 def _choices(mesh: Any, *, series: bool) -> Parts:
     """Return the blocks that may be chosen, the default ones first; none for a single one."""
-    if isinstance(mesh, (list, tuple)):
-        return {}
     drawn, combination = drawn_parts(mesh, series=series)
     if combination in ("together", "steps"):
         return {}
@@ -324,16 +321,11 @@ class DatasetSource(FlowSource):
         array = next((ds[u] for ds in self._datasets if u in ds), None)
         if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
+        options |= {"vectors": vectors, "projection": block or None, "name": self.name}
         with warnings.catch_warnings():
             # The page shows the choices.
             warnings.simplefilter("ignore", DatasetNotice)
-            return FlowField.from_xarray(
-                self._datasets,
-                vectors=vectors,
-                projection=block or None,
-                name=self.name,
-                **options,
-            )
+            return FlowField.from_xarray(self._datasets, **options)
 
 
 def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:

@@ -150,9 +150,7 @@ def open_file(path: str | Path) -> OpenFile:
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
-        reason = repr(file.suffix) if file.suffix else "no suffix"
-        if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-            reason = "not a PLOT3D grid in any layout"
+        reason = "not PLOT3D" if grid.suffix.lower() in plot3d.GRID_SUFFIXES else repr(file.suffix)
         raise FieldError(f"unknown format ({reason}); expected {_KNOWN_FORMATS}") from error
 
 
@@ -163,18 +161,14 @@ def _path_problem(file: Path) -> str:
             "this address has no flowtex pyramid, and files are read only from folders; open the "
             "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
         )
-    if file.suffix.lower() == ".foam" and not [
-        *file.parent.glob("constant"),
-        *file.parent.glob("processor*"),
-    ]:
+    case = [*file.parent.glob("constant"), *file.parent.glob("processor*")]
+    if file.suffix.lower() == ".foam" and not case:
         return "its folder has no folder constant; expected the folder of an OpenFOAM case"
-    if "*" in file.name and not file.exists():
-        text = "the file does not exist, and patterns are not expanded; give a list of files"
-        return f"{text}, as in sorted(glob.glob(pattern))"
     if not file.exists():
         similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
         names = f". Similar names: {', '.join(similar[:5])}" if similar else ""
-        return f"the file does not exist; check the spelling and the folder{names}"
+        text = "the file does not exist; check the spelling and the folder (patterns are not"
+        return f"{text} expanded){names}"
     if (file / "constant" / "polyMesh").exists():
         text = "this is a case of OpenFOAM; make an empty file"
         return f"{text} {file.name}.foam in it, and name that"
@@ -195,7 +189,6 @@ def _path_problem(file: Path) -> str:
 
 
 def _at_time(source: Any, time: float) -> Any:
-    """Read the one step of a series that is requested."""
     if isinstance(source, list):
         for step in time_steps(source):
             if step.time == time:
@@ -248,13 +241,12 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     """Return the path of a mesh; raises a FieldError for several."""
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
-    if missing := [str(each) for each in path if not Path(each).expanduser().exists()]:
-        raise FieldError(
-            f"{', '.join(missing)}: no such file; check the path and the working directory"
-        )
+    missing = [str(each) for each in path if not Path(each).expanduser().exists()]
     raise FieldError(
-        f"{len(path)} files are given, but several are read only as datasets; for the steps of a "
-        "mesh give a .pvd file, or in Python a list of meshes"
+        f"{', '.join(missing)}: no such file; check the path and the working directory"
+        if missing
+        else f"{len(path)} files are given, but several are read only as datasets; for the steps "
+        "of a mesh give a .pvd file, or in Python a list of meshes"
     )
 
 
@@ -340,7 +332,6 @@ class FileSummary:
     path: Path
     grid: str  #: Type of its mesh: of the default block if it has several.
     size: str  #: As text.
-    cells: dict[str, int]  #: Number of cells of an unstructured mesh by kind.
     bounds: tuple[tuple[float, float], ...]  #: ((x, x), (y, y), (z, z)).
     volume: bool  #: Whether a volume can be cut.
     blocks: tuple[BlockSummary, ...]  #: Blocks with content, if there are several.
@@ -365,24 +356,22 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     drawn = list(drawn_parts(mesh)[0].values())
     part = (drawn or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
     is_mesh = hasattr(part, "point_data")
-    arrays = catalogue(part) if is_mesh else []
-    velocities = candidates(part) if is_mesh else []
+    arrays, velocities = (catalogue(part), candidates(part)) if is_mesh else ([], [])
     names = dict.fromkeys(a.name for a in velocities) if file.velocity is None else [file.velocity]
     times = times_of(file.source)
     if isinstance(file.source, list):
         times = [float(step.time) for step in file.source]
-    series, whole = len(times) > 1, mesh if block is None else part
-    blocks = (
+    whole = mesh if block is None else part
+    blocks = [
         BlockSummary(name, meshes.index(name), type(p).__name__, part_size(p))
         if name in meshes
         else BlockSummary(name, None, type(p).__name__)
         for name, p in parts
-    )
+    ]
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
         size=part_size(part) if is_mesh else "",
-        cells=_cells(part),
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if is_mesh else (),
         volume=is_mesh and part.max_cell_dimensionality == 3,
         blocks=tuple(blocks) if len(parts) > 1 else (),
@@ -390,25 +379,11 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         candidates=tuple(names),
         times=tuple(times),
         blanked=int(hidden_nodes(part).sum()) if is_mesh else 0,
-        problem=file.problem or _problem(whole, file.velocity, series=series),
+        problem=file.problem or _problem(whole, file.velocity, series=len(times) > 1),
     )
 
 
-def _cells(mesh: Any) -> dict[str, int]:
-    """Count the cells of each kind of an unstructured mesh, by names such as ``"tetra"``."""
-    import pyvista as pv
-
-    if isinstance(mesh, pv.PolyData):
-        mesh = mesh.cast_to_unstructured_grid()
-    if not isinstance(mesh, pv.UnstructuredGrid):
-        return {}
-    types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
-    names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
-    return dict(zip(names, map(int, counts), strict=True))
-
-
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
-    """Return the choice that a field requires, or the reason why none can be made."""
     if drawn_parts(mesh, series=series)[1] == "choose":
         return several_fault(mesh, "the file")
     try:

@@ -125,7 +125,6 @@ def _vtk_log() -> Iterator[pv.VtkErrorCatcher]:
 
 
 def _not_from_vtk(record: logging.LogRecord) -> bool:
-    """Drop the messages that PyVista's observer of VTK passes to the root logger."""
     return not (record.module == "observers" and "pyvista" in record.pathname)
 
 

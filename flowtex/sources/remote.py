@@ -44,17 +44,8 @@ Read = Callable[[int], Floats]
 #: Attributes of a field that are arrays, and those that are values of JSON.
 ARRAYS = ("points", "velocity", "times", "valid", "has_position", "triangles")
 VALUES = (
-    "periodic",
-    "name",
-    "length_unit",
-    "time_unit",
-    "velocity_unit",
-    "vectors",
-    "sign_free",
-    "units",
-    "long_names",
-    "uncertainty",
-    "on_cells",
+    *("periodic", "name", "length_unit", "time_unit", "velocity_unit", "vectors", "sign_free"),
+    *("units", "long_names", "uncertainty", "on_cells"),
 )
 #: Attributes of a source.
 CHOICES = (
@@ -94,11 +85,12 @@ class Reader:
         """Open a file, or several that belong together."""
         files = [Path(path) for path in paths]
         self._source = open_source(files if len(files) > 1 else files[0])
-        return describe_source(self._source), []
+        return self.do_part(None)
 
     def do_part(self, block: str | None) -> Answer:
         """Describe the choices of a block."""
-        return describe_source(self._opened.part(block)), []
+        source = self._opened if block is None else self._opened.part(block)
+        return {name: getattr(source, name) for name in CHOICES}, []
 
     def do_field(self, **options: Any) -> Answer:
         """Make a field."""
@@ -118,20 +110,6 @@ class Reader:
         self._count += 1
         self._steps[self._count] = steps
         return self._count
-
-
-def describe_source(source: FlowSource) -> dict[str, Any]:
-    """Return the choices of a source."""
-    return {name: getattr(source, name) for name in CHOICES}
-
-
-def take_description(source: FlowSource, description: Mapping[str, Any]) -> None:
-    """Set the choices of a source, from :func:`describe_source`."""
-    for name in CHOICES:
-        value = description[name]
-        if isinstance(value, dict):
-            value = {key: tuple(items) for key, items in value.items()}
-        setattr(source, name, tuple(value) if isinstance(value, list) else value)
 
 
 def pack_field(
@@ -216,7 +194,11 @@ class RemoteSource(FlowSource):
     ) -> None:
         super().__init__()
         try:
-            take_description(self, description)
+            for name in CHOICES:
+                value = description[name]
+                if isinstance(value, dict):
+                    value = {key: tuple(items) for key, items in value.items()}
+                setattr(self, name, tuple(value) if isinstance(value, list) else value)
         except (TypeError, KeyError, AttributeError) as error:
             raise FieldError(file.malformed(error)) from error
         self.identity = file.identity
@@ -301,13 +283,8 @@ class _OpenFile:
         if error.kind:
             _log.error("the reader of %s failed:\n%s", path, error.trace)
             return f"{path}: cannot be read: {text or error.kind}"
-        limit = self.child.memory / 1e9
-        if "memory" in text:
-            return f"{path}: its reader {text}"
-        return (
-            f"{path}: the reader of this file {text}; the file is damaged, or needs more than "
-            f"{limit:.1f} GB of memory"
-        )
+        memory = f"{self.child.memory / 1e9:.1f} GB of memory"
+        return f"{path}: the reader of this file {text}; it is damaged, or needs more than {memory}"
 
     def malformed(self, error: Exception) -> str:
         """Return the text of an error for an answer that makes no sense."""

@@ -37,9 +37,9 @@ def align(
         array = (u, v)[n]
         dim = axes[n].pop(kind)
         if array.sizes[dim] != 1:
-            listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (u, v))
             raise FieldError(
-                f"the components have different axes: {listed}. Select along these axes first"
+                f"{u.name} has {', '.join(map(str, u.dims))} and {v.name} "
+                f"{', '.join(map(str, v.dims))}; select along the axes that differ first"
             )
         u, v = (array.isel({dim: 0}), v) if n == 0 else (u, array.isel({dim: 0}))
     _check_scalars(u, v)
@@ -60,8 +60,15 @@ def align(
         if lines[0] is not None and lines[1] is not None:
             found = common(u, v, dim, lines[0], lines[1], record)
             kept = lines[0][found.one]
-            for line in (lines[0], lines[1]):
-                _check_choice(choice, (dim, kind), line, kept)
+            chosen = {name: choice.sel[name] for name in (dim, kind) if name in choice.sel}
+            for name, target in chosen.items() if kept.dtype.kind in "fiu" else ():
+                wanted = np.array([float(target)]) if is_number(target) else kept
+                one = any(len(labels.match(wanted, line).one) for line in (lines[0], lines[1]))
+                if one and not len(labels.match(wanted, kept).one):
+                    raise FieldError(
+                        f"only one of the components has the {name} {target}; both have "
+                        f"{labels.text(kept)}"
+                    )
             u, v = u.isel({dim: as_slice(found.one)}), v.isel({other: as_slice(found.other)})
         elif u.sizes[dim] != v.sizes[other]:
             raise FieldError(
@@ -71,19 +78,6 @@ def align(
             )
         v = renamed(v, {other: dim}, u)
     return u, v
-
-
-def _check_choice(choice: Choice, names: tuple[str, str], line: AnyArray, kept: AnyArray) -> None:
-    """Raise for the choice of a label that only one of the components has."""
-    for name in names:
-        target = choice.sel.get(name)
-        if target is None or not is_number(target) or line.dtype.kind not in "fiu":
-            continue
-        wanted = np.array([float(target)])
-        if len(labels.match(wanted, line).one) and not len(labels.match(wanted, kept).one):
-            raise FieldError(
-                f"only one of the components has the {name} {target}; both have {labels.text(kept)}"
-            )
 
 
 def common(

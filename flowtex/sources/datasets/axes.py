@@ -324,7 +324,6 @@ def axis_direction(array: xr.DataArray, dim: str) -> int:
 
 
 def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
-    """Return the dates along an axis, if a coordinate has them."""
     for name, c in array.coords.items():
         # Other dates, such as those of forecasts, may run along the same axis.
         named = name == dim or c.attrs.get("standard_name") in ("time", None)
@@ -475,7 +474,6 @@ def _within(target: slice, line: AnyArray, name: str) -> list[int]:
 
 
 def _texts(line: AnyArray) -> list[str]:
-    """Return values along an axis as text, dates as short as possible."""
     texts = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
     return [str(text) for text in texts]
 

@@ -36,7 +36,14 @@ ANGLES = re.compile(r"^(phi|theta|azimuth|angle|az|polar_angle)$", re.I)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
 #: Parts of the names of two coordinates that belong together.
-SWAPS = (("lon", "lat"), ("long", "lat"), ("lam", "phi"), ("x", "y"), ("xi", "eta"))
+SWAPS = (
+    ("lon", "lat"),
+    ("long", "lat"),
+    ("lam", "phi"),
+    ("x", "y"),
+    ("xi", "eta"),
+    ("east", "north"),
+)
 #: Spans of longitude and latitude without a unit that are those of the Earth in radians.
 RADIANS = (6.0, 2 * np.pi + 1e-3), (3.0, np.pi + 1e-3)
 #: Share of a cell by which positions may move in time, as by rounding.
@@ -211,7 +218,6 @@ def _pairs(
     datasets: Sequence[xr.Dataset],
     kinds: Mapping[str, re.Pattern[str]],
 ) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
-    """Yield pairs of possible coordinates, the likely ones first."""
     candidates: list[list[xr.DataArray]] = [[], []]
     # All of them are looked up at each request.
     own = {**array.cf.axes, **array.cf.coordinates}
@@ -282,7 +288,6 @@ def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr
 
 
 def _check_rest(c: xr.DataArray, dim: str) -> None:
-    """Raise for a coordinate that differs between times."""
     if c.sizes[dim] < 2:
         return
     few = {d: slice(None, None, max(n // FEW_NODES, 1)) for d, n in c.sizes.items() if d != dim}
@@ -308,7 +313,6 @@ def _numbers(c: xr.DataArray) -> Floats:
 
 
 def _is_degrees(c: xr.DataArray) -> bool:
-    """Return whether a coordinate is an angle on the Earth, by its unit, standard name or name."""
     unit, name = str(c.attrs.get("units", "")), str(c.attrs.get("standard_name", c.name))
     if name in ("grid_longitude", "grid_latitude"):  # of a rotated pole
         return False
@@ -405,7 +409,6 @@ def _plane(
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
-    """Return the attributes of the grid mapping of a variable."""
     name = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping", "spatial_ref"))
     for ds in ({**array.coords}, *datasets):
         if name in ds and {"grid_mapping_name", "crs_wkt"} & set(attrs := dict(ds[name].attrs)):

@@ -287,14 +287,12 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
 
 
 def _is_turned(flow: Flow) -> bool:
-    """Return whether rows of a grid are turned notably against the parallels."""
     ones = np.ones_like(flow.places.a)
     _, north = flow.places.turned(flow.ahead, ones, 0 * ones)
     return bool(np.nanmax(np.abs(north), initial=0.0) > NOTABLE_TURN)
 
 
 def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
-    """Return a velocity on rows and columns, whose values are not known yet."""
     beside = Beside(datasets, drawn, record)
     grid = find_grid(pair.u, pair.v, beside, along_earth=pair.along == "earth")
     rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
@@ -322,7 +320,6 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
 
 
 def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
-    """Return a velocity at the nodes or in the faces of a mesh, whose values are not known yet."""
     (dim,) = horizontal_dims(pair.u)
     is_earth, why = mesh.is_earth, mesh.coordinates
     unit = "" if is_earth else mesh.unit
@@ -336,7 +333,6 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
 
 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
-    """Return a velocity with what is no data: valid ranges, fill values and masks."""
     record, axes = flow.record, flow.values.axes
     one, two = (
         checked_component(array, factor, axes, wanted, record)
@@ -360,7 +356,6 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
 
 
 def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
-    """Return whether a mask marks missing data, and record it."""
     axes, variable = flow.values.axes, part.variable
     marks, land = [], []
     for at in examined(part, axes):

@@ -93,7 +93,6 @@ def tolerance(a: Floats, b: Floats) -> float:
 
 
 def _nearest(a: Floats, b: Floats, period: float | None) -> tuple[Floats, Indices]:
-    """Return distances to the nearest of the labels b, and their numbers."""
     distance, nearest = np.full(len(a), np.inf), np.zeros(len(a), dtype=np.intp)
     known, sought = np.flatnonzero(np.isfinite(b)), np.isfinite(a)
     if len(known):

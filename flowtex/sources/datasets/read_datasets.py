@@ -120,7 +120,6 @@ def _whole(
     spread: Callable[[int], Floats] | None,
     uncertainty: Any,
 ) -> GridArrays | TriangleArrays:
-    """Build the surface of all nodes, whose steps are read when they are drawn."""
     count, record = flow.drawn.steps, flow.record
     nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
@@ -129,7 +128,7 @@ def _whole(
     extra = {key: steps.map(nodes.at) for key, steps in own.items() if not scalars[key].on_faces}
     on_cells: dict[str, LazySteps] = {}
     if flow.mesh is not None:
-        faces = itemgetter(flow.mesh.triangle_faces[getattr(nodes, "members", slice(None))])
+        faces = itemgetter(flow.mesh.triangles[1][getattr(nodes, "members", slice(None))])
         on_cells = {key: own[key].map(faces) for key, s in scalars.items() if s.on_faces}
     flat = nodes.projection is not None and not nodes.projection.is_globe
     if flat:
@@ -160,7 +159,6 @@ def _vectors(nodes: Placed, scale: float, components: Floats) -> Floats:
 
 
 def _note_rest(read: LazySteps, flow: Flow) -> None:
-    """Record a first step at rest, and the first step that moves."""
     searched = read[:MOST_SEARCHED]
     first = next((n for n, step in enumerate(searched) if np.nan_to_num(step).any()), 0)
     if first:
@@ -213,7 +211,6 @@ def _averaged(
 
 
 def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]:
-    """Return drawn nodes, and further arguments of a field."""
     places, mesh = flow.places, flow.mesh
     if mesh is None:
         if not places.is_earth:
@@ -221,7 +218,7 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
         on_grid = on_map(places, projection)
         return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:
-        return PlaneNodes(mesh.positions), {"triangles": mesh.triangles, **_units(flow)}
+        return PlaneNodes(mesh.positions), {"triangles": mesh.triangles[0], **_units(flow)}
     nodes = mesh_on_map(mesh, places, projection)
     if nodes.lost:
         flow.record(
@@ -234,7 +231,6 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
 
 
 def _units(flow: Flow) -> dict[str, str]:
-    """Return the units of positions and times, and record those that are assumed."""
     record, unit = flow.record, flow.unit
     names = f"{flow.pair.u.name} and {flow.pair.v.name}"
     times = flow.drawn.times
@@ -282,7 +278,6 @@ def _regions(
 
 
 def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
-    """Return units, and long names that are short enough, of variables."""
     units_of, names = (
         {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
         for word in ("units", "long_name")
@@ -300,7 +295,6 @@ class _Scalar(NamedTuple):
 
 
 def _scalars(flow: Flow) -> dict[str, _Scalar]:
-    """Return the other variables that lie at the nodes, by name."""
     scalars: dict[str, _Scalar] = {}
     used = (flow.pair.u.name, flow.pair.v.name)
     # Dimensions of the same name do not distinguish the sides of cells from their centres.

@@ -133,7 +133,6 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
 
 
 def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> list[Pair]:
-    """Return pairs whose names differ by a word for the component."""
     pairs: dict[tuple[Any, Any], Pair] = {}
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
@@ -150,7 +149,6 @@ def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> l
 
 
 def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
-    """Yield speeds with the directions that they have."""
     for speed in arrays:
         standard = str(speed.attrs.get("standard_name", speed.name))
         if not SPEEDS.search(standard) or _is_velocity(speed) is False:
@@ -171,7 +169,6 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
 
 
 def _polar(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
-    """Yield components along a radius and an angle."""
     for u in arrays:
         for v in arrays:
             if RADIAL.match(str(u.name)) and AROUND.match(str(v.name)) and _match(u, v):
@@ -250,7 +247,6 @@ def _partners(
 
 
 def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
-    """Return whether two variables have units of the same kind."""
     kinds = {_is_velocity(u), _is_velocity(v)}
     return u.name != v.name and (len(kinds) == 1 or False not in kinds)
 
@@ -273,7 +269,6 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
 
 
 def _directions(u: xr.DataArray) -> str:
-    """Return the direction of a first component, preferably by its standard name."""
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"
@@ -298,7 +293,6 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
 
 
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
-    """Return the message for a dataset without a pair, with its variables."""
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):

@@ -152,7 +152,6 @@ def _staggered(
     words: str,
     record: Record,
 ) -> Grid:
-    """Return a staggered grid, of places in all cells."""
     at = np.ix_(rows.cells, columns.cells)
     places = replace(places, a=places.a[at], b=places.b[at])
     record("align", f"{u.name} and {v.name} averaged from the sides of cells to their centres")
@@ -176,7 +175,6 @@ def _at_true_cells(
 
 
 def _cell_places(u: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Places:
-    """Return the places in the middle of cells, by the dimensions of these."""
     other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
     inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
     return find_places(inside, cells, beside)
@@ -218,7 +216,6 @@ def _by_positions(
 
 
 def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, record: Record) -> Grid:
-    """Return the grid of components on lines of coordinates."""
     dims = horizontal_dims(u), horizontal_dims(v)
     period = 360.0 if at_u.is_earth else None
     (a_u, b_u), (a_v, b_v) = at_u.lines, at_v.lines
@@ -255,7 +252,6 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
 
 
 def _apart(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places) -> str:
-    """Return the message for components at different places."""
     texts = []
     for array, places in ((u, at_u), (v, at_v)):
         ends = [labels.text(line) for line in places.lines]
@@ -293,7 +289,6 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
 def _own_places(
     array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, beside: Beside
 ) -> Places | None:
-    """Return the places of a variable by coordinates that have its own dimensions."""
     if len(dims) < 2:
         return None
     own = {str(name): {*c.dims} for name, c in source.variables.items()}
@@ -310,7 +305,6 @@ def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Grid:
-    """Return a staggered grid by the names and sizes of its dimensions."""
     (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
     rows, columns = (v.sizes[row_v], u.sizes[row_u]), (u.sizes[column_u], v.sizes[column_v])
     if any(abs(sides - middle) > 1 for sides, middle in (rows, columns)):
@@ -370,7 +364,6 @@ def _nemo_places(
 
 
 def _wraps(places: Places) -> bool:
-    """Return whether the first column follows the last one."""
     if not places.is_earth:
         return False
     p = places.on_sphere

@@ -71,10 +71,9 @@ def read_section(
     one, two = (variable(datasets, str(name)) for name in two_names(options.vectors))
     u, v, choice = str(one.name), str(two.name), Choice.of(options)
     if set(one.dims) != set(two.dims):
-        listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
         raise FieldError(
-            f"the components have different axes: {listed}. Interpolate one to the levels of the "
-            "other, as in ds.w.interp(...)"
+            f"{u} has {', '.join(map(str, one.dims))} and {v} {', '.join(map(str, two.dims))}; "
+            "interpolate one to the levels of the other, as in ds.w.interp(...)"
         )
     level, along = _axes(one, {*choice.sel, *choice.isel})
     for dim in (level, along):
@@ -131,7 +130,6 @@ def _velocity(u: LazySteps, v: LazySteps, across: float, up: float, step: int) -
 
 
 def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
-    """Return the dimensions of the levels and along the section."""
     kinds = {str(dim): axis_kind(array, str(dim)) for dim in array.dims}
     levels = [dim for dim, kind in kinds.items() if kind == LEVEL]
     others = [
@@ -150,13 +148,10 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
 
 
 def _coordinate(array: xr.DataArray, dim: str) -> xr.DataArray:
-    """Return the coordinate of a dimension, (n,)."""
-    along: list[xr.DataArray] = [c for c in array.coords.values() if c.dims == (dim,)]
-    along = [c for c in along if c.dtype.kind in "fiu"]
+    along = [c for c in array.coords.values() if c.dims == (dim,) and c.dtype.kind in "fiu"]
     if not along:
         raise FieldError(f"{dim} has no coordinate; add it, as in ds.assign_coords({dim}=...)")
-    along.sort(key=lambda c: c.name != dim)
-    return along[0]
+    return min(along, key=lambda c: c.name != dim)
 
 
 def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, float, str]:
@@ -199,7 +194,6 @@ def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
 
 
 def _is_downward(up: xr.DataArray) -> bool:
-    """Return whether levels grow downward, as pressures and depths do."""
     positive = str(up.attrs.get("positive", "")).lower()
     if positive in ("up", "down"):
         return positive == "down"

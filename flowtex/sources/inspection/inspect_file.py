@@ -74,7 +74,6 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
 
 @lru_cache(maxsize=1024)
 def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, ...]:  # noqa: FBT001
-    """Inspect one file, and return the files that it names."""
     if not size:  # it cannot be mapped
         return _inspect(path, b"", whole=whole)
     with path.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as data:

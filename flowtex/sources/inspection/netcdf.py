@@ -116,7 +116,6 @@ class _Header:
             self._read(-(-nbytes // 4) * 4)
 
     def _entries(self) -> range:
-        """Return a range over the entries of a list."""
         self._unpack(">I")  # the kind of entries
         count = self._number()
         check_variables(count)

@@ -95,7 +95,6 @@ class _Legacy:
         return None if begin == length else self._data[begin:stop].removesuffix(b"\r")
 
     def _skip(self, count: int) -> bytes:
-        """Return up to ``count`` bytes."""
         begin, self._at = self._at, min(self._at + count, len(self._data))
         return self._data[begin : self._at]
 

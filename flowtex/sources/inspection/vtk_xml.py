@@ -180,7 +180,6 @@ class _Document:
         self._path.pop()
 
     def _stop(self) -> None:
-        """Store the end of the content of the last array."""
         if self.arrays and not self.arrays[-1].end:
             self.arrays[-1].end = self._parser.CurrentByteIndex
 
@@ -190,8 +189,6 @@ class _Appended(Exception):
 
 
 class _Contents:
-    """The content of the arrays in a file."""
-
     def __init__(self, data: Data, document: _Document) -> None:
         self._data, self._document = data, document
         self._base = len(data)

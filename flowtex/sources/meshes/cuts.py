@@ -228,7 +228,6 @@ def _surface_of(
 
 
 def _examples(mesh: pv.DataSet) -> str:
-    """Return examples of cuts of a volume: across its shortest side, and by one of its arrays."""
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
@@ -238,7 +237,6 @@ def _examples(mesh: pv.DataSet) -> str:
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a mesh without its hidden cells, and with the hidden points marked."""
     hidden = hidden_nodes(mesh)
     ghosts = mesh.cell_data.get("vtkGhostType", np.zeros(mesh.n_cells, np.uint8))
     mesh = mesh.copy(deep=False)

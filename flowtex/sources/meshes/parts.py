@@ -134,7 +134,6 @@ def drawn_parts(
 
 
 def _same_nodes(meshes: list[pv.DataSet]) -> bool:
-    """Return whether meshes have the same nodes, judged by their sizes and bounds."""
     first = np.asarray(meshes[0].bounds)
     near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
     same = (np.abs(np.asarray(mesh.bounds) - first).max() <= near for mesh in meshes)
@@ -214,7 +213,6 @@ def _steps(
 
 
 def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
-    """Return several blocks as one mesh, of those that have vectors."""
     import pyvista as pv
 
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
@@ -240,7 +238,6 @@ def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:
-    """Return a PyVista mesh, also of a bare VTK one."""
     import pyvista as pv
 
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
@@ -253,7 +250,6 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
 
 
 def _time(mesh: pv.DataObject) -> float | None:
-    """Return the time of a mesh, in the field data of VTK's writers."""
     values = np.asarray(mesh.field_data.get("TimeValue", []), dtype=float).ravel()
     return float(values[0]) if len(values) else None
 

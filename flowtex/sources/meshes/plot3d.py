@@ -141,7 +141,6 @@ def _solution_names(grid: Path) -> Iterator[str]:
 
 
 def _check_solution(layout: Layout, solution: Path) -> None:
-    """Raise a FieldError for a solution that is cut, or of other grids."""
     if not layout.binary:
         return
     size = solution.stat().st_size

@@ -130,7 +130,6 @@ def _stacked(
     record: Record,
     volume: VolumeValues,
 ) -> dict[str, Any]:
-    """Return the arrays of all steps on the nodes of the first."""
     masks, first, reordered = Masks(velocity), next(steps), 0
     start: Sheet | None = None
     read = []

@@ -15,7 +15,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axis_kind
-from flowtex.sources.datasets.coordinates import ACROSS, LATITUDE, LONGITUDE, UPWARD
+from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
 from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.model_mesh import POINTS, Mesh
@@ -207,14 +207,12 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         kind = next((str(k) for ds in datasets if (k := ds.attrs.get("featureType"))), "")
         if (times and len(values) > 1) or kind.lower() in PATHS:
-            why = f"along {', '.join(times)}" if times else f"of the type {kind!r}"
-            msg = (
+            why = f"along {times[0]}" if times else f"of the type {kind!r}"
+            raise FieldError(
                 f"{x.name} and {y.name} are positions {why}: a trajectory, or points that move. "
-                "Flowtex draws the flow on a surface; interpolate the values to a grid"
+                "Flowtex draws the flow on a surface; interpolate the values to a grid, or select "
+                "one time, as in ds.isel(time=0)"
             )
-            if dim and times:
-                msg += f", or select one time, as in ds.isel({times[0]}=0)"
-            raise FieldError(msg)
         if x.ndim == 1:
             return [ds.rename_dims({dim: NODES}) if dim in ds.dims else ds for ds in datasets]
     return list(datasets)
@@ -238,31 +236,15 @@ def _positions(datasets: Sequence[xr.Dataset]) -> Iterator[tuple[xr.DataArray, x
 
 def _pairs(arrays: list[xr.DataArray]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
     """Yield longitudes and latitudes, then x and y, along the same dimensions."""
-    for patterns, words, names in (
-        ((LONGITUDE, LATITUDE), ("longitude", "latitude"), (("lon", "lat"), ("long", "lat"))),
-        (
-            (ACROSS, UPWARD),
-            ("projection_x_coordinate", "projection_y_coordinate"),
-            (("x", "y"), ("easting", "northing")),
-        ),
-    ):
-        firsts, seconds = (
-            [
-                a
-                for a in arrays
-                if a.ndim
-                and a.dtype.kind in "fiu"
-                and not MOVING.search(str(a.name).lower())
-                and (a.attrs.get("standard_name") == word or pattern.match(str(a.name)))
-            ]
-            for pattern, word in zip(patterns, words, strict=True)
-        )
-        for x in firsts:
+    numbers = [a for a in arrays if a.ndim and a.dtype.kind in "fiu"]
+    for pattern, word in ((LONGITUDE, "longitude"), (ACROSS, "projection_x_coordinate")):
+        for x in numbers:
             name = str(x.name).lower()
-            partners = {name.replace(one, other) for one, other in names if one in name}
-            for y in seconds:
-                if y.dims == x.dims and str(y.name).lower() in partners:
-                    yield x, y
+            named = pattern.match(name) or x.attrs.get("standard_name") == word
+            if named and not MOVING.search(name):
+                partners = {name.replace(one, other) for one, other in SWAPS if one in name}
+                alike = (y for y in numbers if str(y.name).lower() in partners)
+                yield from ((x, y) for y in alike if y.dims == x.dims)
 
 
 def _is_surface(x: xr.DataArray, y: xr.DataArray) -> bool:

@@ -143,7 +143,7 @@ class Mesh:
         return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
 
     @cached_property
-    def _split(self) -> tuple[Indices, Indices]:
+    def triangles(self) -> tuple[Indices, Indices]:
         """Triangles, (M, 3), and the number of the face that each is a part of, (M,)."""
         faces = self.faces.copy()
         if faces.shape[1] > 3:
@@ -161,20 +161,10 @@ class Mesh:
             numbers.append(np.flatnonzero(whole))
         return np.concatenate(fans), np.concatenate(numbers)
 
-    @property
-    def triangles(self) -> Indices:
-        """The faces cut into triangles, (M, 3)."""
-        return self._split[0]
-
-    @property
-    def triangle_faces(self) -> Indices:
-        """The face that each triangle is a part of, (M,)."""
-        return self._split[1]
-
     @cached_property
     def areas(self) -> Floats:
         """Areas of the faces, (F,)."""
-        triangles, numbers = self._split
+        triangles, numbers = self.triangles
         doubled = np.nan_to_num(np.linalg.norm(triangle_normals(self.positions, triangles), axis=1))
         return np.asarray(np.bincount(numbers, doubled / 2, len(self.faces)))
 
@@ -201,9 +191,9 @@ class Mesh:
         """Words for the mesh and its size."""
         if self.kind == POINTS:
             return f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
-        edges = (self.faces >= 0).sum(axis=1)
         kinds = {3: "triangles", 4: "quadrilaterals"}
-        name = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
+        edges = np.unique((self.faces >= 0).sum(axis=1))
+        name = kinds.get(int(edges[0]), "polygons") if len(edges) == 1 else "polygons"
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
 
 
@@ -300,8 +290,11 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
     p = p / np.linalg.norm(p, axis=1, keepdims=True) if on_sphere else p
     triangles = _on_sphere(p) if on_sphere else _in_plane(p[:, :2])
     if len(triangles):
-        shortest, radii = _sizes(p, triangles)
-        if np.median(shortest / radii) >= THIN:
+        edges = np.linalg.norm(p[triangles] - p[np.roll(triangles, 1, axis=1)], axis=-1)
+        doubled = np.linalg.norm(triangle_normals(p, triangles), axis=1)
+        tiny = np.finfo(float).tiny
+        radii = np.maximum(edges.prod(axis=1) / np.maximum(2 * doubled, tiny), tiny)
+        if np.median(edges.min(axis=1) / radii) >= THIN:
             triangles = triangles[~_across_gaps(triangles, radii, len(p))]
             if 2 * len(np.unique(triangles)) > len(p):
                 return used[triangles]
@@ -342,14 +335,6 @@ def _in_plane(p: Floats) -> Indices:
         return np.asarray(Delaunay(p).simplices.astype(np.int64))
     except QhullError:  # on one line
         return np.zeros((0, 3), dtype=np.intp)
-
-
-def _sizes(p: Floats, triangles: Indices) -> tuple[Floats, Floats]:
-    """Return the shortest edges and the circumradii of triangles, (M,) each."""
-    edges = np.linalg.norm(p[triangles] - p[np.roll(triangles, 1, axis=1)], axis=-1)
-    doubled = np.linalg.norm(triangle_normals(p, triangles), axis=1)
-    tiny = np.finfo(float).tiny
-    return edges.min(axis=1), np.maximum(edges.prod(axis=1) / np.maximum(2 * doubled, tiny), tiny)
 
 
 def _across_gaps(triangles: Indices, radii: Floats, count: int) -> Bools:

@@ -176,7 +176,6 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
 
 
 def _is_grid(a: AnyArray, b: AnyArray) -> bool:
-    """Return whether points are most of the nodes of rows and columns."""
     (columns, i), (rows, j) = (np.unique(c, return_inverse=True) for c in (a, b))
     if not 0 < len(columns) * len(rows) <= MOST_PLACES * len(a):
         return False
@@ -187,7 +186,6 @@ def _is_grid(a: AnyArray, b: AnyArray) -> bool:
 
 
 def _points(frame: Any, points: Any, axes: list[str], x: str, y: str) -> xr.Dataset:
-    """Return points along one dimension, and times and levels along others."""
     places = len(points) * int(np.prod([frame[axis].nunique() for axis in axes]))
     if len(frame) < FEWEST_ROWS * places:
         raise FieldError(
@@ -288,7 +286,6 @@ def read_winds(path: Path) -> xr.Dataset:
 
 
 def _component(header: dict[str, Any], data: Any, name: str) -> xr.DataArray:
-    """Return one record as an array on latitude and longitude."""
     columns, rows = int(header["nx"]), int(header["ny"])
     check_count(min(columns, rows), 1, f"the {name} component", "columns and rows")
     check_count(len(data), columns * rows, f"the {name} component", "numbers")

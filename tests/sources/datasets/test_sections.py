@@ -102,7 +102,7 @@ def kilograms(ds: xr.Dataset) -> xr.Dataset:
         ),
         (
             lambda ds: ds.assign(w=ds["w"].isel(level=0)),
-            "the components have different axes: v has",
+            "interpolate one to the levels of the other",
         ),
         (lambda ds: ds.drop_vars("level"), "level has no coordinate; add it, as in"),
         (kilograms, "the unit of x is 'kg'; expected degrees, or one of length"),
