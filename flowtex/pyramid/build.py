@@ -64,8 +64,7 @@ if TYPE_CHECKING:
     from zarr import Group
     from zarr.abc.store import Store
 
-#: Failures in a row that end a build: the store may be full or write-protected.
-MOST_FAILURES = 20
+MOST_FAILURES = 20  #: Failures in a row that end a build: the store may be full or write-protected.
 #: Entries that identify a field and how it is drawn.
 IDENTITY = (
     *("format", "times", "nodes", "parameter", "lines", "depth", "tile_cells", "components"),
@@ -266,7 +265,6 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
 def _prepared(
     place: str, about: dict[str, Any], source: NodeSource, *, fresh: bool
 ) -> tuple[Group, dict[str, Sequence[str]], dict[str, Any], bool]:
-    """Return the group of a store, its arrays, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
     store = store_at(place, read_only=False)
     if fresh:
@@ -380,7 +378,6 @@ class _Run:
 
 
 def _existing_units(run: _Run, name: str) -> Iterator[Part | TileTask]:
-    """Yield the parts, or the tiles at a step, of which an array has an object."""
     axes, (top, _, kind) = run.arrays[name], name.partition("/")
     if kind in (FLOW, VALUES):
         for step, row, column, *_ in run.shards(name):

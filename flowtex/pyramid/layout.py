@@ -13,18 +13,9 @@
         values             (time, tile row, tile column, scalar, byte)
         digests            (time, part row, part column, byte), of the values of each part
 
-Velocities and scalars are float32, positions float64; of velocities the first 13 bits are kept.
-Whoever draws makes tiles of a region of a level, with the halo that their paths need, and traces
-them; the root is one tile. Browsers read the data for them in files of parts: the
-surface of a tile, with all that is the same at all times, the flow of one time, and the values of
-one scalar, so that it takes what it shows with one request each. The flow is the velocity where the
-browser can trace it, and slices where it cannot. Scalar 0 is the speed, which
-follows from the velocity.
-
-Arrays over nodes lie in chunks of a tile, several in a shard, packed by Blosc. A file is a shard,
-followed by zeros, of which most are left out, packed by gzip, which browsers undo themselves. All
-has check sums. A part is a shard of the arrays over nodes; a hash of all digests of level 0
-identifies the field.
+Velocities and scalars are float32, positions float64. Arrays over nodes lie in chunks of a tile,
+several in a shard. Browsers read the last files, gzipped: the surface of a tile, its flow at a time
+(the velocity, or slices), and the values of a scalar; number 0 is the speed.
 """
 
 from __future__ import annotations
@@ -57,28 +48,18 @@ if TYPE_CHECKING:
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
 SHARD_CHUNKS = (2, 4)
-#: Most bytes of a file of parts.
-FILE_BYTES = 1 << 28
-#: Bytes of a chunk of such a file.
-FILE_CHUNK = 1 << 20
-#: Time steps of a series up to which a reader holds all of them.
-MOST_HELD = 8
-#: Level of gzip; a higher one takes longer and gains little.
-GZIP_LEVEL = 4
-#: The same of Zstandard.
-ZSTD_LEVEL = 3
+FILE_BYTES = 1 << 28  #: Most bytes of a file of parts.
+FILE_CHUNK = 1 << 20  #: Bytes of a chunk of such a file.
+MOST_HELD = 8  #: Time steps of a series up to which a reader holds all of them.
+GZIP_LEVEL = 4  #: Level of gzip; a higher one takes longer and gains little.
+ZSTD_LEVEL = 3  #: The same of Zstandard.
 #: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
 VELOCITY_BITS = 11
-#: Array of the files with the flow of tiles.
-FLOW = "flow"
-#: Array of the files with the values that colour tiles.
-VALUES = "values"
-#: Array of the files with the surface of tiles.
-SURFACE = "surface"
-#: Array of the hashes of parts.
-DIGESTS = "digests"
-#: Bytes of a hash.
-DIGEST_BYTES = 16
+FLOW = "flow"  #: Array of the files with the flow of tiles.
+VALUES = "values"  #: Array of the files with the values that colour tiles.
+SURFACE = "surface"  #: Array of the files with the surface of tiles.
+DIGESTS = "digests"  #: Array of the hashes of parts.
+DIGEST_BYTES = 16  #: Bytes of a hash.
 #: Texts of a field that a store keeps.
 TEXTS = ("name", "length_unit", "time_unit", "velocity_unit", "vectors", "uncertainty")
 CONVENTION = {
@@ -90,18 +71,12 @@ CONVENTION = {
     "name": "multiscales",
     "description": "Multiscale layout of zarr datasets",
 }
-#: Most nodes along an axis.
-MOST_NODES = 10**7
-#: Most time steps.
-MOST_STEPS = 10**6
-#: Most levels.
-MOST_LEVELS = 40
-#: Most characters of a text.
-MOST_LETTERS = 10_000
-#: Most scalars.
-MOST_SCALARS = 1000
-#: Nodes of the coarsest level, which is read whole, at most.
-MOST_ROOT_NODES = 1_000_000
+MOST_NODES = 10**7  #: Most nodes along an axis.
+MOST_STEPS = 10**6  #: Most time steps.
+MOST_LEVELS = 40  #: Most levels.
+MOST_LETTERS = 10_000  #: Most characters of a text.
+MOST_SCALARS = 1000  #: Most scalars.
+MOST_ROOT_NODES = 1_000_000  #: Nodes of the coarsest level, which is read whole, at most.
 
 Check = Callable[[Any], bool]
 #: The description of a field and its pyramid, as the store has it; ``_ABOUT`` lists its entries.
@@ -278,8 +253,7 @@ def rounded(velocity: Floats) -> Floats32:
     return np.asarray(np.ldexp(whole, exponent - VELOCITY_BITS), np.float32)
 
 
-#: A function that returns the array of a name.
-Arrays: TypeAlias = Callable[[str], Any]
+Arrays: TypeAlias = Callable[[str], Any]  #: A function that returns the array of a name.
 
 
 def to_write(store: Store) -> Arrays:

@@ -41,16 +41,11 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 Index = tuple[int | slice, ...]
-#: Seconds between checks whether the surrounding work was cancelled.
-LOOK_INTERVAL_S = 0.1
-#: Most characters of an error of another library that a message repeats.
-MOST_LETTERS = 300
-#: Most bytes of a number.
-NUMBER_BYTES = 8
-#: Bytes of a velocity.
-NODE_BYTES = 24
-#: Most bytes of steps in memory; a longer series is read step by step.
-KEPT_BYTES = 64_000_000
+LOOK_INTERVAL_S = 0.1  #: Seconds between checks whether the surrounding work was cancelled.
+MOST_LETTERS = 300  #: Most characters of an error of another library that a message repeats.
+NUMBER_BYTES = 8  #: Most bytes of a number.
+NODE_BYTES = 24  #: Bytes of a velocity.
+KEPT_BYTES = 64_000_000  #: Most bytes of steps in memory; a longer series is read step by step.
 
 
 class _Piece(NamedTuple):
@@ -58,8 +53,7 @@ class _Piece(NamedTuple):
 
     array: str
     selection: Index
-    #: Its name in errors.
-    name: str
+    name: str  #: Its name in errors.
     lines: tuple[Indices, Indices] | None = None
 
 
@@ -228,7 +222,6 @@ class Levels:
     def _later(
         self, level: int, name: str, rows: Indices, columns: Indices
     ) -> Callable[[int], AnyArray]:
-        """Return a function that reads a step of an array on request."""
 
         def read(step: int) -> AnyArray:
             (values,) = self._read(self._nodal(level, name, rows, columns, step))
@@ -299,7 +292,6 @@ class Levels:
 
 
 def _size(piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> int:
-    """Return the bytes that a piece of an array takes in memory."""
     shape, selection = array.shape, piece.selection
     if piece.lines is not None:
         shape = (*map(len, piece.lines), *shape[len(selection) + 2 :])

@@ -28,17 +28,14 @@ from zarr.storage import StorePath, WrapperStore
 from flowtex._util.cache import ByteCache
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
-#: Most objects, or parts of them, that are read at once from one store.
-MOST_READS = 16
-#: Memory of the objects that are kept, as they were compressed.
-CACHE_BYTES = 200_000_000
+MOST_READS = 16  #: Most objects, or parts of them, that are read at once from one store.
+CACHE_BYTES = 200_000_000  #: Memory of the objects that are kept, as they were compressed.
 #: Files for a browser are read once, to check them.
 _FILES = re.compile(r"^\d+/(flow|values|surface)/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
 #: Parameters of the Blosc codec.
 BLOSC_NAMES = ("typesize", "cname", "clevel", "shuffle", "blocksize")
-#: The window of zlib for data with the header and the check sum of gzip.
-_GZIP_WINDOW = 31
+_GZIP_WINDOW = 31  #: The window of zlib for data with the header and the check sum of gzip.
 
 
 @dataclass(frozen=True)

@@ -27,32 +27,22 @@ if TYPE_CHECKING:
     from zarr.abc.store import Store
 
 T = TypeVar("T")
-#: Format of every store; a reader refuses any other.
-FORMAT = "flowtex-pyramid-6"
-#: The object of a store that names the process which builds it.
-BUILDING = "building.json"
+FORMAT = "flowtex-pyramid-6"  #: Format of every store; a reader refuses any other.
+BUILDING = "building.json"  #: The object of a store that names the process which builds it.
 DOCUMENT = "zarr.json"
 #: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
 #: files are paths. One letter is a drive.
 _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
-#: Schemes of web servers.
-_WEB = ("http", "https")
-#: Schemes of Azure's storage.
-_AZURE = ("abfs", "abfss", "adl", "az", "azure")
+_WEB = ("http", "https")  #: Schemes of web servers.
+_AZURE = ("abfs", "abfss", "adl", "az", "azure")  #: Schemes of Azure's storage.
 _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
-#: Seconds to wait for a server's answer.
-SILENCE_S = 10.0
-#: Seconds to wait for a connection.
-CONNECT_S = 5.0
-#: Times that a failed request is repeated.
-MOST_REPEATS = 2
-#: Seconds before the first repetition.
-FIRST_PAUSE_S = 0.2
-#: Names of other data that a message lists.
-MOST_NAMES = 5
-#: Longest transfer of one object in seconds.
-LONGEST_S = 300.0
+SILENCE_S = 10.0  #: Seconds to wait for a server's answer.
+CONNECT_S = 5.0  #: Seconds to wait for a connection.
+MOST_REPEATS = 2  #: Times that a failed request is repeated.
+FIRST_PAUSE_S = 0.2  #: Seconds before the first repetition.
+MOST_NAMES = 5  #: Names of other data that a message lists.
+LONGEST_S = 300.0  #: Longest transfer of one object in seconds.
 _CREDENTIALS = (
     "credentials come from the environment, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, "
     "or AWS_SKIP_SIGNATURE=true for a public bucket"
@@ -332,7 +322,6 @@ def building(place: str) -> Iterator[None]:
 
 
 def _is_running(process: object) -> bool:
-    """Return whether a process of this machine runs, or that is unknown."""
     if sys.platform == "win32" or type(process) is not int:
         return True
     try:

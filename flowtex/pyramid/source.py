@@ -40,8 +40,7 @@ from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
 
-#: Nodes up to which a dataset is opened as a whole.
-WHOLE_NODES = 2_000_000
+WHOLE_NODES = 2_000_000  #: Nodes up to which a dataset is opened as a whole.
 #: Nodes of a sample of one time, from which the ranges of colours are found.
 MOST_SAMPLES = 1 << 20
 
@@ -185,8 +184,7 @@ class RegionSource:
         return ranges
 
 
-#: Sources of a pyramid.
-NodeSource: TypeAlias = FieldSource | RegionSource
+NodeSource: TypeAlias = FieldSource | RegionSource  #: Sources of a pyramid.
 
 
 def periods_of(source: NodeSource) -> tuple[Floats, Floats]:

@@ -116,8 +116,7 @@ class StoredPyramid(Pyramid):
         lines: str | None = None,
     ) -> None:
         self._stored = levels
-        #: The description of the field and its pyramid.
-        self.about: About = levels.about
+        self.about: About = levels.about  #: The description of the field and its pyramid.
         about = self.about
         super().__init__(
             field,
@@ -189,7 +188,6 @@ class StoredPyramid(Pyramid):
 
 
 def _agree(values: AnyArray, reference: AnyArray) -> bool:
-    """Return whether values are the same up to the rounding of stored velocities."""
     size = np.abs(np.nan_to_num(reference)).max(initial=0.0)
     return bool(np.allclose(values, reference, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))
 

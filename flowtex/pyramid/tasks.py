@@ -63,16 +63,12 @@ from flowtex.trace.store import SliceStore
 
 #: Entries of the slices that are the same in all tiles, and in the header of the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
-#: Error of a value as a share of the range that most of them have.
-VALUE_SHARE = 2.0**-17
+VALUE_SHARE = 2.0**-17  #: Error of a value as a share of the range that most of them have.
 #: Most memory of a task that makes a part of a level, as ``benchmarks/pyramid.py`` measures.
 PART_BYTES = 500_000_000
-#: Most memory of a task that traces a tile or the root.
-TILE_BYTES = 1_500_000_000
-#: Memory of a process for its imports.
-OWN_BYTES = 500_000_000
-#: Times that a task is tried.
-MOST_TRIALS = 3
+TILE_BYTES = 1_500_000_000  #: Most memory of a task that traces a tile or the root.
+OWN_BYTES = 500_000_000  #: Memory of a process for its imports.
+MOST_TRIALS = 3  #: Times that a task is tried.
 #: Parameter of glibc's ``mallopt`` for the free heap that it keeps, and its value in bytes.
 TRIM = (-1, 64 << 20)
 #: Parameter for the size from which an array has pages of its own, and its value in bytes.
@@ -134,7 +130,6 @@ def checks_of(
 
 
 def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
-    """Yield the objects of a part, or of a tile at a step; the first one shows that it exists."""
     if isinstance(unit, Part):
         level, step, row, column = unit
         series = [f"scalars/{name}" for name, count in about["scalars"].items() if step < count]
@@ -215,7 +210,6 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
-    """Return nodes without velocity, their scalars at one step."""
     nodes = levels.nodes(level, rows, columns, velocities=False)
     counts = levels.about["scalars"]
     scalars = {
@@ -287,7 +281,6 @@ def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
 
 
 def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts: Parts) -> None:
-    """Write a file of parts, as whole chunks."""
     owner = np.frombuffer(fingerprint.encode(), np.uint8)
     file = np.frombuffer(parts_file({"of": owner, **parts}, planes=True), np.uint8)
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
@@ -300,7 +293,6 @@ def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts:
 
 
 def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> Parts:
-    """Return the parts of a tile that are the same at all times."""
     parts = tile_parts(key, data)
     if data is not None:
         header = data.tile_header
@@ -332,7 +324,6 @@ def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Fl
 
 
 def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
-    """Return colours by the speed, and all scalars as further choices."""
     ranges = _ranges(pyramid)
     choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
     first, *others = (steps_of(field, name) for name in ranges)
@@ -472,7 +463,6 @@ def _set_allocator() -> None:
 
 
 def _packed(value: object) -> bytes | None:
-    """Return a value as bytes to send; ``None`` where these are too many."""
     try:
         data: bytes = import_extra("cloudpickle", "store").dumps(value)
     except Exception as error:

@@ -1,15 +1,10 @@
 """Positions of arrows on a surface: points nested by octaves, as even as possible at each.
 
-An octave halves the area that a seed has to itself. Its candidates are spread over the surface by
-hashed numbers; of these the one farthest from all seeds is taken, then the next, as long as they
-keep the octave's distance. So a seed has a *radius*, its distance from all that came before it, and
-those whose radius is above any number stand at least so far apart, and hardly farther: a view shows
-the seeds whose radius is long enough on the screen, and a zoom adds some between them. As they
-depend on the surface alone, they stay where they are.
-
-The first octaves are those of the whole surface. For finer ones the cells in view are divided,
-along their longer sides, until a part is no larger than what a candidate has to itself.
-``client/src/arrowseeds.ts`` has the same for the browser.
+An octave halves the area of a seed. Of its candidates, spread over the surface by hashed numbers,
+the one farthest from all seeds is taken, then the next, as long as they keep the octave's distance.
+So a seed has a *radius*, its distance from all before it, and a view shows those whose radius is
+long enough on the screen. For finer octaves the cells in view are divided into parts with a
+candidate each. ``client/src/arrowseeds.ts`` has the same for the browser.
 """
 
 from __future__ import annotations
@@ -29,20 +24,13 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.tiles.pyramid import TILE_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Distance of seeds in an octave over that in the one before.
-OCTAVE = float(np.sqrt(0.5))
-#: Most octaves.
-MOST_OCTAVES = 80
-#: Area that a candidate has to itself, over the square of that distance.
-CANDIDATE_AREA = 0.125
-#: Candidates in an octave of the whole surface, at most.
-MOST_CANDIDATES = 50_000
-#: Margin that is seeded beside a view, in heights of it.
-AROUND = 0.5
-#: The same in distances of seeds.
-AROUND_RADII = 3.0
-#: How much closer seeds are than requested, so that nearer views need no new ones.
-CLOSER = 0.75
+OCTAVE = float(np.sqrt(0.5))  #: Distance of seeds in an octave over that in the one before.
+MOST_OCTAVES = 80  #: Most octaves.
+CANDIDATE_AREA = 0.125  #: Area that a candidate has to itself, over the square of that distance.
+MOST_CANDIDATES = 50_000  #: Candidates in an octave of the whole surface, at most.
+AROUND = 0.5  #: Margin that is seeded beside a view, in heights of it.
+AROUND_RADII = 3.0  #: The same in distances of seeds.
+CLOSER = 0.75  #: How much closer seeds are than requested, so that nearer views need no new ones.
 
 Hashes = NDArray[np.uint32]
 
@@ -105,7 +93,6 @@ class ArrowSeeds:
         return self._last[2]
 
     def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
-        """Return whether the seeds of the last view are sufficient for another one."""
         points = self._corners_of(view)
         last_distance = CLOSER * least * last.pixel(last.distances(points))
         distance = spacing * view.pixel(view.distances(points))
@@ -154,7 +141,6 @@ class ArrowSeeds:
         return seeds[near]
 
     def _mesh_points(self, position: Floats) -> Floats:
-        """Transform positions in the surface's frame (n, 3) to mesh coordinates."""
         return position @ self._geometry.frame + self._geometry.center
 
     def _spread(self, octave: int, area: float) -> Seeds:
@@ -165,7 +151,6 @@ class ArrowSeeds:
         return self._points(self._cells[np.minimum(cell, len(self._sums) - 1)], key)
 
     def _points(self, parts: _Parts, key: Hashes) -> Seeds:
-        """Return one candidate in each part."""
         first = _mixed(key + const.OCTAVE_PRIME)
         share = np.stack([_shares(first), _shares(_mixed(first + const.OCTAVE_PRIME))], axis=-1)
         place = parts.low + parts.size * share
@@ -198,7 +183,6 @@ class ArrowSeeds:
         return seeds + Seeds(new.cell, new.place, new.position, distance[taken])
 
     def _needed(self, parts: _Parts, view: TileView, spacing: float, radius: float) -> _Parts:
-        """Return the parts in view, or near it, where the octave is needed."""
         middle = self._mesh_points(self._positions(parts.cell, parts.low + 0.5 * parts.size))
         reach = 0.5 * norm(self._sides(parts)).sum(axis=0)
         pixel = view.pixel(np.maximum(view.distances(middle) - reach, 0.0))
@@ -222,7 +206,6 @@ class ArrowSeeds:
         return parts
 
     def _positions(self, cell: Indices, place: Floats) -> Floats:
-        """Return points of cells, (n, 3)."""
         return _between(self._nodes[self.corners[cell]].astype(float), place)
 
     def _sides(self, parts: _Parts) -> Floats:
@@ -243,19 +226,16 @@ def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
 
 
 def _sees(view: TileView, points: Floats, reach: Floats | float) -> Bools:
-    """Return which points (n, 3) are in view, or in the seeded margin beside it."""
     return view.sees(points, reach + AROUND * view.pixels * view.pixel(view.distances(points)))
 
 
 def _mixed(key: Hashes) -> Hashes:
-    """Hash numbers."""
     for factor in const.HASH_FACTORS:
         key = (key ^ (key >> const.HASH_SHIFT)) * factor
     return np.asarray(key ^ (key >> const.HASH_SHIFT))
 
 
 def _shares(key: Hashes) -> Floats:
-    """Return hashes as numbers from 0 to 1."""
     return key / 2.0**32
 
 

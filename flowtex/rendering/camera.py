@@ -29,22 +29,17 @@ Point = tuple[float, float, float]
 #: Attributes of a camera by name, for JSON: lists of numbers, numbers, and a bool.
 CameraValues: TypeAlias = dict[str, Any]
 
-#: Direction from a curved surface to the camera.
-ASIDE = (1.0, 1.0, 1.0)
-#: The direction up.
-UP = (0.0, 0.0, 1.0)
+ASIDE = (1.0, 1.0, 1.0)  #: Direction from a curved surface to the camera.
+UP = (0.0, 0.0, 1.0)  #: The direction up.
 #: The same for all of a globe: above longitude 0 and 20 degrees north.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 #: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
 LEAST_ASIDE = 0.2
-#: Greatest ratio of the extents of two surfaces that share a camera.
-MOST_LARGER = 4.0
-#: Greatest distance of their centres over the larger extent.
-MOST_APART = 0.5
+MOST_LARGER = 4.0  #: Greatest ratio of the extents of two surfaces that share a camera.
+MOST_APART = 0.5  #: Greatest distance of their centres over the larger extent.
 #: Farthest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH = 1e9
-#: Nearest that a camera may be, in extents of the surface.
-NEAREST_REACH = 1e-9
+NEAREST_REACH = 1e-9  #: Nearest that a camera may be, in extents of the surface.
 
 
 @dataclass(frozen=True)
@@ -417,7 +412,6 @@ def can_share_camera(first: Surface, second: Surface) -> bool:
 
 
 def _side(center: Floats) -> tuple[Point, Point]:
-    """Return the directions upward and northward at a point of a globe."""
     if float(np.linalg.norm(center)) < LEAST_ASIDE * EARTH_RADIUS:
         return WHOLE_GLOBE, UP
     ahead = center / np.linalg.norm(center)

@@ -1,13 +1,8 @@
 """Diagnosis of OpenGL: its version and renderer, or the command that installs it.
 
-VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so OpenGL
-is tried in a second process, which draws a picture of 16 x 16 pixels, reads it back and prints its
-report as one line of JSON::
-
-    opengl_report()  ->  python diagnostics.py  ->  OpenGLReport, also after a crash
-
-The second process is started once per process. It runs this file alone, without the package, so
-nothing of that is imported before it is needed.
+VTK without an OpenGL library ends the process (a segmentation fault), so OpenGL is tried in a
+second process, once. It runs this file alone, without the package, draws a picture of 16 x 16
+pixels, reads it back and prints its report as one line of JSON.
 """
 
 from __future__ import annotations
@@ -32,8 +27,7 @@ TRIAL_TIMEOUT_S = 120.0
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
-#: The trials of processes, by their numbers.
-_trials: dict[int, Future[OpenGLReport]] = {}
+_trials: dict[int, Future[OpenGLReport]] = {}  #: The trials of processes, by their numbers.
 
 
 class OpenGLMissingError(RuntimeError):
@@ -190,7 +184,6 @@ def _unusable(failure: str) -> OpenGLReport:
 
 
 def _remedy() -> str:
-    """Return how to install an OpenGL that VTK can use in the present environment."""
     chosen = os.environ.get(WINDOW_VARIABLE, "")
     if importlib.util.find_spec("vtkmodules") is None:
         return "python -m pip install vtk"

@@ -23,16 +23,11 @@ class Stroke(NamedTuple):
 
 #: Lines by their options, from below to above.
 STROKES = {"graticule": Stroke("black", 0.4, 1.0), "coastlines": Stroke("black", 0.8, 1.1)}
-#: Height of a picture in which lines have their width.
-USUAL_HEIGHT_PX = 600
-#: Range of the factor by which the width changes with the height.
-WIDTH_RANGE = (0.6, 2.0)
-#: Distances of the points of lines in metres.
-SPACINGS = (200e3, 80e3, 20e3, 0.0)
-#: Most pixels between two points of a line.
-SPACING_PX = 2.0
-#: Share of the extent by which the box of a map is wider than its surface.
-WIDER = 1e-3
+USUAL_HEIGHT_PX = 600  #: Height of a picture in which lines have their width.
+WIDTH_RANGE = (0.6, 2.0)  #: Range of the factor by which the width changes with the height.
+SPACINGS = (200e3, 80e3, 20e3, 0.0)  #: Distances of the points of lines in metres.
+SPACING_PX = 2.0  #: Most pixels between two points of a line.
+WIDER = 1e-3  #: Share of the extent by which the box of a map is wider than its surface.
 #: Distance of the globe below the surface, in radii, in addition to the sagitta of its cells.
 LOWER = 1e-5
 
@@ -95,7 +90,6 @@ def globe_radius(field: FlowField) -> float | None:
 
 
 def _cells(field: FlowField) -> tuple[Floats, Floats]:
-    """Return the middles (N, 3) of the cells drawn and on land, and their radii, (N,)."""
     surface = field.surface
     corners = surface.points.reshape(-1, 3)[surface.nodes_of(surface.cells | land_cells(field))]
     middles = corners.mean(axis=1)

@@ -1,13 +1,9 @@
 """Triangles of a structured surface, in the number that a view needs.
 
-A surface is cut into blocks of :data:`BLOCK_CELLS` cells a side. Each block is drawn with every
-node, every second, every fourth, ..., up to one cell a block: with as few as keep the error on the
-screen below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times
-over, so the cost of a frame follows its pixels only without them.
-
-Along the border of two blocks, the finer one moves its extra nodes to those of the coarser one, so
-that no crack opens, also where both belong to tiles of different levels. Where a coarse cell would
-cover blanked cells and others, its block stays finer.
+A surface is cut into blocks of :data:`BLOCK_CELLS` cells a side. Each is drawn with every 2^l-th
+node, as few as keep the error on the screen below :data:`MAX_ERROR_PIXELS`: triangles smaller than
+a few pixels are shaded several times over. Along the border of two blocks, also of tiles of
+different levels, the finer one moves its extra nodes to those of the coarser one.
 """
 
 from __future__ import annotations
@@ -24,10 +20,8 @@ from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import BLOCK_CELLS, block_places
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Distance on the screen between a node and the triangle that replaces it.
-MAX_ERROR_PIXELS = 0.05
-#: Weight of an error of the outline: a quarter of a pixel across it.
-OUTLINE_SHARE = 0.2
+MAX_ERROR_PIXELS = 0.05  #: Distance on the screen between a node and the triangle that replaces it.
+OUTLINE_SHARE = 0.2  #: Weight of an error of the outline: a quarter of a pixel across it.
 #: Weight of an error along the surface: four pixels, because all nodes place the pixels.
 PLACED_SHARE = 0.0125
 #: Weight of an error across the surface: half a pixel, seen at the outline of a curved one.
@@ -172,7 +166,6 @@ class MeshLevels:
 
 
 def _at_cells(values: Floats) -> Floats:
-    """Return the greatest of the values (J, I) at the corners of each cell."""
     values = np.maximum(values[1:], values[:-1])
     return np.maximum(values[:, 1:], values[:, :-1])
 
@@ -204,8 +197,7 @@ def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
     return result
 
 
-#: Marks blocks that are not drawn: more doublings than any block has.
-NOT_DRAWN = 99
+NOT_DRAWN = 99  #: Marks blocks that are not drawn: more doublings than any block has.
 
 
 class Region(NamedTuple):

@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-#: Kernels by their numbers in the shaders.
-KERNELS = ("hann", "box", "ramp")
+KERNELS = ("hann", "box", "ramp")  #: Kernels by their numbers in the shaders.
 #: Values of a texture that stand for all, which are spread as a normal distribution.
 MEAN_VALUES = np.array([NormalDist().inv_cdf((n + 0.5) / 16) for n in range(16)])
 

@@ -16,8 +16,7 @@ from flowtex._util.arrays import norm
 from flowtex.settings import Settings
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 
-#: Pixels of the longer side of a cell above which the next level is drawn.
-CELL_PIXELS = 4.0
+CELL_PIXELS = 4.0  #: Pixels of the longer side of a cell above which the next level is drawn.
 
 
 @dataclass(frozen=True)
@@ -73,8 +72,7 @@ class Choice:
     finer: list[TileKey]  #: The tiles that are to be shown in place of its larger cells.
 
 
-#: By tile, coarse ones first; ``None`` is the root.
-Choices = dict[TileKey | None, Choice]
+Choices = dict[TileKey | None, Choice]  #: By tile, coarse ones first; ``None`` is the root.
 
 
 def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:

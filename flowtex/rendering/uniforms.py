@@ -22,23 +22,18 @@ from flowtex.textures.texture_set import TextureSet
 #: Uniforms by name: bool, int, float, tuples of float, or lists for arrays.
 Values: TypeAlias = Mapping[str, Any]
 
-#: Doublings from the finest cell of the noise to the extent of the surface.
-NOISE_DOUBLINGS = 30
+NOISE_DOUBLINGS = 30  #: Doublings from the finest cell of the noise to the extent of the surface.
 #: Finest doublings at which the origin of the noise is zero, so that single precision holds it.
 CLEAR_DOUBLINGS = 9
 #: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
 WAVE_PIXELS = 96.0
 #: Step of the coarse part of the clock in base periods: times a power of two it stays exact.
 CLOCK_STEP = 2.0**-12
-#: End of the clock in base periods.
-MOST_TURNS = 2.0**12
+MOST_TURNS = 2.0**12  #: End of the clock in base periods.
 
-#: Pieces of an arrow.
-ARROW_PIECES = 12
-#: Least distance of two arrows over the mean one.
-ARROW_LEAST = 0.85
-#: Least distance of two arrows in pixels.
-ARROW_MOST_DENSE = 8.0
+ARROW_PIECES = 12  #: Pieces of an arrow.
+ARROW_LEAST = 0.85  #: Least distance of two arrows over the mean one.
+ARROW_MOST_DENSE = 8.0  #: Least distance of two arrows in pixels.
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
@@ -220,7 +215,6 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:
-    """Return the length between two samples where a pixel covers this length."""
     grain, extent = pixel * settings.grain * view.density, textures.geometry.extent
     if not settings.lod:
         grain = extent / settings.resolution
@@ -286,7 +280,6 @@ def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
 
 
 def _image(image: ImageTextures, settings: Settings, density: float) -> Values:
-    """Return sizes of the image and of the step texture, which grow with the density of pixels."""
     height, width = (n * density for n in image.step.shape)
     rows, columns = (n * density * settings.tiles for n in image.texels.shape[:2])
     return {

@@ -1,11 +1,9 @@
 """The surface as a renderer draws it, and how its nodes lie in the textures.
 
-Positions are single precision, relative to the middle of the surface, and a flat surface is laid
-into its own plane, so that noise needs two dimensions there and three elsewhere.
-
-A node i lies at the middle of texel i + pad. Textures are padded to a multiple of their coarsest
-mip level's block, so every level averages whole blocks and stays in place; a periodic axis is
-continued by its own period on both sides, so that no level sees the seam.
+Positions are single precision, relative to the middle of the surface; a flat one is laid into its
+own plane. A node i lies at the middle of texel i + pad. Textures are padded to a multiple of their
+coarsest mip level's block, so every level averages whole blocks and stays in place; a periodic axis
+is continued by its own period on both sides, so that no level sees the seam.
 """
 
 from __future__ import annotations
@@ -25,16 +23,11 @@ from flowtex.field.grids.grid_surface import CubicMap, GridSurface, faces_of
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.triangles.triangle_surface import Surface
 
-#: Nodes looked up together, so few that they stay in a processor's cache.
-BLOCK = 16384
-#: Tangents that differ by less than this share of the longest make a map linear.
-LINEAR = 1e-6
-#: Share of a cell by which a displacement may pass a node, by rounding.
-ROUNDING = 1e-3
-#: Places on the way of a displacement where the surface is looked for.
-STEPS = 64
-#: How many times as far as on a straight surface a displacement leads at most.
-FARTHER = 3.0
+BLOCK = 16384  #: Nodes looked up together, so few that they stay in a processor's cache.
+LINEAR = 1e-6  #: Tangents that differ by less than this share of the longest make a map linear.
+ROUNDING = 1e-3  #: Share of a cell by which a displacement may pass a node, by rounding.
+STEPS = 64  #: Places on the way of a displacement where the surface is looked for.
+FARTHER = 3.0  #: How many times as far as on a straight surface a displacement leads at most.
 
 
 class NodeDisplacements:
@@ -131,10 +124,8 @@ class NodeDisplacements:
         return first + (1 - share) * (p * along_i + q * along_j), inside
 
 
-#: Most mip levels of a texture besides its finest one.
-DEEPEST = 5
-#: Mip levels of a tile besides its finest one.
-TILE_LEVELS = 3
+DEEPEST = 5  #: Most mip levels of a texture besides its finest one.
+TILE_LEVELS = 3  #: Mip levels of a tile besides its finest one.
 
 
 @dataclass(frozen=True)
@@ -462,5 +453,4 @@ class SurfaceGeometry(DrawnSurface):
 
 
 def _is_small(lengths: Floats) -> Bools:
-    """Return which normals are those of collapsed cells, by their lengths."""
     return np.asarray(lengths <= 1e-9 * max(float(np.median(lengths)), 1e-300))

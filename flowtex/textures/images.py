@@ -1,10 +1,6 @@
 """A user's image in place of the noise, and the step size of the paths through it.
 
-Texels are colours times opacity, and opacity. Averages of colours that were multiplied by their
-opacity keep the colour of a transparent pixel out of its neighbours, so dye has clean edges at
-every level of detail. Files are PNG, JPEG and all others that Pillow, which comes with PyVista, can
-read.
-
+Texels are colours times opacity, and opacity, so that dye has clean edges at every level of detail.
 The image lies on the parameters of the surface; its coordinates grow with the mean length of the
 grid lines. The step texture holds, for every texel, the lag in which the flow crosses it. Level n
 of it counts 2^n times as much, because its texels are twice as wide at every level.
@@ -29,15 +25,11 @@ from flowtex.trace.store import SliceStore
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-#: Most texels along a side; a larger image is averaged to fit.
-LARGEST = 4096
-#: Rounding by which a float may lie outside 0 to 1.
-SLACK = 1e-3
+LARGEST = 4096  #: Most texels along a side; a larger image is averaged to fit.
+SLACK = 1e-3  #: Rounding by which a float may lie outside 0 to 1.
 
-#: Longest step in units of lag: half precision ends soon after.
-LONGEST_STEP = 6e4
-#: Texels of the step texture along the longer side of the surface.
-STEP_TEXELS = 1024
+LONGEST_STEP = 6e4  #: Longest step in units of lag: half precision ends soon after.
+STEP_TEXELS = 1024  #: Texels of the step texture along the longer side of the surface.
 
 SHAPES = "(H, W) for grey, (H, W, 3) for colours, or (H, W, 4) with opacity"
 
@@ -180,8 +172,7 @@ def pixels_of(picture: Image) -> AnyArray:
 class ImageTextures:
     """An image over the parameters of a surface, and the step size with it."""
 
-    #: Texels as from :func:`as_picture`, (H, W, 4); row 0 is at j = 0.
-    texels: Floats32
+    texels: Floats32  #: Texels as from :func:`as_picture`, (H, W, 4); row 0 is at j = 0.
     #: Lag in which the flow crosses a texel of this texture, in multiples of the unit of lag.
     step: Floats32
     along_i: Floats  #: Image coordinates of the lines of nodes, (I,) and (J,), from 0 to 1.

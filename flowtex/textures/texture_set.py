@@ -1,9 +1,7 @@
 """TraceSlices as textures.
 
-A layer of the slice texture does not hold a displacement D(s) at lag s but the mean slope D(s) / s
-since lag zero. It is of order one at every lag, so half precision serves; it tends to the tangent
-as s goes to zero, which is layer 0; and interpolating it linearly between two lags gives a path
-of second order. Both sides share one sign: D(s) = s * slope(s), with s negative backward.
+A layer does not hold a displacement D(s) at lag s but the mean slope D(s) / s since lag zero, with
+s negative backward. It is of order one at every lag, so half precision serves.
 
 ====================  =====================================================  =================
 layer                 first three channels                                   fourth channel
@@ -14,11 +12,8 @@ M + 1 ... 2 M         slopes of the forward slices, where there are any      M +
 the last              of streamlines: layer 0 in cells, two channels         speed
 ====================  =====================================================  =================
 
-The fourth channels of layers 3 and M + 3 hold the uncertainty of the direction, from 0 to 1, if the
-field has one.
-A surface of triangles has no cells that are counted: the first channels of its last layer are not
-read. Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
-procedural noise; in image coordinates per unit of lag for an image in its place.
+Layers 3 and M + 3 have the uncertainty of the direction. Slopes are in space, lengths per unit of
+nominal length; in image coordinates per unit of lag for an image in place of the noise.
 """
 
 from __future__ import annotations
@@ -47,14 +42,10 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.slices import TraceSlices, typical_speed
 from flowtex.trace.store import SliceStore
 
-#: Most slices on each side, by the room in a shader.
-MOST_LAGS = 32
-#: The layer whose fourth channel is the uncertainty of the direction.
-UNCERTAIN_LAYER = 3
-#: Greatest number in half precision, in which texels are stored.
-HALF_MAX = 65504.0
-#: Relative error that is allowed in a slope: half of that of rounding.
-SLOPE_ERROR = 2.0**-12
+MOST_LAGS = 32  #: Most slices on each side, by the room in a shader.
+UNCERTAIN_LAYER = 3  #: The layer whose fourth channel is the uncertainty of the direction.
+HALF_MAX = 65504.0  #: Greatest number in half precision, in which texels are stored.
+SLOPE_ERROR = 2.0**-12  #: Relative error that is allowed in a slope: half of that of rounding.
 #: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
 AGREED = 0.99
 
@@ -211,7 +202,6 @@ class TextureSet:
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
-        """Return the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
             result[..., :3] = tangent
@@ -248,12 +238,10 @@ class TextureSet:
         return result
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
-        """Return the speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         speed = self.geometry.field.index_velocity.speed[self._step(slices)]
         return np.asarray(speed[self.geometry.texels] / self.typical_speed)
 
     def _step(self, slices: TraceSlices) -> int:
-        """Return the number of the destination time of slices."""
         return int(np.argmin(np.abs(self.geometry.field.times - slices.times[0])))
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
@@ -285,7 +273,6 @@ class TextureSet:
 
     @cached_property
     def _length(self) -> Floats32:
-        """Nominal length of one unit of lag at each node, (J, I, 1)."""
         length = (self.store.unit * self.pace)[self.geometry.texels]
         return length[..., None].astype(np.float32)
 

@@ -37,8 +37,7 @@ class TriangleGeometry(DrawnSurface):
     #: Centre, radius and longest side of a triangle of each block, (rows, C, 5).
     block_places: Floats
 
-    #: Mip levels besides the finest: none, for other levels of detail are other meshes.
-    levels = 0
+    levels = 0  #: Mip levels besides the finest: none, for other levels of detail are other meshes.
     periodic = (False, False)
 
     @classmethod
@@ -63,9 +62,8 @@ class TriangleGeometry(DrawnSurface):
     ) -> TriangleGeometry:
         """Lay out some nodes (n,) and triangles (m, 3) of a field, as a part of a larger surface.
 
-        ``members`` (m,) are the triangles' numbers.
-        The triangles have numbers of the field's nodes, and are drawn as one block unless there are
-        ``blocks`` with their places.
+        ``members`` (m,) are the triangles' numbers. The triangles have numbers of the field's
+        nodes, and are drawn as one block unless there are ``blocks`` with their places.
         """
         number = np.zeros(field.shape[1], dtype=np.intp)
         number[nodes] = np.arange(len(nodes))

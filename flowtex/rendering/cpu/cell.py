@@ -141,7 +141,6 @@ def _triangle(
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    """Return dot products of velocities in space, (n,)."""
     return np.asarray(np.einsum("nc,nc->n", a[:, :3], b[:, :3]))
 
 

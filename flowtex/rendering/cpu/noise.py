@@ -86,7 +86,6 @@ def _bright(values: Floats) -> Bools:
 
 
 def _dash(values: Floats, phases: Floats, turn: Floats) -> Floats:
-    """Values of bright grains that come once in a turn, and leave a tail."""
     turn = values * (phases * const.DASH_PHASES) + turn
     late = (turn - np.floor(turn)) / const.DASH_SHARE
     head = const.DASH_HIGH * np.maximum(1.0 - late, 0.0)

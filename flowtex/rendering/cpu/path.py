@@ -18,8 +18,7 @@ class Slices:
     before: Mips
     after: Mips | None = None
     between: float = 0.0
-    #: Whether it has the uncertainty of the direction.
-    uncertain: bool = False
+    uncertain: bool = False  #: Whether it has the uncertainty of the direction.
 
     def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""

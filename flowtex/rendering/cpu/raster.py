@@ -1,13 +1,9 @@
 """The triangle that each pixel shows, and the weights of its corners.
 
-Triangles are drawn in homogeneous coordinates of two dimensions (Olano and Greer 1997, *Triangle
-scan conversion using 2D homogeneous coordinates*). The columns (x, y, w) of the corners make a
-matrix M; b = M^-1 (px, py, 1) has the three weights over w of a pixel, so a pixel is inside where
-none is negative, 1 / w is their sum, and corners mix by b over that sum. Nothing has to be
-clipped, and the derivatives by the pixel follow from the same rows.
-
-A pixel that lies on an edge up to rounding is inside of the triangles on both sides, so that none
-is lost between them, and it belongs to one: the nearer, or else the first.
+Triangles are drawn in homogeneous coordinates of two dimensions (Olano and Greer 1997). The columns
+(x, y, w) of the corners make a matrix M; b = M^-1 (px, py, 1) has the three weights over w of a
+pixel, so a pixel is inside where none is negative, and corners mix by b over its sum 1 / w. A pixel
+on an edge up to rounding is inside of both triangles, and belongs to the nearer, or the first.
 """
 
 from __future__ import annotations
@@ -22,10 +18,8 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import Surface
 from flowtex.rendering.camera import Camera
 
-#: Pixels, or rows of pixels, that are tested together.
-CHUNK = 1 << 20
-#: Pixels by which the rows and columns of a triangle may be off from rounding.
-ROUNDING = 1e-6
+CHUNK = 1 << 20  #: Pixels, or rows of pixels, that are tested together.
+ROUNDING = 1e-6  #: Pixels by which the rows and columns of a triangle may be off from rounding.
 #: Rounding of a term of the numbers that decide on which side of an edge a pixel is.
 EPSILON = 8 * float(np.finfo(float).eps)
 
@@ -191,6 +185,5 @@ def _columns(edges: Floats, row: Indices, width: int) -> tuple[Indices, Indices]
 
 
 def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
-    """Return the edges' values at the middle of pixels, (N, 3)."""
     x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])

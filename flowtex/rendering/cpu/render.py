@@ -23,8 +23,7 @@ from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures.texture_set import TextureSet
 
-#: Fragments that are drawn together, so few that their arrays stay in the cache.
-PART = 1 << 14
+PART = 1 << 14  #: Fragments that are drawn together, so few that their arrays stay in the cache.
 
 
 @dataclass(frozen=True, eq=False)

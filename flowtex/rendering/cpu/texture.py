@@ -198,7 +198,6 @@ class Summing:
 
     @property
     def _count(self) -> int:
-        """Number of samples on a side of a path."""
         samples: int = self._values["u_samples"]
         return samples // 2 if self._values["u_sides"] == 2 else samples - 1
 

@@ -26,16 +26,12 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 #: Extents from the origin from which on VTK draws points relative to another one; nearer by it
 #: takes them to single precision as they are.
 FAR_EXTENTS = 1e3
-#: Point array of positions in the frame of the surface.
-POSITION = "flowtex position"
-#: Point array of coordinates in the slices.
-COORDINATE = "flowtex coordinate"
-#: Point array of coordinates in an image.
-IMAGE = "flowtex image"
+POSITION = "flowtex position"  #: Point array of positions in the frame of the surface.
+COORDINATE = "flowtex coordinate"  #: Point array of coordinates in the slices.
+IMAGE = "flowtex image"  #: Point array of coordinates in an image.
 CORNERS = "flowtex corners"
 NORMAL = "Normals"
-#: Greatest share of the range of a colour map.
-MOST_RANGES = 1e3
+MOST_RANGES = 1e3  #: Greatest share of the range of a colour map.
 
 
 def surface_mesh(textures: TextureSet) -> pv.PolyData:

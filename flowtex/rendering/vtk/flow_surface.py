@@ -55,10 +55,8 @@ from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.loader import Tile, TileLoader
 from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
 
-#: Time after which a window is drawn again while tiles are on their way.
-LOOK_INTERVAL_MS = 250
-#: Attribute of the vertices of a ribbon: piece and side.
-RIBBON = "flowtexRibbon"
+LOOK_INTERVAL_MS = 250  #: Time after which a window is drawn again while tiles are on their way.
+RIBBON = "flowtexRibbon"  #: Attribute of the vertices of a ribbon: piece and side.
 
 
 class Scalars(NamedTuple):
@@ -286,7 +284,6 @@ class FlowSurface:
         return True
 
     def _tile_view(self, renderer: pv.Renderer) -> TileView:
-        """Return the view for which tiles are chosen, in the mesh's coordinates."""
         camera, (width, height), planes = renderer.GetActiveCamera(), renderer.GetSize(), [0.0] * 24
         eye, half = None, 0.5 * self._base.height
         if not camera.GetParallelProjection():
@@ -297,7 +294,6 @@ class FlowSurface:
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
-        """Return whether a tile can be drawn, and make its actor first."""
         tile = None if self._loader is None else self._loader.get(key, steps)
         if tile is None:
             return False
@@ -324,7 +320,6 @@ class FlowSurface:
         return TileLoader(pyramid, prepare=prepare, notify=notify)
 
     def _layer_of(self, tile: Tile, textures: TextureSet) -> FlowLayer:
-        """Make the actor of a tile, with the properties of the surface's own one."""
         mesh, mesh_levels, written = tile.prepared
         actor = pv.Actor(mapper=FlowMapper(mesh))
         actor.SetProperty(self._actor.prop)
@@ -337,7 +332,6 @@ class FlowSurface:
         return layer
 
     def _show(self, keys: list[TileKey | None]) -> None:
-        """Show exactly these tiles in the renderer."""
         renderer, base = self._renderer(), self._actor
         if renderer is None:
             return
@@ -441,7 +435,6 @@ class SurfaceArrows:
     def _shared(
         self, seeds: Seeds, layers: Mapping[TileKey | None, FlowLayer], pyramid: Pyramid | None
     ) -> dict[TileKey | None, dict[str, Floats]]:
-        """Share seeds among the layers: the finest one that is ready draws them."""
         assert self._seeds is not None
         result: dict[TileKey | None, dict[str, Floats]] = {}
         keys = sorted((key for key in layers if key is not None), key=lambda key: key.level)
@@ -475,11 +468,9 @@ class _Arrows:
         observe_draws(self.actor.mapper, self._before_draw)
 
     def set_data(self, data: dict[str, Floats]) -> None:
-        """Draw other seeds, given by their vertex attributes."""
         self._data, self._anchor = data, None
 
     def look(self, place: Floats) -> None:
-        """Follow the layer, on a surface at a place (4, 4)."""
         geometry, anchor = self.layer.textures.geometry, self.layer.view.anchor
         matrix = np.eye(4)
         matrix[:3, :3] = geometry.frame.T

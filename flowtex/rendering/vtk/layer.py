@@ -1,14 +1,8 @@
 """One flow texture on one PyVista actor.
 
-The shader's text is put in by ``Actor.add_shader_replacement`` under flowtex's own name, so it
-can be taken out again exactly. Everything that changes from frame to frame is a uniform: VTK
-calls back with the shader program before each draw, and the numbers and texture units are written
-to it there. The text is built again only for another variant.
-
-::
-
-    TextureSet, Settings, ViewState --> FlowLayer --text------------------> Actor
-                                            +----uniforms, texture units-> vtkShaderProgram
+``Actor.add_shader_replacement`` puts the shader's text in under flowtex's own name, anew only for
+another variant. Everything that changes from frame to frame is a uniform: VTK calls back with the
+shader program before each draw, and numbers and texture units are written to it there.
 """
 
 from __future__ import annotations
@@ -56,10 +50,8 @@ from flowtex.textures.triangle_geometry import TriangleGeometry, image_size
 
 #: OpenGL's numbers of internal formats in half precision by channels.
 FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
-#: The same in single precision.
-SINGLE = {2: 0x8230, 3: 0x8815, 4: 0x8814}
-#: OpenGL's number of the type of half precision.
-HALF_FLOAT = 0x140B
+SINGLE = {2: 0x8230, 3: 0x8815, 4: 0x8814}  #: The same in single precision.
+HALF_FLOAT = 0x140B  #: OpenGL's number of the type of half precision.
 
 
 def send_texture(
@@ -99,16 +91,13 @@ def send_texture(
 
 
 def _unbind(texture: vtkTextureObject) -> None:
-    """Release the texture unit."""
     if texture.GetTextureUnit() >= 0:
         texture.Deactivate()
 
 
-#: Name under which PyVista registers the replacements.
-OWNER = "flowtex"
+OWNER = "flowtex"  #: Name under which PyVista registers the replacements.
 
-#: Variants of a shader that shows sums.
-SHOWN = {"FLOWTEX_DEFERRED", "FLOWTEX_OWN"}
+SHOWN = {"FLOWTEX_DEFERRED", "FLOWTEX_OWN"}  #: Variants of a shader that shows sums.
 #: Shaders, and our parts of them.
 STAGES = [(s, p) for s in ("vertex", "geometry", "fragment") for p in ("dec", "impl")]
 
@@ -143,8 +132,7 @@ class FlowLayer:
         self._variant: frozenset[str] | None = None
         self._mesh_levels = mesh_levels
         self._colours: MappedColours | None = None
-        #: Name of the point array whose values belong to cells.
-        self.flat_array: str | None = None
+        self.flat_array: str | None = None  #: Name of the point array whose values belong to cells.
         self._gpu: dict[str, vtkTextureObject] = {}
         self._retired: list[vtkTextureObject] = []
         self.view = ViewState()
@@ -332,7 +320,6 @@ class FlowLayer:
         return np.asarray(pv.array_from_vtkmatrix(self.actor.GetMatrix()))
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
-        """Return the function that loads the texture of each sampler of the shader."""
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
         colours, geometry = self._colours, self.textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
@@ -353,7 +340,6 @@ class FlowLayer:
         return loaders
 
     def _slices(self, number: int) -> dict[str, Any]:
-        """Return the slices of the first or the second of the two steps, as of a texture."""
         step, textures = self._steps[number], self.textures
         if self._is_blank:
             layers = np.zeros((textures.count, *textures.geometry.size, 4), np.float16)
@@ -438,7 +424,6 @@ class FlowLayer:
             self._mapper.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
-        """Use the colours of the mapper, which users may have changed."""
         colours = MappedColours.of(self._mapper, self.mesh, self.flat_array)
         before, self._colours = self._colours, colours
         if (before and before.state) != (self._colours and self._colours.state):

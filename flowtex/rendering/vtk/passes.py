@@ -1,14 +1,9 @@
 """One sum for each visible pixel: where on the surface it lies, then the texture there.
 
 Before a renderer draws, two passes do so off the screen. The first draws the triangles of its
-layers into a texture of places, without anything else, so that small and hidden triangles cost
-little. The second draws a rectangle for each layer, whose pixels look up their place and sum noise
-along their paths. Then the actors are drawn as ever and fetch the sums of their pixels, so
-lighting, clipping, picking and multisampling remain VTK's.
-
-::
-
-    FlowLayer --mesh--> places --pixels--> sums --texture u_sums--> Actor
+layers into a texture of places. The second draws a rectangle for each layer, whose pixels look up
+their place and sum noise along their paths. Then the actors are drawn as ever and fetch the sums of
+their pixels, so lighting, clipping, picking and multisampling remain VTK's.
 """
 
 from __future__ import annotations
@@ -38,24 +33,16 @@ from flowtex.rendering.vtk.flow_mapper import (
 )
 from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
 
-#: OpenGL's number of blending.
-BLEND = 0x0BE2
-#: OpenGL's number of the scissor test.
-SCISSOR = 0x0C11
-#: OpenGL's number of the depth test.
-DEPTH_TEST = 0x0B71
-#: OpenGL's number of the comparison of equal depths.
-EQUAL = 0x0202
-#: OpenGL's number of the comparison that is always true.
-ALWAYS = 0x0207
-#: Most layers, a power of two: their numbers are depths.
-MOST_LAYERS = 4096
+BLEND = 0x0BE2  #: OpenGL's number of blending.
+SCISSOR = 0x0C11  #: OpenGL's number of the scissor test.
+DEPTH_TEST = 0x0B71  #: OpenGL's number of the depth test.
+EQUAL = 0x0202  #: OpenGL's number of the comparison of equal depths.
+ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
+MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
 #: VTK begins shaders with what it writes for these.
 MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
-#: Pixels from one to the next of those in which it is looked for tiles.
-SKIPPED = 3
-#: Before the actors are drawn, but after all else that waits for the start of a frame.
-LAST = -1.0
+SKIPPED = 3  #: Pixels from one to the next of those in which it is looked for tiles.
+LAST = -1.0  #: Before the actors are drawn, but after all else that waits for the start of a frame.
 
 
 class DeferredPasses:
@@ -200,7 +187,6 @@ class _Target:
         self._depth = vtkTextureObject()
 
     def fit(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
-        """Have as many pixels as a window."""
         if (self.texture.GetWidth(), self.texture.GetHeight()) == size:
             return
         for part in (self.texture, self._depth, self.frame):
@@ -212,7 +198,6 @@ class _Target:
         self.frame.AddDepthAttachment(self._depth)
 
     def bind(self) -> None:
-        """Have the next draws go there."""
         self.frame.Bind()
         self.frame.ActivateDrawBuffer(0)
 
@@ -230,12 +215,10 @@ class _Rectangle:
 
     @property
     def program(self) -> vtkShaderProgram:
-        """The program, which is in use."""
         assert self._program is not None
         return self._program
 
     def use(self, window: vtkOpenGLRenderWindow) -> None:
-        """Have uniforms go to this program."""
         cache = window.GetShaderCache()
         if self._program is None:
             self._program = cache.ReadyShaderProgram(self._texts[0], self._texts[1], "")
@@ -267,13 +250,11 @@ class _Buffers:
         self._numbers = _Rectangle("depth", frozenset())
 
     def fit(self, window: vtkOpenGLRenderWindow) -> None:
-        """Have as many pixels as a window."""
         width, height = window.GetActualSize()
         self.places.fit(window, (width, height))
         self.sums.fit(window, (width, height))
 
     def number(self, window: vtkOpenGLRenderWindow) -> None:
-        """Write the numbers of layers as depths."""
         self._numbers.use(window)
         program = self._numbers.program
         program.SetUniformi("u_places", self.places.texture.GetTextureUnit())
@@ -304,7 +285,6 @@ class _Part:
         observe_draws(self.actor.mapper, self._before_places)
 
     def follow(self, number: int) -> None:
-        """Draw what the layer draws, with a number."""
         layer = self._layer()
         assert layer is not None
         self._number = number

@@ -14,14 +14,10 @@ from flowtex._util.array_types import Bytes, Floats, Indices
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 
-#: Most vertices of all meshes together that are sent to a browser.
-MOST_VERTICES = 500_000
-#: Most labels that are sent to a browser.
-MOST_LABELS = 500
-#: Greatest component of a normal in eight bits.
-NORMAL_MAX = 127
-#: Factor by which the depths in view reach beyond the farthest vertex.
-BEYOND = 1.01
+MOST_VERTICES = 500_000  #: Most vertices of all meshes together that are sent to a browser.
+MOST_LABELS = 500  #: Most labels that are sent to a browser.
+NORMAL_MAX = 127  #: Greatest component of a normal in eight bits.
+BEYOND = 1.01  #: Factor by which the depths in view reach beyond the farthest vertex.
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +32,7 @@ class Body:
     #: Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
     normals: Floats | None = None
     width: float = 1.0  #: Width of lines and points in pixels.
-    #: Shares of ambient light and of diffuse light.
-    ambient: float = 1.0
+    ambient: float = 1.0  #: Shares of ambient light and of diffuse light.
     diffuse: float = 0.0
 
 

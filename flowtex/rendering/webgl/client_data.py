@@ -53,17 +53,13 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client.
 SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe")
-#: Pairs of a vertex and a fragment shader.
-SHADER_PAIRS = ("line", "ground", "body", "arrow")
-#: Shaders of a client that traces.
-TRACE_SHADERS = ("trace", "layers")
+SHADER_PAIRS = ("line", "ground", "body", "arrow")  #: Pairs of a vertex and a fragment shader.
+TRACE_SHADERS = ("trace", "layers")  #: Shaders of a client that traces.
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5
-#: Greatest value of a component of a normal in sixteen bits.
-NORMAL_MAX = 32767
-#: Greatest number in single precision.
-SINGLE_MAX = float(np.finfo(np.float32).max)
+NORMAL_MAX = 32767  #: Greatest value of a component of a normal in sixteen bits.
+SINGLE_MAX = float(np.finfo(np.float32).max)  #: Greatest number in single precision.
 
 
 @dataclass(frozen=True, eq=False)
@@ -365,7 +361,6 @@ class ClientData:
 
     @cached_property
     def _mesh(self) -> Floats32:
-        """Places of blocks, by which the client chooses triangles."""
         geometry = self.textures.geometry
         if isinstance(geometry, TriangleGeometry):
             return np.asarray(geometry.block_places, dtype="<f4")
@@ -454,7 +449,6 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
 
 
 def _pyramid(pyramid: Pyramid, finest: int) -> Header:
-    """Return the numbers by which a client chooses tiles, beside the places of their blocks."""
     levels = range(pyramid.depth + 1)
     return {
         "depth": pyramid.depth,
@@ -468,7 +462,6 @@ def _pyramid(pyramid: Pyramid, finest: int) -> Header:
 
 
 def _image(image: ImageTextures) -> Header:
-    """Return the header of the image in place of the noise."""
     return {
         "size": list(image.texels.shape[1::-1]),
         "stepSize": list(image.step.shape[::-1]),

@@ -31,14 +31,10 @@ from flowtex.textures.geometry import DrawnSurface
 LINE_STEPS = 65535
 #: Most places along the longer side of a map at which longitude and latitude are sent.
 LONLAT_PLACES = 65
-#: Least distance of these places in metres.
-NEAREST_PLACES_M = 5e4
-#: Fewest places along a side: a cubic goes through so many.
-FEWEST_PLACES = 4
-#: Weights by which four places in a row continue to the next.
-ONWARD = (4.0, -6.0, 4.0, -1.0)
-#: Lines of places that are continued so.
-MOST_ONWARD = 3
+NEAREST_PLACES_M = 5e4  #: Least distance of these places in metres.
+FEWEST_PLACES = 4  #: Fewest places along a side: a cubic goes through so many.
+ONWARD = (4.0, -6.0, 4.0, -1.0)  #: Weights by which four places in a row continue to the next.
+MOST_ONWARD = 3  #: Lines of places that are continued so.
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +104,6 @@ _lines: WeakCache[_Lines] = WeakCache()
 
 
 def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
-    """Return the lines of a field, made once for all who ask."""
     field = geometry.field
     has_globe = has_land and globe_radius(field) is not None
 

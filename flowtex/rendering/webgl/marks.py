@@ -29,14 +29,10 @@ MARK_PARTS = {
     "separatrices": "separatrices",
     "nullclines": "nullclines",
 }
-#: Factor of the saddle's number in the number of a line, which adds flags.
-SADDLE = 8
-#: Flag of a closed orbit.
-ORBIT = 4
-#: Flag of a line that leaves its saddle.
-LEAVING = 2
-#: Flag of the second side of a saddle.
-SIDE = 1
+SADDLE = 8  #: Factor of the saddle's number in the number of a line, which adds flags.
+ORBIT = 4  #: Flag of a closed orbit.
+LEAVING = 2  #: Flag of a line that leaves its saddle.
+SIDE = 1  #: Flag of the second side of a saddle.
 
 
 class KindMark(NamedTuple):
@@ -71,14 +67,12 @@ LINE_COLORS = {
 NULLCLINE_COLORS = {"u = 0": "#ffa733", "v = 0": "#ff9ad5"}
 #: Colour around dots and lines.
 RIM_COLOR = "#101418"
-#: Opacity around dots and lines.
-RIM_OPACITY = 0.85
+RIM_OPACITY = 0.85  #: Opacity around dots and lines.
 #: Colour in the middle of rings.
 MIDDLE_COLOR = "#ffffff"
 #: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring.
 DOT_PX = (12.0, 9.0, 4.0)
-#: Widths in pixels of the rim of a line and of its colour.
-LINE_PX = (3.6, 2.0)
+LINE_PX = (3.6, 2.0)  #: Widths in pixels of the rim of a line and of its colour.
 
 
 def strokes(

@@ -1,13 +1,9 @@
 """The wire format between Python and the client in a browser.
 
-::
-
-    ClientData --header()------------> header: JSON, with the shaders' text
-                 surface(), step(k)--> parts: named arrays, little endian
-
-Each part goes with its description: name, type, shape and digest. The widget sends descriptions in
-a message and the arrays as its buffers, the app serves several parts as one file, an exported page
-holds each part as text. ``client/src/protocol.ts`` is the other side.
+A header, JSON with the shaders' text, comes before parts: named arrays, little endian, each with
+its description of name, type, shape and digest. The widget sends descriptions in a message and the
+arrays as its buffers, the app serves several parts as one file, an exported page holds each part as
+text. ``client/src/protocol.ts`` is the other side.
 """
 
 from __future__ import annotations
@@ -27,25 +23,18 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 
-#: Number of the form of header and parts; a client refuses one that it does not know.
-FORMAT = 6
-#: Level of gzip for the parts of a page.
-COMPRESSION_LEVEL = 6
-#: Highest order of differences of a part along an axis.
-MOST_DIFFERENCES = 2
-#: Numbers of the sample from which the best order is chosen.
-SAMPLE = 20_000
-#: Least rows of that sample.
-LEAST_ROWS = 4
+FORMAT = 6  #: Number of the form of header and parts; a client refuses one that it does not know.
+COMPRESSION_LEVEL = 6  #: Level of gzip for the parts of a page.
+MOST_DIFFERENCES = 2  #: Highest order of differences of a part along an axis.
+SAMPLE = 20_000  #: Numbers of the sample from which the best order is chosen.
+LEAST_ROWS = 4  #: Least rows of that sample.
 #: Integer types that pack floats, which are multiples of a unit, and their bits.
 WHOLE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}
-#: Greatest exponent of a unit.
-MOST_SCALE = 100
+MOST_SCALE = 100  #: Greatest exponent of a unit.
 
 #: Values for JSON by name: a header, a section of one, or the description of a part.
 Header: TypeAlias = dict[str, Any]
-#: Arrays by the names of parts.
-Parts: TypeAlias = dict[str, AnyArray]
+Parts: TypeAlias = dict[str, AnyArray]  #: Arrays by the names of parts.
 
 
 def part_info(name: str, array: AnyArray) -> Header:
@@ -103,10 +92,9 @@ def _packed(array: AnyArray) -> tuple[Header, bytes]:
     """Return how a part is packed, for its description, and bytes that gzip packs well.
 
     Numbers whose channels are multiples of powers of two are whole numbers, with the exponents as
-    ``scale``.
-    The bytes are those of differences of neighbouring numbers, of the orders ``differences`` along
-    the rows and along the columns of nodes, with the sign as the last bit. The bytes
-    of a channel and of one significance lie side by side. Nothing is lost.
+    ``scale``. The bytes are those of differences of neighbouring numbers, of the orders
+    ``differences`` along the rows and along the columns of nodes, with the sign as the last bit.
+    The bytes of a channel and of one significance lie side by side. Nothing is lost.
     """
     width, channels = array.shape[-2:] if array.ndim > 2 else (*array.shape, 1)[-2:]
     whole, scale = _whole(array, channels)

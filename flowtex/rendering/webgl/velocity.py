@@ -1,12 +1,9 @@
 """The velocity of a flow, from which a client traces the slices itself.
 
-It takes a fraction of the bytes of slices, and of the time. What travels is the velocity in index
-space, the nodes' positions with a ghost line around them, and what is blanked, of all nodes that
-paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
-pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
-in the plane there, and composes longer ones of a flow that stands still;
-``shaders/webgl2/layers.glsl`` makes texels of them as ``TextureSet`` does.
-A client that cannot trace gets the slices, packed once for all views of the same textures.
+It takes a fraction of the bytes of slices. What travels is the velocity in index space, the nodes'
+positions with a ghost line around them, and what is blanked, of all nodes that paths of the drawn
+ones may reach. ``shaders/webgl2/trace.glsl`` follows the paths, ``shaders/webgl2/layers.glsl``
+makes texels of them as ``TextureSet`` does. A client that cannot trace gets the slices.
 """
 
 from __future__ import annotations
@@ -31,34 +28,21 @@ from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Cha
 from flowtex.trace.slices import drawn_lags
 from flowtex.trace.structure.formula_lines import formula_rates
 
-#: Least size of a cell in typical ones.
-LEAST_SIZE = 1e-4
-#: Unit of positions as a share of a small cell of the finest level.
-CELL_SHARE = 2**-13
-#: Percentile of small cells.
-SMALL_CELLS = 1.0
-#: Steps of a rate as a share of that along wide cells.
-RATE_UNIT = 2.0**-9
-#: Percentile of wide cells.
-WIDE_CELLS = 95
-#: Least step of the speed in typical speeds: the error is half of it.
-SPEED_UNIT = 2.0**-12
+LEAST_SIZE = 1e-4  #: Least size of a cell in typical ones.
+CELL_SHARE = 2**-13  #: Unit of positions as a share of a small cell of the finest level.
+SMALL_CELLS = 1.0  #: Percentile of small cells.
+RATE_UNIT = 2.0**-9  #: Steps of a rate as a share of that along wide cells.
+WIDE_CELLS = 95  #: Percentile of wide cells.
+SPEED_UNIT = 2.0**-12  #: Least step of the speed in typical speeds: the error is half of it.
 #: Least steps of a speed in its own unit: the error is at most 2^-10 of the speed.
 SPEED_STEPS = 2**9
-#: Bytes of a node at one time, about.
-NODE_BYTES = 4
-#: Steps whose flow a client holds to follow the paths to one of them, at most.
-MOST_STEPS = 64
-#: Greatest number in half precision.
-HALF_MAX = 65504.0
-#: Bytes of packed steps that are cached.
-CACHE_BYTES = 64_000_000
-#: Least number of packed steps that are cached.
-LEAST_STEPS = 2
-#: Levels below the grid that is sent: enough for the deepest zoom.
-DEPTH = 20
-#: Before the name of a parameter among the settings, in the client as well.
-PREFIX = "formula."
+NODE_BYTES = 4  #: Bytes of a node at one time, about.
+MOST_STEPS = 64  #: Steps whose flow a client holds to follow the paths to one of them, at most.
+HALF_MAX = 65504.0  #: Greatest number in half precision.
+CACHE_BYTES = 64_000_000  #: Bytes of packed steps that are cached.
+LEAST_STEPS = 2  #: Least number of packed steps that are cached.
+DEPTH = 20  #: Levels below the grid that is sent: enough for the deepest zoom.
+PREFIX = "formula."  #: Before the name of a parameter among the settings, in the client as well.
 
 
 @dataclass(frozen=True, eq=False)
