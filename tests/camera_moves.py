@@ -12,10 +12,15 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, Point
 
 
+def _shifted(camera: Camera, by: Floats) -> Camera:
+    ends = (np.add(end, by).tolist() for end in (camera.position, camera.focal_point))
+    return replace(camera, **dict(zip(("position", "focal_point"), ends, strict=True)))
+
+
 def pan(camera: Camera, dx: float, dy: float, aspect: float) -> Camera:
     """Return the camera after a pan by a fraction of the view."""
     right, up, _ = camera.axes
-    return camera.shift((right * dx * aspect + up * dy) * camera.height)
+    return _shifted(camera, (right * dx * aspect + up * dy) * camera.height)
 
 
 def rotate(
@@ -76,7 +81,7 @@ def zoom_by(
     factor = min(max(factor, limits.farthest_zoom / zoom), limits.deepest_zoom / zoom)
     right, up, ahead = camera.axes
     offset = (right * x * aspect + up * y) * camera.height
-    moved = camera.shift(offset * (1 - 1 / factor))
+    moved = _shifted(camera, offset * (1 - 1 / factor))
     if camera.parallel:
         return replace(moved, parallel_scale=camera.parallel_scale / factor)
     height = camera.height / factor

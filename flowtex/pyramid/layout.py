@@ -161,24 +161,22 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
     }
 
 
-def attributes_of(about: About) -> dict[str, Any]:
-    """Return the attributes of the group: the field, and its levels as others read them."""
+def described(about: About, levels: Iterable[int] | None = None) -> Group:
+    """Return a group in memory with the arrays of levels, by default all, as they are written.
+
+    Its attributes are the field, and its levels as others read them.
+    """
     layout: list[dict[str, Any]] = [{"asset": "0", "transform": {"scale": [1.0, 1.0]}}]
     for level in range(1, about["depth"] + 1):
         step = {"scale": [2.0, 2.0], "translation": [0.0, 0.0]}
         layout.append({"asset": str(level), "derived_from": str(level - 1), "transform": step})
-    return {
+    attributes = {
         "zarr_conventions": [CONVENTION],
         "multiscales": {"layout": layout, "resampling_method": "average"},
         "flowtex": sealed(about),
     }
-
-
-def described(about: About, levels: Iterable[int] | None = None) -> Group:
-    """Return a group in memory with the arrays of levels, by default all, as they are written."""
     zarr = import_extra("zarr", "store")
-    store, attributes = zarr.storage.MemoryStore(), attributes_of(about)
-    group: Group = zarr.group(store, attributes=attributes, zarr_format=3)
+    group: Group = zarr.group(zarr.storage.MemoryStore(), attributes=attributes, zarr_format=3)
     for level in range(about["depth"] + 1) if levels is None else levels:
         _create_level(group, level, about)
     return group

@@ -247,22 +247,13 @@ def fault_words(error: Exception) -> str:
     if isinstance(error, FileNotFoundError):
         return "is missing"
     if kind == "NotSupportedError":
-        return (
-            "cannot be read in part from this server; expected a server that supports range "
-            "requests"
-        )
+        return "cannot be read in part: expected a server that supports range requests"
     if "169.254.169.254" in text:
         return f"cannot be read without credentials; {_CREDENTIALS}"
     if status:
-        again = "try again later" if status[1] in ("429", "500", "502", "503", "504") else ""
-        return f"could not be read: the server answered with status {status[1]}" + (
-            f"; {again}" if again else ""
-        )
+        return f"could not be read: the server answered with status {status[1]}; try again later"
     if "kind: Timeout" in text or isinstance(error, TimeoutError):
-        return (
-            f"could not be read: no answer within {SILENCE_S:g} s in {MOST_REPEATS + 1} attempts; "
-            "check that the server is running"
-        )
+        return f"could not be read: no answer within {SILENCE_S:g} s; check the server"
     if "kind: Connect" in text:
         return "could not be read: no server answers at this address; check the address"
     if "kind: Interrupted" in text or "kind: Body" in text:

@@ -21,10 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
-from flowtex._util.colours import NO_COLOURS, ColourScale
 from flowtex._util.progress import pool
 from flowtex.errors import FieldError, import_extra
-from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.layout import (
@@ -53,12 +51,11 @@ from flowtex.pyramid.places import (
 )
 from flowtex.pyramid.source import NodeSource
 from flowtex.pyramid.stored import StoredPyramid, root_of
-from flowtex.rendering.webgl.client_data import ClientData, Colours, single, tile_parts
+from flowtex.rendering.webgl.client_data import ClientData, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
 from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import TileKey, averaged, beside, level_lines
-from flowtex.textures.tiles.shared import widened
 from flowtex.trace.store import SliceStore
 
 #: Entries of the slices that are the same in all tiles, and in the header of the page.
@@ -249,10 +246,9 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
     textures = _textures(pyramid, key)
     data, at = None, key[1:]
     if textures is not None:
-        colours = _colours(pyramid, textures.geometry.field)
         # A page of a store may have some of its steps, which pathlines lead through.
         is_steady = textures.store.streamlines
-        data = ClientData(textures, colours, depth=pyramid.depth, traces=is_steady)
+        data = ClientData(textures, depth=pyramid.depth, traces=is_steady)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
         _write(array, f"{key.level}/{SURFACE}", at, fingerprint, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
@@ -262,8 +258,7 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
             for number, values in _values(pyramid, data, step).items():
                 file = {f"{prefix}/scalars/{step}/{number}": values}
                 _write(array, f"{key.level}/{VALUES}", (step, *at, number), fingerprint, file)
-            parts_at_step = data.step(step).items()
-            parts = {f"{prefix}/{k}": v for k, v in parts_at_step if not k.startswith("scalars/")}
+            parts = {f"{prefix}/{name}": part for name, part in data.step(step).items()}
             data.textures.forget()
         # The last file: its presence shows that a tile is complete.
         _write(array, f"{key.level}/{FLOW}", (step, *at), fingerprint, parts)
@@ -321,20 +316,6 @@ def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Fl
             values = np.rint(values / unit) * unit
         result[number] = single(values)
     return result
-
-
-def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
-    ranges = _ranges(pyramid)
-    choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
-    first, *others = (steps_of(field, name) for name in ranges)
-    scale = ColourScale(NO_COLOURS, *ranges["speed"])
-    numbered = tuple(enumerate(others, start=1))
-    return Colours("speed", values=first, scale=scale, choices=choices, others=numbered)
-
-
-def _ranges(pyramid: StoredPyramid) -> dict[str, tuple[float, float]]:
-    names = value_names(pyramid.about)
-    return {name: widened(pyramid.ranges.get((name, False)), pyramid.field, name) for name in names}
 
 
 class Threads:

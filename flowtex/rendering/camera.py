@@ -12,7 +12,7 @@ import math
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Self, TypeAlias
 
 import numpy as np
@@ -383,14 +383,6 @@ class Camera:
         target = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
         start = target - ahead * self.distance if self.parallel else np.asarray(self.position)
         return start, (target - start) / np.linalg.norm(target - start)
-
-    def shift(self, offset: ArrayLike) -> Self:
-        """Return the camera moved by a vector, (3,)."""
-        return replace(
-            self,
-            position=_point(np.add(self.position, offset)),
-            focal_point=_point(np.add(self.focal_point, offset)),
-        )
 
     def is_near(self, surface: Surface) -> bool:
         """Return whether double precision resolves the surface from this camera."""

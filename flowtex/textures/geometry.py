@@ -213,8 +213,8 @@ class DrawnSurface:
         raise NotImplementedError
 
     @property
-    def drawn_vertices(self) -> Bools:
-        """Mask of the vertices that belong to a drawn cell, (V,)."""
+    def faces(self) -> Indices:
+        """Vertices around each cell that is drawn, (M, 3 or 4)."""
         raise NotImplementedError
 
     @property
@@ -225,7 +225,7 @@ class DrawnSurface:
     @cached_property
     def outermost(self) -> Indices:
         """Vertices that touch the sides of the bounding box of the drawn cells, (6,)."""
-        at = np.flatnonzero(self.drawn_vertices)
+        at = np.unique(self.faces)
         points = self.at_vertices(self.points)[at]
         return np.asarray(at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])])
 
@@ -354,14 +354,6 @@ class SurfaceGeometry(DrawnSurface):
     def cells(self) -> Bools:
         """The cells that are drawn, (J - 1, I - 1)."""
         return self.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
-
-    @property
-    def drawn_vertices(self) -> Bools:
-        """Mask of the vertices that belong to a drawn cell, (V,)."""
-        used = np.zeros(self.shape, dtype=bool)
-        for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
-            used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= self.cells
-        return used.ravel()
 
     @property
     def periodic(self) -> tuple[bool, bool]:

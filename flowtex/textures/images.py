@@ -136,7 +136,7 @@ def load_image(image: Any) -> Any:
     if not path.is_file():
         problem = "is a folder" if path.is_dir() else "the file does not exist"
         raise ImageError(f"{image}: {problem}; expected a picture, such as a PNG or a JPEG")
-    from PIL import Image, ImageOps, UnidentifiedImageError
+    from PIL import Image, ImageOps
 
     try:
         # Pillow warns of a picture so large that it may be an attack, and refuses twice as large.
@@ -148,13 +148,9 @@ def load_image(image: Any) -> Any:
         raise ImageError(
             f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
         ) from error
-    except UnidentifiedImageError as error:
-        raise ImageError(
-            f"{path}: the picture cannot be read; expected a format such as PNG or JPEG"
-        ) from error
     except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
         raise ImageError(
-            f"{path}: cannot be read ({error}); pass another picture, or an array"
+            f"{path}: the picture cannot be read ({error}); expected one such as a PNG or a JPEG"
         ) from error
 
 

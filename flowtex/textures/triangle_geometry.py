@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Floats, Floats32, Indices
 from flowtex._util.arrays import bounds
 from flowtex.field import FlowField
 from flowtex.field.triangles.triangle_nodes import normals_at_corners
@@ -133,11 +133,6 @@ class TriangleGeometry(DrawnSurface):
         """Unit normals at the vertices, (3 m, 3), in the mesh's own axes."""
         points, normals = self.points[0][self.triangles], self.normal[0][self.triangles]
         return normals_at_corners(points, normals).astype(np.float32).reshape(-1, 3)
-
-    @property
-    def drawn_vertices(self) -> Bools:
-        """Mask of the vertices that belong to a triangle, (3 m,): all."""
-        return np.ones(self.triangles.size, dtype=bool)
 
     def as_image(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
         """Return values at the vertices (3 m,) as an image of the nodes or triangles, (H, W)."""

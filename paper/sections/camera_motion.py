@@ -28,7 +28,8 @@ def _panned(view: View, pixels: float) -> View:
     """Return the same view moved to the side by that many pixels."""
     camera = view.camera
     way = camera.axes[0] * (pixels * 2.0 * camera.parallel_scale / view.size[1])
-    return replace(view, camera=camera.shift(way))
+    position, focal_point = (np.add(end, way) for end in (camera.position, camera.focal_point))
+    return replace(view, camera=replace(camera, position=position, focal_point=focal_point))
 
 
 def _moving(bench: Bench) -> Finding:
