@@ -139,11 +139,6 @@ class FlowBar:
         if self._mapper not in sharing:  # a user has removed the bar
             self.key = None
             return
-        if not all(_same_colours(self._mapper, mapper) for mapper in sharing):
-            self.remove()
-            self._mapper.scalar_range = self._mapper.ends.limits
-            self.show(*self._names)
-            sharing = self._sharing
         flows = [mapper for mapper in sharing if isinstance(mapper, FlowMapper)]
         bar, limits = self._bars[self.key], self._mapper.scalar_range
         shown = (bar.GetLookupTable(), limits, len(sharing), self._mapper.ends, settings)
@@ -182,13 +177,9 @@ class FlowBar:
 
 
 def _ends(mapper: Any) -> Ends:
-    """Return the limits that a mapper has without others, and the range of its values."""
-    if isinstance(mapper, FlowMapper):
-        return mapper.ends
-    mapper.GetInputAlgorithm().Update()  # no frame may have been drawn yet
-    data, name = pv.wrap(mapper.GetInputDataObject(0, 0)), mapper.array_name
-    ends = data.get_data_range(name) if name in data.array_names else mapper.scalar_range
-    return Ends(*[(float(ends[0]), float(ends[1]))] * 2)
+    """Return the limits that a flow has without others and the range of its values."""
+    shown = mapper.scalar_range
+    return mapper.ends if isinstance(mapper, FlowMapper) else Ends(shown, shown)
 
 
 def _same_colours(one: Any, other: Any) -> bool:

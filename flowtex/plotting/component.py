@@ -110,13 +110,8 @@ class FlowtexComponent:
         options |= {"vectors": vectors, "scalars": scalars, "cmap": cmap}
         chosen = Options.split("field", "appearance", **options)
         (scene,) = make_scenes(mesh, chosen)
-        actor: dict[str, Any] = {
-            "name": name,
-            "pickable": pickable,
-            "label": label,
-            "show_edges": show_edges,
-        }
-        actor |= {"edge_color": edge_color, "line_width": line_width}
+        actor: Any = dict(name=name, label=label, pickable=pickable, show_edges=show_edges)
+        actor |= dict(edge_color=edge_color, line_width=line_width)
         handle = self.add_scene(
             scene,
             scalar_bar_args=scalar_bar_args,

@@ -281,15 +281,12 @@ class AxesScales:
             vectors = np.where(valid[..., None], components, blank)
             return np.concatenate([vectors, np.zeros_like(vectors[..., :1])], axis=-1)
 
-        def transformed(steps: Any) -> Floats:
-            return planar((slope @ (steps @ frame.T)[..., None])[..., 0], np.zeros(2))
+        def transformed(step: int) -> Floats:
+            along = np.asarray(field.velocity[step]) @ frame.T
+            return planar((slope @ along[..., None])[..., 0], np.zeros(2))
 
-        velocity: Any = field.velocity
-        if isinstance(velocity, LazySteps):  # those of a long series are read when they are drawn
-            read = velocity
-            velocity = LazySteps(len(read), lambda step: transformed(np.asarray(read[step])))
-        else:
-            velocity = transformed(velocity)
+        # Those of a long series are read when they are drawn.
+        velocity: Any = LazySteps(len(field.velocity), transformed)
         scalars = {SPEED: field.speed, **field.scalars}
         shown = replace(
             field,

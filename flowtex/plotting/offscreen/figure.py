@@ -6,7 +6,6 @@ import warnings
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,8 +38,6 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
-from flowtex.sources.datasets import is_dataset
-from flowtex.sources.opening.dataset_files import dataset_paths
 
 #: Left, right, bottom and top.
 Extent = tuple[float, float, float, float]
@@ -417,16 +414,12 @@ class FlowImage(AxesImage):
     def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""
         field, ax = self._scene.field, self.axes
-        if self._projection is None or ax.get_title() != self._title:
-            return
-        title = ""
-        if not (ax.get_title("left") or ax.get_title("right")):
+        is_set = ax.get_title() != self._title or ax.get_title("left") or ax.get_title("right")
+        if self._projection is not None and not is_set:
             dated = len(field.times) > 1 or field.start is not None
             time = [time_text(field, self.time)] if dated else []
-            title = ", ".join([*filter(None, [field.name]), *time])
-        if title != self._title:  # setting a title has interactive figures drawn again
-            self._title = title
-            ax.set_title(title)
+            self._title = ", ".join([*filter(None, [field.name]), *time])
+            ax.set_title(self._title)
 
     def make_image(
         self,
@@ -436,7 +429,6 @@ class FlowImage(AxesImage):
     ) -> tuple[Any, float, float, Any]:
         """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
-        self._update_title()  # another title may have been set meanwhile
         if self._projection is None:
             straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
             try:
@@ -543,14 +535,9 @@ def _in_projection(mesh: Any, options: Options, name: str) -> Options:
         )
     look = options.appearance
     look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
-    several = mesh if isinstance(mesh, (list, tuple)) else [mesh]
-    on_map = is_dataset(mesh)
-    if several and all(isinstance(one, (str, Path)) for one in several):  # files, or a store
-        from flowtex.pyramid.source import has_parts
-
-        on_map = bool(dataset_paths(mesh)) or has_parts(mesh)
-    field = replace(options.field, projection=name) if on_map else options.field
-    return replace(options, field=field, appearance=look)
+    if not isinstance(mesh, FlowField):
+        options = replace(options, field=replace(options.field, projection=name))
+    return replace(options, appearance=look)
 
 
 def _frame(surface: Surface) -> Floats:

@@ -204,11 +204,7 @@ def test_what_does_not_fit_a_map_of_cartopy_is_refused(figure: Figure) -> None:
     ax, _ = _axes(figure, "Robinson")
     with pytest.raises(FieldError, match=r"^ax is a map, and .* is not of the Earth; give a data"):
         flowtex.axes(ax, flowtex.examples.double_gyre_field())
-    for wrong, text in (
-        ("no.nc", "no.nc: the file does not exist"),
-        ([], "the list of meshes is em"),
-    ):
-        with pytest.raises(FieldError, match=f"^{text}"):
-            flowtex.axes(ax, wrong)
+    with pytest.raises(FieldError, match=r"^no\.nc: the file does not exist"):
+        flowtex.axes(ax, "no.nc")
     with pytest.raises(FieldError, match=r"^projection and globe are those of the axes"):
         flowtex.axes(ax, winds(LON, LAT), projection="mercator")

@@ -189,16 +189,6 @@ def test_changes_by_matplotlib_are_those_of_arguments(
     np.testing.assert_array_equal(shot, of_one_place(figure, expected))
 
 
-def test_drawing_sets_no_title_again(figure: Figure, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else an interactive figure would be drawn without end."""
-    ax = figure.add_subplot()
-    flowtex.axes(ax, flowtex.examples.ocean(), samples=3)
-    titles: list[str] = []
-    monkeypatch.setattr(ax, "set_title", titles.append)
-    pixels(figure)
-    assert ax.get_title() and not titles
-
-
 def section() -> tuple[Floats, Floats]:
     """Positions and velocity of cells in a section whose height counts by the logarithm."""
     x, y = np.meshgrid(np.linspace(-60, 60, 61), np.logspace(0, 3, 41))
