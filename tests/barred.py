@@ -33,8 +33,7 @@ ROOMS = (
     *(*LOAD_VTK, "cli", "examples", "host.show", "pyramid", "rendering.diagnostics", "sources"),
     "trace.structure",
 )
-#: What asks for them for these rooms.
-HELPERS = ("", "_util.child", "errors")
+HELPERS = ("", "_util.child", "errors")  #: What asks for them for these rooms.
 
 
 def module_name(path: Path) -> str:

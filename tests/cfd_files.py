@@ -21,8 +21,7 @@ Floats = NDArray[np.float64]
 #: Numbers of the CGNS library: modes, data types, zone types and places of values.
 _WRITE, _DOUBLE, _TEXT, _STRUCTURED, _UNSTRUCTURED = 1, 4, 5, 2, 3
 _PLACES = {"points": 2, "cells": 3}
-#: The times of a series.
-TIMES = (0.5, 1.0)
+TIMES = (0.5, 1.0)  #: The times of a series.
 
 
 def box(i: int, j: int, k: int, x: float = 0.0) -> Floats:
@@ -148,8 +147,7 @@ class CGNS:
         if self._library.vtkcgns_cg_array_write(*arguments):
             raise OSError(name)
 
-    #: How the library was built for VTK's wheels.
-    _size = np.int64
+    _size = np.int64  #: How the library was built for VTK's wheels.
 
 
 def _flat(points: Floats) -> bool:

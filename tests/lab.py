@@ -19,13 +19,11 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 TOKEN = "test"
-#: Without what conftest.py leaves out.
-START = """import sys
+START = """import sys  #: Without what conftest.py leaves out.
 sys.modules["rfc3987_syntax"] = None
 from jupyterlab.labapp import main
 main()"""
-#: Where the pages lie, as on JupyterHub.
-BASE = "/user/Ada"
+BASE = "/user/Ada"  #: Where the pages lie, as on JupyterHub.
 OPTIONS = (
     "--no-browser",
     "--allow-root",
@@ -71,8 +69,7 @@ CLEAR = """() => {
   const { sharedModel } = jupyterapp.shell.currentWidget.content.model;
   sharedModel.deleteCellRange(0, sharedModel.cells.length);
 }"""
-#: Ends when the file is written.
-SAVE = "() => jupyterapp.shell.currentWidget.context.save()"
+SAVE = "() => jupyterapp.shell.currentWidget.context.save()"  #: Ends when the file is written.
 
 
 class Lab:

@@ -44,10 +44,8 @@ from flowtex.settings import Settings
 
 #: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
 ROOT, SHARE = 0.6, 0.001
-#: One and a half times as wide as high: what the client widens no camera for.
-SIZE = (180, 120)
-#: Of the pictures by NumPy, which takes tenths of a second for each.
-SMALL = (150, 100)
+SIZE = (180, 120)  #: One and a half times as wide as high: what the client widens no camera for.
+SMALL = (150, 100)  #: Of the pictures by NumPy, which takes tenths of a second for each.
 COLOUR, GROUND = (0.6, 0.6, 0.6), (1.0, 0.0, 0.0)
 
 

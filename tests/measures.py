@@ -19,8 +19,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.progress import track
 from flowtex.plotting.offscreen.encoders import MovieWriter
 
-#: Standard deviation in pixels of the window in which streaks are told from noise.
-WINDOW = 4.0
+WINDOW = 4.0  #: Standard deviation in pixels of the window in which streaks are told from noise.
 
 
 def grey(image: AnyArray) -> Floats:

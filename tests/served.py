@@ -20,8 +20,7 @@ import pytest
 from waiting import PATIENCE_S
 from wslink.chunking import UnChunker, generate_chunks
 
-#: Bytes of one chunk of a message.
-CHUNK = 4_000_000
+CHUNK = 4_000_000  #: Bytes of one chunk of a message.
 
 
 @contextmanager

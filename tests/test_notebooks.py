@@ -13,8 +13,7 @@ import pytest
 from waiting import PATIENCE_S
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
-#: Seconds that a cell may take.
-CELL_S = 10 * PATIENCE_S
+CELL_S = 10 * PATIENCE_S  #: Seconds that a cell may take.
 #: Words of a notebook of the Earth that are others here, so that it is soon done.
 CHANGES: dict[str, dict[str, str]] = {
     "ocean": {},

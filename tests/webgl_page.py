@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
 Pixels = NDArray[np.uint8]
-#: Gives the parts of a tile, by its key and time steps.
-TileMaker = Callable[[Any, Any], Parts]
+TileMaker = Callable[[Any, Any], Parts]  #: Gives the parts of a tile, by its key and time steps.
 
 HTML = """<!doctype html><meta charset="utf-8"><title>client</title>
 <style>body { margin: 0 } .view { width: 300px; height: 200px }</style><body></body>"""

@@ -42,26 +42,16 @@ BY_HAND = (
 BEHIND = ("fill", "background_color", "color")
 #: Arguments of a bar that PyVista has made: it keeps its place and its labels.
 AS_IT_IS = {"position_x": None, "n_labels": None}
-#: Height of the text as a share of the view's.
-TEXT_SHARE = 1 / 40
-#: Limits of the height of the text, in points.
-TEXT_POINTS = (10, 18)
-#: Height of a title over that of the text.
-TITLE_SHARE = 1.15
-#: Height of a bar without its title, as a share of the view's.
-HEIGHT_SHARE = 0.45
-#: Least height of a bar without its title, in lines of text.
-LEAST_LINES = 5
-#: Width of the colours, in heights of the text.
-THICKNESS = 1.6
-#: Room around texts, in heights of the text.
-TEXT_PAD = 0.4
-#: Number of colours by which maps are compared.
-COMPARED = 64
-#: Difference of bytes up to which two colours are one.
-SAME_BYTES = 4
-#: Points in an inch.
-POINTS = 72
+TEXT_SHARE = 1 / 40  #: Height of the text as a share of the view's.
+TEXT_POINTS = (10, 18)  #: Limits of the height of the text, in points.
+TITLE_SHARE = 1.15  #: Height of a title over that of the text.
+HEIGHT_SHARE = 0.45  #: Height of a bar without its title, as a share of the view's.
+LEAST_LINES = 5  #: Least height of a bar without its title, in lines of text.
+THICKNESS = 1.6  #: Width of the colours, in heights of the text.
+TEXT_PAD = 0.4  #: Room around texts, in heights of the text.
+COMPARED = 64  #: Number of colours by which maps are compared.
+SAME_BYTES = 4  #: Difference of bytes up to which two colours are one.
+POINTS = 72  #: Points in an inch.
 #: Bars that are drawn here, with the arguments of users, and renderers that have some.
 _options: weakref.WeakKeyDictionary[Any, Mapping[str, Any]] = weakref.WeakKeyDictionary()
 _renderers: weakref.WeakSet[Any] = weakref.WeakSet()
@@ -77,8 +67,7 @@ class FlowBar:
         self._bars, self._plotter, self._mapper = plotter.scalar_bars, plotter, mapper
         self._options = options
         self._renderer, self._place = plotter.renderer, plotter.renderers.active_index
-        #: Key among the bars of the plotter; ``None`` without a bar.
-        self.key: str | None = None
+        self.key: str | None = None  #: Key among the bars of the plotter; ``None`` without a bar.
         self._names = ("", "")
         self._shown: tuple[Any, ...] = ()
 

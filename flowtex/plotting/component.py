@@ -26,10 +26,8 @@ from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, make_scenes
 from flowtex.textures.images import as_image
 
-#: Name of the colours among the arrays of a mesh.
-COLOURS = "flowtex colours"
-#: A view of the whole surface.
-WHOLE = ViewOptions()
+COLOURS = "flowtex colours"  #: Name of the colours among the arrays of a mesh.
+WHOLE = ViewOptions()  #: A view of the whole surface.
 
 
 @pv.register_plotter_component("flowtex")

@@ -39,14 +39,11 @@ from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
 from flowtex.textures.tiles.structure import STRUCTURE
 
-#: How much farther than the surface land is, as a share of the distance.
-LAND_FARTHER = 2e-4
+LAND_FARTHER = 2e-4  #: How much farther than the surface land is, as a share of the distance.
 #: Pixels by which the globe is lower: coarse triangles sink by up to this many.
 GLOBE_LOWER_PX = 0.5
-#: Nearest that the front of the globe is drawn, as a share of the farthest.
-NEAREST = 1e-3
-#: Cells along a meridian of the globe below the surface.
-GLOBE_CELLS = 180
+NEAREST = 1e-3  #: Nearest that the front of the globe is drawn, as a share of the farthest.
+GLOBE_CELLS = 180  #: Cells along a meridian of the globe below the surface.
 #: Structures are found one after the other, in the background.
 _pool = pool(1, "flowtex-structure")
 
@@ -63,15 +60,13 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, as a share of the distance: more than an inclined
 #: surface comes nearer over the width of a line.
 LINES_NEARER = 1e-2
-#: Additional nearness of a line for each line below it, as a share of that.
-ABOVE_SHARE = 0.2
+ABOVE_SHARE = 0.2  #: Additional nearness of a line for each line below it, as a share of that.
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
 LAST = -1.0
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 #: Point array of a line mesh: the other end of each segment. The shader uses the same name.
 OTHER = "flowtexOther"
-#: Point array of a line mesh: the side of the line.
-SIDE = "flowtexSide"
+SIDE = "flowtexSide"  #: Point array of a line mesh: the side of the line.
 
 
 class Overlay:

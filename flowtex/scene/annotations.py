@@ -32,45 +32,26 @@ from flowtex.rendering.webgl.marks import (
 )
 from flowtex.scene.scene import Scene
 
-#: Height of the text as a share of the picture's height.
-TEXT_SHARE = 1 / 30
-#: Greatest ratio of width to height at which the text follows the height.
-WIDEST_ASPECT = 1.6
-#: Limits of the height of the text in a small picture.
-SMALL_TEXT_PX = (9, 11)
-#: Height of the text as a share of a small picture's height.
-SMALL_TEXT_SHARE = 1 / 13
-#: Greatest share of a small picture's height for plates.
-MOST_STRIPS = 0.55
-#: Factor of gaps and padding in a small picture.
-CLOSER = 0.5
-#: Share of the picture that a plate covers at most.
-MOST_COVER = 0.125
-#: Greatest share of the picture's width that a scale bar has.
-SCALE_BAR_WIDTH = 0.2
-#: Padding around the text, in heights of the text.
-PADDING = 0.4
-#: Gap between plates, in heights of the text.
-GAP = 0.6
-#: Least width of a colour bar, in heights of the text.
-RAMP_WIDTH = 9.0
-#: Height of a colour bar, in heights of the text.
-RAMP_HEIGHT = 0.65
-#: Width of thin lines, in heights of the text.
-LINE = 0.1
-#: How opaque a plate is.
-OPACITY = 0.8
-#: Length of ticks in pixels.
-TICK_PX = 4
-#: Share of the range by which a number may lie beyond an end: less than a pixel.
-BEYOND = 0.004
-#: Greatest share of the picture's width for a time with a long unit.
-TIME_WIDTH = 0.4
-#: Widest legend with all of its values, as a share of the width of the picture.
-LEGEND_WIDTH = 0.6
+TEXT_SHARE = 1 / 30  #: Height of the text as a share of the picture's height.
+WIDEST_ASPECT = 1.6  #: Greatest ratio of width to height at which the text follows the height.
+SMALL_TEXT_PX = (9, 11)  #: Limits of the height of the text in a small picture.
+SMALL_TEXT_SHARE = 1 / 13  #: Height of the text as a share of a small picture's height.
+MOST_STRIPS = 0.55  #: Greatest share of a small picture's height for plates.
+CLOSER = 0.5  #: Factor of gaps and padding in a small picture.
+MOST_COVER = 0.125  #: Share of the picture that a plate covers at most.
+SCALE_BAR_WIDTH = 0.2  #: Greatest share of the picture's width that a scale bar has.
+PADDING = 0.4  #: Padding around the text, in heights of the text.
+GAP = 0.6  #: Gap between plates, in heights of the text.
+RAMP_WIDTH = 9.0  #: Least width of a colour bar, in heights of the text.
+RAMP_HEIGHT = 0.65  #: Height of a colour bar, in heights of the text.
+LINE = 0.1  #: Width of thin lines, in heights of the text.
+OPACITY = 0.8  #: How opaque a plate is.
+TICK_PX = 4  #: Length of ticks in pixels.
+BEYOND = 0.004  #: Share of the range by which a number may lie beyond an end: less than a pixel.
+TIME_WIDTH = 0.4  #: Greatest share of the picture's width for a time with a long unit.
+LEGEND_WIDTH = 0.6  #: Widest legend with all of its values, as a share of the width of the picture.
 METRES_PER_KM = 1000
-#: Supersampling factor of the tips of a legend.
-SMOOTH = 4
+SMOOTH = 4  #: Supersampling factor of the tips of a legend.
 
 
 @dataclass(frozen=True)

@@ -30,12 +30,9 @@ from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
 #: Ratio of the memory of a field with its derived arrays to the memory of its own arrays.
 DERIVED_FACTOR = 4
-#: Memory limit of the cache of drawn fields and traces, in bytes.
-KEPT_BYTES = 500_000_000
-#: Name of a scalar array without a name, as in PyVista.
-DATA = "Data"
-#: Attribute of :class:`FieldOptions` with this array.
-ARRAY = "_array"
+KEPT_BYTES = 500_000_000  #: Memory limit of the cache of drawn fields and traces, in bytes.
+DATA = "Data"  #: Name of a scalar array without a name, as in PyVista.
+ARRAY = "_array"  #: Attribute of :class:`FieldOptions` with this array.
 
 _fields: WeakCache[FlowField] = WeakCache()
 #: Attributes that are compared as texts, or not at all.

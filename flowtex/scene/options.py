@@ -39,23 +39,18 @@ if TYPE_CHECKING:
 
 #: Colour of a surface without scalars: a grey that can become darker and lighter.
 PLAIN_COLOR = "#a0a0a0"
-#: Colour where there is no value, as in PyVista.
-NO_VALUE_COLOR = "darkgray"
+NO_VALUE_COLOR = "darkgray"  #: Colour where there is no value, as in PyVista.
 #: Colour of land, unobtrusive on a light and on a dark background.
 LAND_COLOR = "#8f8b82"
 #: Axes of a view in a browser: coordinates, a scale bar, or none.
 AXES = ("ticks", "scale", "none")
 
-#: Values of ``n_colors``.
-COUNT = f"a whole number from 1 to {NORM_ENTRIES:,}"
-#: The scalar that every flow has.
-SPEED = "speed"
-#: The range of colours without outliers.
-ROBUST = "robust"
+COUNT = f"a whole number from 1 to {NORM_ENTRIES:,}"  #: Values of ``n_colors``.
+SPEED = "speed"  #: The scalar that every flow has.
+ROBUST = "robust"  #: The range of colours without outliers.
 #: Arguments that are true or false.
 SWITCHES = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
-#: Lines of the Earth that are drawn or not.
-EARTH_LINES = ("coastlines", "graticule")
+EARTH_LINES = ("coastlines", "graticule")  #: Lines of the Earth that are drawn or not.
 
 
 def default_cmap(scalars: Any) -> str:

@@ -34,8 +34,7 @@ from flowtex.textures.texture_set import TextureSet
 __all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
 
 
-#: Points of a path between two slices, where it is a parabola.
-POINTS_BETWEEN_SLICES = 12
+POINTS_BETWEEN_SLICES = 12  #: Points of a path between two slices, where it is a parabola.
 
 
 @dataclass(frozen=True, eq=False)

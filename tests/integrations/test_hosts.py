@@ -81,10 +81,8 @@ HOSTS = {
 }
 #: Where a host has its page, if that is not the root.
 PAGES = {"notebook": "notebooks/app.ipynb", "panel": "app", "holoviews": "app"}
-#: Hosts that show the widget.
-WIDGETS = [host for host in HOSTS if host != "holoviews"]
-#: Hosts that show a frame, from which Python hears nothing.
-FRAMED = ("panel", "streamlit")
+WIDGETS = [host for host in HOSTS if host != "holoviews"]  #: Hosts that show the widget.
+FRAMED = ("panel", "streamlit")  #: Hosts that show a frame, from which Python hears nothing.
 
 
 @contextmanager

@@ -16,8 +16,7 @@ from paper import reproduce, sections
 from paper.__main__ import main
 from paper.findings import Panel
 
-#: The quick form takes half a minute, once.
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.slow  #: The quick form takes half a minute, once.
 
 #: Statements of the paper that do not hold here, in the quick form.
 FAILING = {
@@ -32,8 +31,7 @@ FAILING = {
     "double_gyre_100x50_slices_more_accurate",
     "figure6_no_stretched_pattern_with_levels",
 }
-#: Sections that are quick to compute once more.
-CHEAP = ("table3", "figure2")
+CHEAP = ("table3", "figure2")  #: Sections that are quick to compute once more.
 
 
 class Page(HTMLParser):

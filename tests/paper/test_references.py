@@ -56,8 +56,7 @@ def test_lic_of_a_straight_flow_is_a_convolution(axis: int, rng: np.random.Gener
 # --- Forssell and Cohen ---------------------------------------------------------------------
 
 
-#: A camera, and width and height of its picture in pixels.
-Shot = tuple[Camera, tuple[int, int]]
+Shot = tuple[Camera, tuple[int, int]]  #: A camera, and width and height of its picture in pixels.
 
 
 def sheet(x: Floats, y: Floats, velocity: tuple[float, float] = (1.0, 0.0)) -> FlowField:

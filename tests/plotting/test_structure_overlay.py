@@ -19,8 +19,7 @@ from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS
 from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
 
-#: A picture of four units by two, one of which is this many pixels.
-UNIT = 300
+UNIT = 300  #: A picture of four units by two, one of which is this many pixels.
 PICTURE: dict[str, Any] = {"size": (4 * UNIT, 2 * UNIT), "samples": 3, "scalars": False}
 
 

@@ -58,8 +58,7 @@ def view_of(field: FlowField, **settings: Any) -> Scene:
     return Scene(field, chosen, Appearance(image=image))
 
 
-#: Width and height of the pictures in pixels.
-SIZE = (36, 24)
+SIZE = (36, 24)  #: Width and height of the pictures in pixels.
 
 
 def camera(field: FlowField, *, aside: bool = False) -> Camera:

@@ -24,31 +24,21 @@ from flowtex.field.earth import DEGREE, EARTH_RADIUS, MOST_LINES, STEPS, Project
 from flowtex.field.steps import LazySteps
 from flowtex.scene.options import SPEED
 
-#: Leading digits of ticks in degrees.
-DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
-#: Degrees between ticks on a border.
-TICKS = (90, 60, *STEPS)
-#: Share of the ticks for which matplotlib sees room, where they are longitudes.
-WIDE = 0.85
+DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]  #: Leading digits of ticks in degrees.
+TICKS = (90, 60, *STEPS)  #: Degrees between ticks on a border.
+WIDE = 0.85  #: Share of the ticks for which matplotlib sees room, where they are longitudes.
 #: Number of points along a border of axes at which longitude and latitude are computed.
 ALONG = 241
-#: Number of points from the border inwards; the first one on the map is used.
-INWARDS = 33
-#: Share of the axes within which a place maps back to where it was looked up.
-NEAR = 1e-3
-#: Relative step of the derivative of a scale.
-STEP = 1e-6
-#: Least step of the derivative, over the range of the axis.
-LEAST_STEP = 1e-12
-#: Scales that matplotlib clips.
-CLIPPED = ("log", "logit")
+INWARDS = 33  #: Number of points from the border inwards; the first one on the map is used.
+NEAR = 1e-3  #: Share of the axes within which a place maps back to where it was looked up.
+STEP = 1e-6  #: Relative step of the derivative of a scale.
+LEAST_STEP = 1e-12  #: Least step of the derivative, over the range of the axis.
+CLIPPED = ("log", "logit")  #: Scales that matplotlib clips.
 #: Magnitude of clipped scaled values: matplotlib gives -1000 as the logarithm of zero.
 BEYOND = 999.0
-#: Steps in which y is stretched against x, in powers of two.
-STRETCH_STEP = 0.5
+STRETCH_STEP = 0.5  #: Steps in which y is stretched against x, in powers of two.
 
-#: Writes degrees.
-DegreeText = Callable[..., str]
+DegreeText = Callable[..., str]  #: Writes degrees.
 
 
 def is_geo(ax: Axes) -> bool:

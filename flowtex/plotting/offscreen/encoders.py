@@ -26,26 +26,17 @@ from flowtex.errors import FieldError, install_extra
 
 Size = tuple[int, int]
 
-#: Suffixes of the files that can be written.
-FORMATS = (".mp4", ".gif", ".webp")
-#: Quality where none is requested.
-DEFAULT_QUALITY = 80
-#: Pixels of a picture at the highest level of H.264.
-MP4_MAX_PIXELS = 139_264 * 256
-#: Matrix and primaries of BT.709, a number of ITU-T H.273 as those below.
-BT709 = 1
-#: Curve of sRGB.
-SRGB_CURVE = 13
-#: Range from 16 to 235.
-LIMITED = 1
-#: Pixels of all the pictures of a movie by Pillow, at most.
-PILLOW_MAX_PIXELS = 1_000_000_000
+FORMATS = (".mp4", ".gif", ".webp")  #: Suffixes of the files that can be written.
+DEFAULT_QUALITY = 80  #: Quality where none is requested.
+MP4_MAX_PIXELS = 139_264 * 256  #: Pixels of a picture at the highest level of H.264.
+BT709 = 1  #: Matrix and primaries of BT.709, a number of ITU-T H.273 as those below.
+SRGB_CURVE = 13  #: Curve of sRGB.
+LIMITED = 1  #: Range from 16 to 235.
+PILLOW_MAX_PIXELS = 1_000_000_000  #: Pixels of all the pictures of a movie by Pillow, at most.
 #: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
 GIF_MAX_FPS = 50.0
-#: Number of frames from which the palette is computed.
-PALETTE_PICTURES = 8
-#: About how many pixels of each of them along a side.
-PALETTE_SIDE = 256
+PALETTE_PICTURES = 8  #: Number of frames from which the palette is computed.
+PALETTE_SIDE = 256  #: About how many pixels of each of them along a side.
 
 
 class MovieError(FieldError):
@@ -162,8 +153,7 @@ class MovieWriter:
             self._file.drop()
 
 
-#: Takes pictures, and at the end ``None``.
-Encoder = Generator[None, Bytes | None, None]
+Encoder = Generator[None, Bytes | None, None]  #: Takes pictures, and at the end ``None``.
 
 
 def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:

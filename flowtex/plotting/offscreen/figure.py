@@ -39,19 +39,16 @@ from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
 
-#: Left, right, bottom and top.
-Extent = tuple[float, float, float, float]
+Extent = tuple[float, float, float, float]  #: Left, right, bottom and top.
 
 #: Matplotlib's ``extend`` of a colour bar, by whether values lie below and above its ends.
 EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
 #: Kind of axes, and names of the scales of usual ones.
 LINEAR = ("rectilinear", "linear", "linear")
-#: Dots per inch at which a grain has the pixels of the settings.
-USUAL_DPI = 100.0
+USUAL_DPI = 100.0  #: Dots per inch at which a grain has the pixels of the settings.
 #: Longest side of the drawn picture where the scales of the axes differ, in pixels.
 LONGEST_SIDE_PX = 8192
-#: Width and height of a plot whose size is not known yet, in pixels.
-FIRST_SIZE = (600, 400)
+FIRST_SIZE = (600, 400)  #: Width and height of a plot whose size is not known yet, in pixels.
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)

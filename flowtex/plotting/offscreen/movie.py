@@ -36,16 +36,11 @@ from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
 from flowtex.settings import TABLE, Settings
 
-#: Seconds for each step of a run through the times of a field.
-STEP_S = 0.25
-#: Limits of the seconds of a whole run.
-RUN_S = (5.0, 30.0)
-#: Most frames of a movie.
-MAX_FRAMES = 36_000
-#: Most frames in a second.
-MAX_FPS = 120.0
-#: Velocities that differ by less than this share of the fastest are the same.
-SAME_SHARE = 1e-6
+STEP_S = 0.25  #: Seconds for each step of a run through the times of a field.
+RUN_S = (5.0, 30.0)  #: Limits of the seconds of a whole run.
+MAX_FRAMES = 36_000  #: Most frames of a movie.
+MAX_FPS = 120.0  #: Most frames in a second.
+SAME_SHARE = 1e-6  #: Velocities that differ by less than this share of the fastest are the same.
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,8 @@ from flowtex.scene.scene import Scene, make_scenes
 from flowtex.sources.notices import notify_section
 from flowtex.textures.images import averaged
 
-#: Longest side of a drawing, in pixels.
-LONGEST_SIDE = 16_384
-#: Most pixels drawn for one of the picture, along a side.
-MAX_SUPERSAMPLING = 8
+LONGEST_SIDE = 16_384  #: Longest side of a drawing, in pixels.
+MAX_SUPERSAMPLING = 8  #: Most pixels drawn for one of the picture, along a side.
 #: Samples of a pixel for smooth outlines, where the picture is not supersampled.
 OUTLINE_SAMPLES = 4
 NOTHING_SEEN = (
