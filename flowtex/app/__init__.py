@@ -1,17 +1,5 @@
 """The page: flows drawn on this machine and looked at in a browser.
 
-::
-
-    browser    <flowtex-view>: drags, wheel, controls       pictures (JPEG), without a card
-                  |                ^                            ^
-    trame      triggers         scenes, changes        remote controlled area
-                  v                |                            |
-    FlowApp    Controllers -> FlowArea: Element, PointReader -> FrameStream      when to draw
-                                          |                     |
-                                          |                  ViewPainter         how well
-                                          v                     v
-                                       Viewport: panes, colours, camera, window (VTK)
-
 :class:`FlowApp` is a whole page, :class:`FlowArea` the view alone, for other trame applications.
 :func:`serve` runs pages on one port of this machine, each with its own state, behind a secret;
 :class:`Library` is what they may open. Imports run one way: ``server`` < ``streaming`` <

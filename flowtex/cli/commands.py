@@ -113,7 +113,6 @@ def hosted() -> HostedSession:
 
 
 def _of_output(error: Exception) -> Exception:
-    """Return the error of a command, in plain words where its output has no room."""
     if not isinstance(error, OSError) or error.errno != errno.ENOSPC or error.filename:
         return error
     # What waits to be written would fail again when the process ends.

@@ -75,7 +75,6 @@ def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
 
 
 def _pairs(rows: Mapping[str, str], title: str = "") -> Table:
-    """Return a table of labels and texts, without those that are empty."""
     table = _table("", "")
     table.title, table.title_justify, table.title_style = title or None, "left", "bold"
     table.show_header, table.columns[0].style = False, "dim"

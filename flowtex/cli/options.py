@@ -44,7 +44,6 @@ class UsageError(FieldError):
 
 
 def _option_flags(kind: type, group: Group) -> dict[str, Any]:
-    """Return a flag for each field of an option class that can be written as text."""
     flags = {}
     for option in fields(kind):
         if (form := FORMS.get(option.name)) is None:
@@ -67,7 +66,6 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
 
 
 def _in_shell(text: str) -> str:
-    """Return a text in which Python values are written as in a shell."""
     text = re.sub(r'``\{"(\w+)": (\w+)\}``', r"``\1=\2``", text)
     text = re.sub(r'``"([^" ]*)"``', lambda match: f"``{match[1] or 'none'}``", text)
     return re.sub(r"``(False|None)``", "``none``", text)

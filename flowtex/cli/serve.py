@@ -111,7 +111,6 @@ def serve(
 
 
 def _secret_word(token: str | None, file: Path | None) -> str | None:
-    """Return the secret word that is given for the page's address; None without one."""
     word, readable = os.environ.get(TOKEN_VARIABLE), ""
     source = f"{TOKEN_VARIABLE} contains another text"
     if token is not None:
@@ -221,7 +220,6 @@ def pyramid(
 
 
 def _verify(files: Sequence[Path]) -> int:
-    """List the missing and corrupt parts of a store; the exit code is 1 if there are any."""
     from flowtex.pyramid import is_store, verify
     from flowtex.pyramid.places import DamageError
 

@@ -155,7 +155,6 @@ def _is_folder(path: Path) -> bool:
 
 
 def _belong_together(files: Sequence[Path]) -> bool:
-    """Return whether several files are parts of one model output, or steps of a series."""
     from flowtex.sources.opening.dataset_files import belong_together, dataset_paths
 
     return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)

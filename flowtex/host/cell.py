@@ -51,7 +51,6 @@ class Displayed(anywidget.AnyWidget):
         raise NotImplementedError
 
     def _encoded_picture(self) -> tuple[str, str] | None:
-        """Return the format and the text of a picture, if there is time to make one."""
         cell, started = _cell_number(), time.monotonic()
         picture = self._picture(max(MAX_WAIT_S - _waits_of_cells[cell], 0.0))
         _waits_of_cells[cell] += time.monotonic() - started
@@ -83,7 +82,6 @@ class Displayed(anywidget.AnyWidget):
         return self
 
     def _update_stills(self, *, last: bool = False) -> None:
-        """Show the present picture where widgets do not run."""
         stills: dict[str, Any] = vars(self).get("_stills", {})  # missing if the constructor failed
         for name, shown in stills.items():
             _display_still(shown, name, update=True)
@@ -127,7 +125,6 @@ def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
 
 
 def _pictures(shown: Any) -> str:
-    """Return the pictures in a widget as HTML, laid out as its boxes are."""
     if isinstance(shown, ipywidgets.Box):
         direction = "column" if isinstance(shown, ipywidgets.VBox) else "row"
         style = f"display:flex;flex-direction:{direction};align-items:flex-start;gap:4px"
@@ -170,5 +167,4 @@ def _kernel_shell() -> Any:
 
 
 def _cell_number() -> int | None:
-    """Return the number of the cell that runs; ``None`` outside IPython."""
     return getattr(_shell(), "execution_count", None)

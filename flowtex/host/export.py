@@ -1,12 +1,9 @@
 """A flow as one file that needs no server: an HTML page, or a module for one.
 
 The client, its style, the header and all arrays lie in the file. The header and the arrays are
-gzipped, the arrays with bytes of equal significance side by side, where slopes are similar, and
-written in base64. A page's Content-Security-Policy allows only the script with its digest, and no
-requests.
-
-A page of a pyramid in a store may have the coarsest level and one moment alone, and read the rest
-from the store: its policy names the server of the store. A page with a web map, of which the flow
+gzipped and written in base64. A page's Content-Security-Policy allows only the script with its
+digest, and no requests. A page of a pyramid may have the coarsest level and one moment alone, and
+read the rest from a store, whose server its policy names. A page with a web map, of which the flow
 is a layer, loads MapLibre and the map.
 """
 
@@ -214,7 +211,6 @@ def page_text(views: Sequence[WebView], *, store: str | None = None, **options: 
 
 
 def _with_tiles(scene: ClientData) -> ClientData:
-    """Return the data of a page with as many levels of tiles as fit."""
     pyramid = scene.pyramid
     if pyramid is None:
         return scene
@@ -388,7 +384,6 @@ def _inline(script: str) -> str:
 
 
 def _filled(name: str, parts: Iterator[str], **values: str) -> Iterator[str]:
-    """Yield the text of a template with these parts, where it has a line for them."""
     before, after = re.split(r"\$(?:parts|scene)\n", asset(name).read_text("utf-8"))
     yield string.Template(before).substitute(values)
     yield from parts
@@ -410,7 +405,6 @@ def json_text(value: object) -> str:
 def _packed(
     scenes: Sequence[ClientData], time: float | None, *, is_linked: bool
 ) -> Iterator[tuple[int, Header, str]]:
-    """Yield view, description and text of the parts of all views; equal arrays once."""
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
@@ -478,7 +472,6 @@ def store_header(stored: StoredPyramid, scene: ClientData, address: str | None) 
 
 
 def _stored(view: WebView) -> StoredPyramid:
-    """Return the store of a view; a FieldError if it has none with the same tiles."""
     scene = view.scene
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":

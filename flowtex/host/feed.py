@@ -134,7 +134,6 @@ class Feed:
         self._requests.discard(request)
 
     def _answer(self, scene: ClientData, request: str, future: Future[Parts]) -> None:
-        """Send the parts made of a scene, or the error."""
         self._requests.discard(request)
         error = future.exception()
         if isinstance(error, Stopped) or self._closed:
@@ -169,7 +168,6 @@ class Feed:
             self._timer.start()
 
     def _scene_changed(self, affects: Change) -> None:
-        """Make the textures again, and the traces if need be."""
         if affects == "uniform":
             return
         self.still = None
@@ -195,7 +193,6 @@ class Feed:
         self.settled.set()
 
     def _first(self) -> ClientData:
-        """Return the scene to begin with: a coarse one of a large field."""
         field, nodes = self.view.field, math.prod(self.view.shape)
         # The coarse form of triangles is the root of their tiles, which is sent first in any case.
         is_whole = self.view.scene.pyramid is None
@@ -210,7 +207,6 @@ class Feed:
         return self.view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _complete(self, order: int) -> None:
-        """Make the whole scene where the present one is coarse."""
         shape = self.source.scene.textures.geometry.shape
         if order == self._order and shape != self.view.shape:
             self._replace(self.view.data(), order)
@@ -241,7 +237,6 @@ class Feed:
                 self._send({"kind": "error", "text": _words(error)}, [])
 
     def _replace(self, scene: ClientData, order: int) -> None:
-        """Replace the scene, if ``order`` is still the latest."""
         parts = first_parts(scene, self._moment())
         with self._lock:
             if order != self._order or self._closed:
@@ -260,7 +255,6 @@ class Feed:
                 self._deliver(parts, again=False)
 
     def _recolour(self) -> None:
-        """Send the current colours: the header, and the arrays that differ."""
         scene = self.view.recoloured(self.source.scene)
         parts = first_parts(scene, self._moment())
         with self._lock:
@@ -274,7 +268,6 @@ class Feed:
                 self._deliver(colours, again=False)
 
     def _send_first(self) -> None:
-        """Send the first parts of the current scene, also when it is replaced meanwhile."""
         while True:
             scene = self.source.scene
             parts = first_parts(scene, self._moment())

@@ -1,14 +1,8 @@
 """The notebook widget: a flow drawn by the browser itself, in a cell.
 
-::
-
-    browser    client.js  <--- traits: header, settings, camera, time, clock
-                   |      <--- messages with arrays: surface, slices, scalars
-                   +---------> "ready", "need" a step, clicks, its first sharp frame
-    kernel     FlowWidget ---> Scene, settings
-                   +---------> Feed: one thread that traces, packs and sends
-
-Nothing is drawn in the kernel but a small picture for where widgets cannot be shown.
+Traits send header, settings, camera, time and clock to the client, and messages of a
+:class:`~flowtex.host.feed.Feed` the arrays; the client answers which steps it needs. Nothing is
+drawn in the kernel but a small picture for where widgets cannot be shown.
 """
 
 from __future__ import annotations
@@ -82,7 +76,6 @@ class CheckedTrait(traitlets.TraitType[Any, Any]):
 
 
 def _camera(present: CameraValues | None, value: Any) -> CameraValues:
-    """Return the complete camera; missing attributes keep their values."""
     if not isinstance(value, Camera):
         value = Camera.from_dict(value, Camera(**present) if present else None)
     values: CameraValues = value.to_dict()
@@ -444,7 +437,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             feed.load(request, TileKey(*key), steps)
 
     def _framed(self, frame: bytes, message: Header) -> bytes:
-        """Return a still of what a browser has drawn; raises an error for an invalid message."""
         image = Image.open(io.BytesIO(frame)).convert("RGB")
         count, (width, height) = len(self._feeds), (int(side) for side in message["size"])
         size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))

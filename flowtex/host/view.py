@@ -336,7 +336,6 @@ class TileSource:
 
 
 def _group(scene: ClientData, group: str) -> Parts:
-    """Return a group of parts of the whole surface; controls need only its farthest nodes."""
     parts = {name: part for name, part in scene.surface().items() if name in PART_GROUPS[group]}
     if group != "controls":
         return parts

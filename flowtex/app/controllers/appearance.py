@@ -187,7 +187,6 @@ class Appearance(Controller):
             self.take_time_beside()
 
     def _comparisons(self) -> list[str]:
-        """Return the labels of second panes that the present flow allows."""
         others = [] if self.viewport.field.steady else [ANOTHER_TIME]
         others += [ANOTHER_FILE] if len(self.beside.data.names) > 1 else []
         return [*COMPARISONS, *others, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]

@@ -125,7 +125,6 @@ class FlowOpener(Controller):
         raise NotImplementedError
 
     def _fail(self) -> None:
-        """Return to the old view."""
         raise NotImplementedError
 
     def _is_latest(self, request: LoadRequest) -> bool:

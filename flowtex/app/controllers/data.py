@@ -160,14 +160,12 @@ class Data(FlowOpener):
             raise
 
     def _show_choice(self) -> None:
-        """Show the present choice on the page, unless another one is being opened."""
         values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
             values = {name: values[name] for name in ("name", "about")}
         self.state.send(busy="", **values)
 
     def _requested(self) -> Choice:
-        """Return the choice that the page requests; invalid parts are those of the present one."""
         options, get = self._options(), self.state.get
         choices_of = {"block": "blocks", "vectors": "vectors_choices", "axis": "axes"}
         block, vectors, axis = (
@@ -192,7 +190,6 @@ class Data(FlowOpener):
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:
-        """Return the choices of the present file, and the chosen ones."""
         source, part = self._current.source, self._part
         axis = _axis(self.choice.plane) if part.planes else ""
         count = part.planes.get(axis, 0)
@@ -297,7 +294,6 @@ class FileBeside(FlowOpener):
         self.area.element.follow()
 
     def _names(self) -> tuple[str, ...]:
-        """Return the names of the two files; that of the second with its differing parts."""
         pairs = zip(astuple(self._choice), astuple(self.data.choice), strict=True)
         differing = [part for part, first in pairs if part not in (first, "")]
         return (self.data.name, " · ".join([self._name, *differing]))
@@ -330,12 +326,10 @@ class FileBeside(FlowOpener):
         return "" if self._request is None else self._request.name
 
     def _chosen(self) -> str:
-        """Return the requested name, which may not exist; empty for an invalid one."""
         name = self.state.get("file_beside")
         return name if isinstance(name, str) and name != self.data.name else ""
 
     def _next(self) -> str:
-        """Return the name after that of the first pane, cyclically."""
         names = self.data.names
         position = names.index(self.data.name) if self.data.name in names else -1
         return names[(position + 1) % len(names)]
@@ -355,7 +349,6 @@ class FileBeside(FlowOpener):
         self.show_names()
 
     def _fail(self) -> None:
-        """Show one pane, until another file is chosen."""
         self._forget()
         self.area.compare(None)
         self.state.send(file_beside="", busy="")

@@ -259,7 +259,6 @@ class Library:
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
-    """Return a source of a flow, or of the field that options select from a mesh."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:
         return DatasetSource(flow)
@@ -298,8 +297,6 @@ class _Files:
 
 @dataclass(frozen=True)
 class _Line:
-    """Opener of a formula that somebody has typed."""
-
     text: str
 
     def __call__(self) -> FlowSource:
@@ -311,7 +308,6 @@ def _identity(opener: Opener) -> Identity:
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
-    """Return a name that is not taken, by adding a number."""
     free, number = name, 1
     while free in taken:
         number += 1

@@ -1,21 +1,10 @@
 """The state of a page as text: as a link, and back, and as the lines of Python that draw it.
 
-The state is a mapping with the names below, each of which may be missing::
-
-    file vectors plane block   which flow: names as a library has them; k=20 or x=0.5
-    time clock                 the field's own time; seconds of the streaming
-    colour cmap clim           scalar, colour map, and the values at its ends
-    log_scale opacity          as :class:`flowtex.scene.options.Appearance` has them
-    coastlines graticule       whether these lines of a map are drawn
-    settings                   a mapping of settings by name
-    camera                     as :meth:`flowtex.rendering.camera.Camera.to_dict` has it
-    theme background split     as the page names them
-    time_beside beside_file    contents of the second view, depending on split
-    beside                     of another file: vectors, plane, block, time and scalars; no link
-                               has it, for it follows from the rest
-
-A link holds what differs from the defaults, as a query that people can read. Numbers come back
-exactly. A link may come from anybody: what is unknown or out of range is left out, and reported.
+The state is a mapping with the names of ``_FORMS`` below, each of which may be missing,
+``settings`` by name, and ``beside``: the part of another file that the second view shows, which no
+link has, for it follows from the rest. A link holds what differs from the defaults, as a query that
+people can read. Numbers come back exactly. A link may come from anybody: what is unknown or out of
+range is left out, and reported.
 """
 
 from __future__ import annotations
@@ -200,7 +189,6 @@ def to_python(
 
 
 def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
-    """Return the call that draws a view, with values other than the defaults."""
     values: dict[str, Any] = {}
     if source is None:
         if not state.get("file"):
@@ -220,7 +208,6 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
 
 
 def _part(state: State) -> dict[str, Any]:
-    """Return the arguments that select the part of a file."""
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
     axis, _, number = values.get("plane", "").partition("=")
     is_dataset = is_dataset_file(Path(str(state["file"])))
@@ -236,7 +223,6 @@ def _part(state: State) -> dict[str, Any]:
 
 
 def _literal(value: object) -> str:
-    """Return a value as a literal with double quotes."""
     text = repr(value)
     plain = isinstance(value, str) and text[0] == "'" and '"' not in text and "\\" not in text
     return f'"{text[1:-1]}"' if plain else text

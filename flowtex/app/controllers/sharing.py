@@ -138,8 +138,6 @@ class Sharing(Controller):
         return checked
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
-        """Do a job, once the window of the cancelled one before is closed."""
-
         def report(share: float) -> None:
             if (percent := round(100 * share)) != self.state.get("out_progress"):
                 self.state.send(out_progress=percent)
@@ -288,7 +286,6 @@ class Job:
             await asyncio.wrap_future(self._pool.submit(writer.close))
 
     def _prepare(self) -> None:
-        """Set the window and the density of the copy, and leave room for annotations."""
         panes, density = self._viewport.panes, self._density
         self._gap = max(round(GAP_PX * density), 1) if len(panes) > 1 else 0
         self._viewport.longest_side = TILE_PX
@@ -317,7 +314,6 @@ class Job:
         return canvas
 
     def _annotate(self, picture: Bytes) -> list[Layout]:
-        """Write legend, scale bar, time and name on each view of a picture, in place."""
         viewport = self._viewport
         return annotate_views(
             picture,
@@ -330,8 +326,6 @@ class Job:
         )
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Call a function in the job's thread, where tracing can be stopped."""
-
         def stopping() -> T:
             with stoppable(lambda: self.done):
                 return work(*arguments)
@@ -340,7 +334,6 @@ class Job:
 
 
 def _moving(settings: Settings, field: FlowField) -> Settings:
-    """Return settings with which a steady flow streams."""
     moving = settings.copy()
     if field.steady and moving.motion == "off":
         moving.motion = "speed"

@@ -205,7 +205,6 @@ def plain_name(name: str) -> str:
 
 
 def _cut(text: str, most: int) -> str:
-    """Return the beginning of a text that fits into this many bytes."""
     return text.encode()[:most].decode(errors="ignore")
 
 
@@ -243,7 +242,6 @@ class Uploads:
         self._arrived(name, path)
 
     async def _write(self, name: str, content: AsyncIterable[bytes]) -> Path:
-        """Write a file into its own folder, which is removed after an error."""
         path = self._folder.new_folder() / name
         size = 0
         try:

@@ -143,7 +143,6 @@ def _split(address: str) -> SplitResult:
 
 
 def _is_address(name: str) -> bool:
-    """Return whether a name is a numeric address, which cannot be redirected."""
     with suppress(ValueError):
         return bool(ipaddress.ip_address(name))
     return False

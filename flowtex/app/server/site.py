@@ -1,16 +1,9 @@
 """The web server that all pages share: the door, the pages' files, and their connections.
 
-::
-
-    GET  /                         the door: keeps secret and session in the browser's tab
-    POST /flowtex/session          secret and token for a token: of one's own session, or a new one
-    GET  /page/<token>/index.html  trame's page with ?secret=..., without it the door
-    GET  /page/<token>/ws          the connection of a session
-    GET  /flowtex/<token>/<name>   files of a session
-    GET  /...                      scripts and styles, the same for all pages
-
-trame's client looks for its connection beside its page. It accepts another address, but writes it
-in lower case, which breaks the tokens and the paths of some proxies.
+``GET /`` is the door, which keeps secret and session in the browser's tab, and gets these by ``POST
+/flowtex/session``. A page, its connection and its files have addresses with tokens. trame's client
+looks for its connection beside its page. It accepts another address, but writes it in lower case,
+which breaks the tokens and the paths of some proxies.
 """
 
 from __future__ import annotations
@@ -274,7 +267,6 @@ async def serve_until_ended(
 
 
 def _host_name(host: str) -> str:
-    """Return the name of this machine in an address."""
     if host in ("0.0.0.0", "::", ""):
         return os.uname().nodename if hasattr(os, "uname") else "localhost"
     return f"[{host}]" if ":" in host else host
@@ -317,7 +309,6 @@ class RepeatFilter(logging.Filter):
 
 
 def _cut(text: str) -> str:
-    """Return a text without its middle where it is long."""
     half = MESSAGE_LENGTH // 2
     return text if len(text) <= MESSAGE_LENGTH else f"{text[:half]} … {text[-half:]}"
 

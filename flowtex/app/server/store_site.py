@@ -1,13 +1,9 @@
-"""Server of a pyramid: a page, and the objects of its store that it streams.
+"""Server of a pyramid: a page, ``/<token>/``, and the objects of its store that it streams.
 
-::
-
-    GET  /<token>/                     the page
-    GET  /<token>/store/<run>/<name>   an object of the store
-
-All addresses in the page are relative, so that it works behind any proxy. Names are those of a
-pyramid's arrays and numbers of their chunks, and nothing else is served. Objects of another run,
-which a browser may still have, have other addresses.
+These are at ``/<token>/store/<run>/<name>``. All addresses in the page are relative, so that it
+works behind any proxy. Names are those of a pyramid's arrays and numbers of their chunks, and
+nothing else is served. Objects of another run, which a browser may still have, have other
+addresses.
 """
 
 from __future__ import annotations

@@ -1,14 +1,5 @@
 """The view as its own component, for any trame application.
 
-::
-
-    from flowtex.app import FlowArea
-
-    area = FlowArea(mesh, server=server, samples=25)
-    with VAppLayout(server):
-        area.ui(style="height: 100%")
-    area.settings.lod = False
-
 It is ``<flowtex-view>``, with its controls: drawn by the browser where that has WebGL2 and a
 graphics card, and else here, as pictures. Whatever is changed through :attr:`FlowArea.settings`,
 or of the appearance, such as ``area.cmap = "magma"``, is drawn at once.

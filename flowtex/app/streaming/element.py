@@ -77,7 +77,6 @@ class HandedScene:
         }
 
     async def _content(self, source: TileSource, name: str) -> Content:
-        """Return the file of a tile, or of the whole, at time steps."""
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
         kind = place if place in (*PART_GROUPS, *MARK_PARTS.values()) else ""
@@ -189,7 +188,6 @@ class Element:
         self._server.js_call(self.ref, method, *values)
 
     def _present(self) -> Header:
-        """Return the values that may change at any moment."""
         viewport = self._viewport
         return {
             "settings": dict(viewport.settings),
@@ -201,7 +199,6 @@ class Element:
         }
 
     def _appearances(self) -> tuple[object, ...]:
-        """Return all values for which the client needs other scenes."""
         return (
             self._viewport.background,
             self.names,
@@ -209,7 +206,6 @@ class Element:
         )
 
     def _hand_over(self) -> list[Header]:
-        """Replace the scenes of the page by those of the panes; return their messages."""
         viewport, present = self._viewport, self._present()
         panes, changes = viewport.panes, viewport.differences
         for scene in self._scenes[len(panes) :]:
@@ -319,7 +315,6 @@ class Element:
 
 
 def _appearance(pane: FlowHandle) -> tuple[object, ...]:
-    """Return the values of a pane that determine its textures, its colours and its texts."""
     scene = pane.scene
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
@@ -376,7 +371,6 @@ class Player:
             self._reading = start_task(self._read(), "a time step cannot be read")
 
     async def _read(self) -> None:
-        """Read the latest requested time, and show it."""
         while (time := self._requested) is not None:
             fault, field = None, self._viewport.field
             try:

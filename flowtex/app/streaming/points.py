@@ -73,7 +73,6 @@ class PointReader:
         return {**read, "alone": alone}
 
     def _mark(self, pane: FlowHandle, position: Sequence[float]) -> dict[str, str]:
-        """Return the kind of the critical point that is marked near a position, if any."""
         scene = pane.scene
         if not (count := scene.settings.critical_points):
             return {}
@@ -87,7 +86,6 @@ class PointReader:
         return {"mark": kind} if distance < reach else {}
 
     def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
-        """Return the place (j, i) on the surface."""
         pane = self._viewport.panes[pane_number]
         field = pane.field
         place = _numbers(request.get("place"), 2)
@@ -114,7 +112,6 @@ class PointReader:
 
 
 def _numbers(value: object, count: int) -> list[float] | None:
-    """Return this many finite numbers that a page has sent; ``None`` for anything else."""
     items = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
     numbers = [v for v in items if v is not None]
     return numbers if len(numbers) == len(items) == count else None
@@ -158,7 +155,6 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
 
 
 def _in_surface(found: Probe, field: FlowField) -> Floats:
-    """Return the velocity in the surface, along the path where the flow leaves it."""
     point, n = found.field_values, int(np.abs(found.path_lags).argmin())
     ends = found.path[max(n - 1, 0)], found.path[min(n + 1, len(found.path) - 1)]
     along = ends[1] - ends[0]

@@ -1,13 +1,10 @@
 """The stream of pictures to the page: when to draw, and how well.
 
-One task draws. It sleeps until a picture is requested, draws quick ones for as long as they are
-requested, and the full one once nothing has moved for a moment. Requests are not queued: the next
-picture shows the latest state. Pictures are sent by a remote controlled area (trame-rca), no faster
-than the page acknowledges them (frame_clock.py).
-
-A graphics card draws everything at full quality at once. A processor takes too long for that, so
-what moves is a draft of fewer pixels and samples, over which the full picture is drawn a tile at a
-time. Over a slow connection both draw fewer pixels.
+One task draws quick pictures for as long as they are requested, and the full one once nothing has
+moved for a moment; the next picture shows the latest state. A graphics card draws everything at
+full quality at once. A processor takes too long for that, so what moves is a draft of fewer pixels
+and samples, over which the full picture is drawn a tile at a time. Over a slow connection both draw
+fewer pixels, and they are sent no faster than the page acknowledges them.
 """
 
 from __future__ import annotations
@@ -227,7 +224,6 @@ class FrameStream(AreaAdapter):
         return self._sized and self.streamer is not None and not self.paused and self.watched()
 
     async def _quick(self) -> Bytes:
-        """Send one picture in motion, no sooner than the last ones allow."""
         self._wake.clear()
         started, share = self.clock.now(), self.clock.share
         picture = self.painter.quick(share)
@@ -245,7 +241,6 @@ class FrameStream(AreaAdapter):
         return False
 
     async def _full(self, draft: Bytes) -> None:
-        """Draw the full picture over a draft, and give up as soon as something changes."""
         looked, picture = self.clock.now(), draft
         for picture in () if self.painter.complete else self.painter.full(draft):
             await asyncio.sleep(0)

@@ -111,7 +111,6 @@ class Viewport:
         return self.handle.scene
 
     def _pane(self, scene: Scene) -> FlowHandle:
-        """Add a pane."""
         handle = self._component.add_scene(scene, reset_camera=False)
         handle.still = self._still
         if self._tile_ready is not None:
@@ -290,7 +289,6 @@ class Viewport:
             self.home(**self._look)
 
     def _set_picture(self, *size: int) -> None:
-        """Set the width and height of a whole picture of a pane."""
         self._picture = size
         self.plotter.window_size = [min(side, self.longest_side) for side in size]
 
@@ -407,7 +405,6 @@ def time_in(scene: Scene, field: FlowField) -> float:
 def _fitting(
     first: Scene, make: Callable[[dict[str, Any]], Scene], changes: dict[str, Any]
 ) -> Scene:
-    """Make a scene beside another one, without a scale that its values do not have."""
     try:
         return make(changes)
     except ValueError:

@@ -90,7 +90,6 @@ class ProcessSession(Session):
         threading.Thread(target=self._run, args=(loop,), name="session", daemon=True).start()
 
     def _run(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Run the other process until the session ends, and report its end."""
         with suppress(Stopped), stoppable(lambda: self._ending):
             try:
                 self._child.request({"run": True}, timeout=math.inf)
