@@ -16,7 +16,6 @@ from flowtex.rendering.diagnostics import has_display, opengl_report
 
 REQUIRED = ("numpy", "scipy", "pyvista", "vtk", "h5py")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
-OF_PYVISTA = {"trame-pyvista": "export_html and pages in notebooks", "imageio": "open_gif"}
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,30 @@ def diagnose() -> list[Check]:
     >>> [check.name for check in diagnose()][:4]
     ['Python', 'OpenGL', 'Display', 'Shaders']
     """
-    python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
     found = "none: pictures and the browser work, windows do not open"
     if has_display():
         found = os.environ.get("DISPLAY") or "the system's"
-    return [python, _opengl(), Check("Display", "ok", found), _shaders(), *_packages()]
+    checks = [
+        Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}"),
+        _opengl(),
+        Check("Display", "ok", found),
+    ]
+    try:
+        checks.append(Check("Shaders", "ok", f"{shaders.shader_folder()}"))
+    except FileNotFoundError as error:
+        remedy = "python -m pip install --force-reinstall --no-deps flowtex"
+        checks.append(Check("Shaders", "fail", str(error), remedy))
+    for name in (*REQUIRED, *OPTIONAL):
+        try:
+            checks.append(Check(name, "ok", importlib.metadata.version(name)))
+        except importlib.metadata.PackageNotFoundError:
+            if (extra := OPTIONAL.get(name)) is None:
+                remedy = f"python -m pip install {name}"
+                checks.append(Check(name, "fail", "not installed", remedy))
+                continue
+            use = f"not installed; needed only for the extra {extra!r}"
+            checks.append(Check(name, "warn", use, install_extra(extra)))
+    return checks
 
 
 def _opengl() -> Check:
@@ -63,33 +81,6 @@ def _opengl() -> Check:
         f"{report.version}; {report.renderer} ({report.vendor}), {kind}; {report.window_class}; "
         f"textures up to {report.max_texture_size}, {report.texture_units} at once",
     )
-
-
-def _shaders() -> Check:
-    remedy = "python -m pip install --force-reinstall --no-deps flowtex"
-    try:
-        folder, names = shaders.shader_folder(), shaders.shader_names()
-    except FileNotFoundError as error:
-        return Check("Shaders", "fail", str(error), remedy)
-    return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", remedy)
-
-
-def _packages() -> list[Check]:
-    checks = []
-    for name in (*REQUIRED, *OPTIONAL, *OF_PYVISTA):
-        extra = OPTIONAL.get(name)
-        try:
-            checks.append(Check(name, "ok", importlib.metadata.version(name)))
-        except importlib.metadata.PackageNotFoundError:
-            remedy = install_extra(extra) if extra else f"python -m pip install {name}"
-            status: Literal["warn", "fail"] = "fail" if name in REQUIRED else "warn"
-            use = "not installed"
-            if extra:
-                use += f"; needed only for the extra {extra!r}"
-            elif name in OF_PYVISTA:
-                use += f"; needed only for PyVista's {OF_PYVISTA[name]}"
-            checks.append(Check(name, status, use, remedy))
-    return checks
 
 
 def print_checks(checks: Sequence[Check]) -> None:

@@ -20,12 +20,11 @@ if TYPE_CHECKING:
 
 #: Most times that are listed one by one.
 MOST_TIMES = 8
-#: Most blocks that are listed.
-MOST_BLOCKS = 40
 
 
 def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Describe the contents of a file, and the flow that would be drawn."""
+    from rich.table import Table
     from rich.text import Text
 
     from flowtex.pyramid import is_store
@@ -34,34 +33,30 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.sources.opening.dataset_files import dataset_paths
     from flowtex.sources.read_files import describe, one_path
 
-    console, options = terminal(), arguments(flow)
-    if len(files) == 1 and has_parts(files[0]):
-        name = place_text(files[0]) if is_remote(files[0]) else str(files[0])
-        console.print(Text(name, "bold"), soft_wrap=True)
-        if is_store(files[0]):
-            console.print(_store_table(files[0]))
-        console.print(_field_table(load_field(files, options)))
-        return 0
-    if paths := dataset_paths(files):
-        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-        console.print(Text(f"{files[0]}{more}", "bold"), soft_wrap=True)
-        console.print(_recognised_table(paths))
-        console.print(_field_table(load_field(files, options), has_reading=True))
-        return 0
     if not files:
         raise UsageError("no input file; usage: flowtex info FILE")
-    file = files[0] if len(files) == 1 else one_path(files)
-    summary = describe(file, options.get("block"))
-    console.print(Text(str(file), "bold"), soft_wrap=True)
-    console.print(_file_table(summary))
-    if summary.blocks:
-        console.print(_block_table(summary))
-    if summary.arrays:
-        console.print(_array_table(summary))
-    if summary.problem and not options:
-        console.print(Text(f"To draw it: {summary.problem}", "yellow"))
-        return 0
-    console.print(_field_table(load_field(files, options)))
+    options, name, problem, tables = arguments(flow), str(files[0]), "", list[Table]()
+    has_reading = False
+    if len(files) == 1 and has_parts(files[0]):
+        name = place_text(files[0]) if is_remote(files[0]) else name
+        tables = [_store_table(files[0])] if is_store(files[0]) else []
+    elif paths := dataset_paths(files):
+        name += f" and {len(files) - 1} more" if len(files) > 1 else ""
+        has_reading, tables = True, [_recognised_table(paths)]
+    else:
+        file = files[0] if len(files) == 1 else one_path(files)
+        summary = describe(file, options.get("block"))
+        name, problem, tables = str(file), summary.problem, [_file_table(summary)]
+        tables += [_block_table(summary)] if summary.blocks else []
+        tables += [_array_table(summary)] if summary.arrays else []
+    console = terminal()
+    console.print(Text(name, "bold"), soft_wrap=True)
+    for table in tables:
+        console.print(table)
+    if problem and not options:
+        console.print(Text(f"To draw it: {problem}", "yellow"))
+    else:
+        console.print(_field_table(load_field(files, options), has_reading=has_reading))
     return 0
 
 
@@ -132,12 +127,10 @@ def _file_table(summary: FileSummary) -> Table:
 
 def _block_table(summary: FileSummary) -> Table:
     table = _table("block", "name", "grid", "size")
-    for block in summary.blocks[:MOST_BLOCKS]:
+    for block in summary.blocks:
         number = "" if block.number is None else str(block.number)
         size = block.size.removesuffix(" nodes").replace(" x ", " × ")
         table.add_row(number, block.name, block.grid, size)
-    if len(summary.blocks) > MOST_BLOCKS:
-        table.add_row("", f"and {len(summary.blocks) - MOST_BLOCKS} more", "", "")
     return table
 
 

@@ -136,8 +136,9 @@ def _show_page(
     from flowtex.app import Library
     from flowtex.pyramid.source import has_parts
 
+    is_store = len(files) == 1 and has_parts(files[0])
     is_one_flow = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
-    if is_one_flow and (any(name in choice for name in FIELD_OPTIONS) or has_parts(files[0])):
+    if is_store or (is_one_flow and any(name in choice for name in FIELD_OPTIONS)):
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         raise UsageError(

@@ -16,7 +16,7 @@ FAIL = doctor.Check("OpenGL", "fail", "it [crashed]", "sudo apt-get install libe
 def test_the_diagnosis_covers_what_is_needed() -> None:
     checks = {check.name: check for check in doctor.diagnose()}
     assert {"Python", "OpenGL", "Display", "Shaders"} <= set(checks)
-    assert {*doctor.REQUIRED, *doctor.OPTIONAL, *doctor.OF_PYVISTA} <= set(checks)
+    assert {*doctor.REQUIRED, *doctor.OPTIONAL} <= set(checks)
     assert all(check.remedy for check in checks.values() if check.status != "ok")
     assert all(checks[name].status == "ok" for name in ("Python", *doctor.REQUIRED))
 

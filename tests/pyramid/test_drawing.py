@@ -117,7 +117,7 @@ def test_the_shell_builds_tells_and_draws(
     assert main(["render", str(store), "-o", str(tmp_path / "a.png"), "--size", "100x80"]) == 0
     assert (tmp_path / "a.png").exists()
     assert main(["render", str(store), "-o", str(tmp_path / "b.png"), "--plane", "k=0"]) == 2
-    assert "--plane applies to the source of a pyramid" in capsys.readouterr().err
+    assert "plane applies to the source of a pyramid" in capsys.readouterr().err
 
 
 def test_the_shell_says_what_the_disk_refuses(
