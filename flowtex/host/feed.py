@@ -78,8 +78,7 @@ class Feed:
         self._sending: Future[None] = Future()
         #: Whether nothing is left to be made.
         self.settled = threading.Event()
-        self.acknowledged = False
-        self._timer = self._resend_timer(RESEND_WAITS_S)
+        self.acknowledged = threading.Event()
         self.source = TileSource(self._first())
         view.scene.observe(self._scene_changed)
 
@@ -97,7 +96,7 @@ class Feed:
         self.ready()
         self._sending.add_done_callback(lambda _: self._build(partial(self._complete, 0)))
         if has_threads():
-            self._timer.start()
+            start(self._send_again, "flowtex-resend")
 
     def draw(self, size: tuple[int, int], camera: MakeCamera, **look: Any) -> None:
         """Draw a still of the scene, once, after what is being sent."""
@@ -152,20 +151,13 @@ class Feed:
         with self._lock:
             self._send({"kind": "loaded", "request": request, **result}, [])
 
-    def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
-        timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
-        timer.daemon = True
-        return timer
-
-    def _send_again(self, waits: tuple[float, ...]) -> None:
+    def _send_again(self) -> None:
         """Send again to a client that has not answered: it may not have been loaded yet."""
-        if self.acknowledged or self._closed:
-            return
-        if self._live:
-            self.ready()
-        if waits:
-            self._timer = self._resend_timer(waits)
-            self._timer.start()
+        for wait in RESEND_WAITS_S:
+            if self.acknowledged.wait(wait):
+                return
+            if self._live:
+                self.ready()
 
     def _scene_changed(self, affects: Change) -> None:
         if affects == "uniform":
@@ -188,7 +180,7 @@ class Feed:
     def close(self) -> None:
         """Stop; a trace in progress ends and is not sent."""
         self._closed = True
-        self._timer.cancel()
+        self.acknowledged.set()
         self.source.close()
         self.settled.set()
 

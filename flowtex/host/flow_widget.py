@@ -31,7 +31,7 @@ from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.host.export import PREVIEW, page_text, write_page
 from flowtex.host.feed import Feed
 from flowtex.host.still import still_png
-from flowtex.host.view import WebView, browser_options, client_module, web_views
+from flowtex.host.view import CHOSEN, WebView, browser_options, client_module, web_views
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
@@ -101,10 +101,6 @@ class SettingTraits(traitlets.HasTraits):
     """One trait for each setting."""
 
     locals().update({name: _trait_of(row) for name, row in TABLE.items()})
-
-
-#: Fields of the appearance that can be chosen in the browser.
-CHOSEN = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
 
 
 class Host:
@@ -407,7 +403,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             return
         kind, number, request = message.get("kind"), message.get("view", 0), message.get("request")
         for feed in self._feeds:
-            feed.acknowledged = True
+            feed.acknowledged.set()
             if kind == "ready":
                 feed.ready()
         if kind == "frame":

@@ -43,6 +43,8 @@ PART_GROUPS = {
     "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
     "colours": ("cmap", "maps"),
 }
+#: Fields of the appearance that can be chosen in a browser.
+CHOSEN = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
 #: Directions whose farthest nodes represent the whole surface.
 DIRECTIONS = 400
 #: Parts that are made at once, for all browsers together.

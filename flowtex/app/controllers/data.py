@@ -240,7 +240,6 @@ class FileBeside(FlowOpener):
     def __init__(self, context: Context, data: Data) -> None:
         super().__init__(context)
         self.data = data
-        self._name, self._choice = "", Choice()
         self._active = False
         self._flow: LoadedFlow | None = None  #: The flow that is shown, with its traces.
         self.state.set(file_beside="")
@@ -250,7 +249,8 @@ class FileBeside(FlowOpener):
     @property
     def name(self) -> str:
         """Name of the file in the second pane; empty without one."""
-        return self._name if "field" in self.viewport.differences else ""
+        shown = self._flow if "field" in self.viewport.differences else None
+        return "" if shown is None else shown.name
 
     def begin(self) -> None:
         """Show the file that was chosen last, or the next one of the list."""
@@ -290,25 +290,17 @@ class FileBeside(FlowOpener):
 
     def show_names(self) -> None:
         """Show the names of the two files on the page."""
-        self.area.element.names = self._names() if self.name else ()
+        names: tuple[str, ...] = ()
+        if self._flow is not None:  # that of the second with its differing parts
+            pairs = zip(astuple(self._flow.choice), astuple(self.data.choice), strict=True)
+            differing = [part for part, first in pairs if part not in (first, "")]
+            names = (self.data.name, " · ".join([self._flow.name, *differing]))
+        self.area.element.names = names
         self.area.element.follow()
 
-    def _names(self) -> tuple[str, ...]:
-        pairs = zip(astuple(self._choice), astuple(self.data.choice), strict=True)
-        differing = [part for part, first in pairs if part not in (first, "")]
-        return (self.data.name, " · ".join([self._name, *differing]))
-
     def describe(self) -> State:
-        """Return the file, and the part of it that is shown."""
-        if not self.name:
-            return {"beside_file": self._goal} if self._goal else {}
-        handle = self.viewport.panes[1]
-        beside: dict[str, Any] = {**asdict(self._choice), "time": None}
-        if not handle.field.steady:
-            beside["time"] = handle.time
-        if handle.scene.scalar_name != self.area.scene.scalar_name:
-            beside["scalars"] = handle.scene.scalar_name
-        return {"beside_file": self.name, "beside": beside}
+        """Return the file."""
+        return {"beside_file": self._goal} if self._goal else {}
 
     def restore(self, saved: State) -> None:
         """Choose the file of a saved state."""
@@ -342,11 +334,10 @@ class FileBeside(FlowOpener):
                 f"{request.name} is in {units[1]} and {self.data.name} in {units[0]}; expected "
                 "the same unit of length in both files, because they share one camera"
             )
-        self._name, self._choice, self._flow = request.name, flow.choice, flow
-        self.area.element.names = self._names()
+        self._flow = flow
+        self.show_names()
         if self.viewport.differences.get("field") is not flow.field:
             self.area.compare({"field": flow.field})
-        self.show_names()
 
     def _fail(self) -> None:
         self._forget()
@@ -357,5 +348,4 @@ class FileBeside(FlowOpener):
         if self._request is not None:
             self._request.cancelled = True
         self._request = self._flow = None
-        self._name = ""
         self.show_names()

@@ -1,8 +1,7 @@
 """The state of a page as text: as a link, and back, and as the lines of Python that draw it.
 
-The state is a mapping with the names of ``_FORMS`` below, each of which may be missing,
-``settings`` by name, and ``beside``: the part of another file that the second view shows, which no
-link has, for it follows from the rest. A link holds what differs from the defaults, as a query that
+The state is a mapping with the names of ``_FORMS`` below, each of which may be missing, and
+``settings`` by name. A link holds what differs from the defaults, as a query that
 people can read. Numbers come back exactly. A link may come from anybody: what is unknown or out of
 range is left out, and reported.
 """
@@ -177,8 +176,7 @@ def to_python(
     lines = ["import flowtex", "", f"picture = {_render(state, source, size)}"]
     beside = comparison(split, state.get("time_beside") or 0.0)
     if split == ANOTHER_FILE and name:
-        part = {**dict.fromkeys((*FILE_ARGUMENTS, "time")), **(state.get("beside") or {})}
-        beside, source = {**part, "file": name}, source_beside
+        beside, source = {"file": name, "time": None}, source_beside
     if beside:
         settings = {n: value for n, value in beside.items() if n in TABLE}
         other = {**state, **beside, "settings": {**(state.get("settings") or {}), **settings}}

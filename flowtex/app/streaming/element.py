@@ -17,20 +17,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Routes
 from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop, start_task
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.host.view import PART_GROUPS, TileSource, WebView, client_module
+from flowtex.host.view import CHOSEN, PART_GROUPS, TileSource, WebView, client_module
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, parts_file
 from flowtex.rendering.webgl.velocity import PREFIX
-from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE, Signal
 from flowtex.textures.tiles.pyramid import TileKey
 
@@ -40,16 +38,6 @@ _numbers = itertools.count(1)
 PAINTERS = ("server", "browser")
 #: Name of the whole surface in place of a tile.
 WHOLE = "whole"
-#: Fields of the appearance that a page may choose, and the types of their values.
-CHOICES: dict[str, tuple[type, ...]] = {
-    "scalars": (str, bool),
-    "cmap": (str,),
-    "clim": (list, str, type(None)),
-    "log_scale": (bool,),
-    "opacity": (int, float),
-    "coastlines": (bool,),
-    "graticule": (bool,),
-}
 
 
 class HandedScene:
@@ -288,21 +276,9 @@ class Element:
     def take_colours(self, choice: object, page: object = "") -> None:
         """Set the colours that the page requests, or report an error."""
         del page  # which receives the colours as well
-        changes: dict[str, Any] = {
-            name: value
-            for name, value in mapping(choice).items()
-            if isinstance(value, CHOICES.get(name, ()))
-        }
-        clim = changes.get("clim")
-        if isinstance(clim, list):
-            ends = tuple(number(end, -1e300, 1e300) for end in clim)
-            changes["clim"] = ends if len(ends) == 2 and None not in ends else None
-        elif clim not in (None, ROBUST) or changes.get("scalars") is True:
-            return
-        if "cmap" in changes and not name_among(changes["cmap"], CMAPS):
-            return
+        changes = {name: value for name, value in mapping(choice).items() if name in CHOSEN}
         scene = self._viewport.scene
-        with self._changed_by(""):
+        with self._changed_by(""), suppress(KeyError, TypeError):
             scene.appearance = scene.appearance.changed(**changes)
 
     def close(self) -> None:
