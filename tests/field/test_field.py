@@ -36,17 +36,6 @@ def ones(points: NDArray[Any], *steps: int) -> Floats:
 # --- form -----------------------------------------------------------------------------------
 
 
-def test_a_steady_field_has_one_step() -> None:
-    field = FlowField.from_arrays(flat(), ones(flat()))
-    assert field.points.shape == (5, 7, 3)
-    assert field.velocity.shape == (1, 5, 7, 3)
-    assert field.times.tolist() == [0.0]
-    assert field.steady
-    assert field.shape == (5, 7)
-    assert field.valid.all()
-    assert field.periodic == (False, False)
-
-
 def test_a_series_keeps_its_times() -> None:
     field = FlowField.from_arrays(flat(), ones(flat(), 3), times=[0.5, 1.0, 4.0])
     assert field.times.tolist() == [0.5, 1.0, 4.0]
@@ -221,30 +210,6 @@ def test_both_sides_of_a_seam_get_one_value() -> None:
     assert field.velocity[0, 0, :, 0].tolist() == [2, 3, 1, 2]
     assert np.array_equal(field.velocity[0, 0], field.velocity[0, -1])
     assert field.valid.all()
-
-
-# --- coordinates of every size --------------------------------------------------------------
-
-
-@pytest.mark.parametrize("offset", [0.0, 1e9])
-@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
-def test_coordinates_may_be_huge_or_tiny(size: float, offset: float) -> None:
-    points = flat(size=size) + offset * size
-    field = FlowField.from_arrays(points, ones(points) * [size, 2 * size, 0])
-    assert field.valid.all()
-    assert field.periodic == (False, False)
-    u = field.index_velocity.components
-    np.testing.assert_allclose(u, np.broadcast_to([1.0, 2.0], u.shape), rtol=1e-6)
-
-
-def test_a_collapsed_row_is_a_field() -> None:
-    points = ring(13, last=True)
-    points[:, 0] = 0.0
-    field = FlowField.from_arrays(points, ones(points))
-    assert field.periodic == (True, False)
-    assert np.isfinite(field.index_velocity.components).all()
-    assert np.isfinite(field.surface.cell_size).all()
-    assert (field.surface.cell_size > 0).all()
 
 
 # --- parts of a field -----------------------------------------------------------------------

@@ -181,15 +181,6 @@ def test_flow_along_a_sphere_is_kept() -> None:
     np.testing.assert_allclose(u[..., 1], 0, atol=1e-2)
 
 
-def test_half_of_the_flow_is_lost() -> None:
-    surface = sphere().surface
-    along = np.cross([0, 0, 1.0], surface.points)
-    along /= np.linalg.norm(along, axis=-1, keepdims=True)
-    found = surface.express((0.8 * along + 0.6 * surface.points)[None])
-    assert found.normal_share == pytest.approx(0.6, abs=5e-3)
-    np.testing.assert_allclose(found.speed, 0.8, rtol=1e-2)
-
-
 def test_uniform_flow_over_a_cylinder_is_projected() -> None:
     surface = cylinder(97)
     velocity = np.broadcast_to([1.0, 0, 0], surface.points.shape)
@@ -204,21 +195,6 @@ def test_uniform_flow_over_a_cylinder_is_projected() -> None:
 
 
 # --- collapsed and blanked ------------------------------------------------------------------
-
-
-def test_a_pole_keeps_the_velocity_along_its_meridian() -> None:
-    angle = np.linspace(0, 2 * np.pi, 33)[:, None]
-    radius = np.linspace(0, 1, 9)[None]
-    points = np.stack(
-        np.broadcast_arrays(radius * np.cos(angle), radius * np.sin(angle), 0 * radius), axis=-1
-    )
-    velocity = np.broadcast_to([1.0, 0, 0], points.shape)
-    field = FlowField.from_arrays(points, velocity)
-    u = field.index_velocity.components[0]
-    assert np.isfinite(u).all()
-    np.testing.assert_allclose(u[:, 0, 0], 8 * np.cos(angle[:, 0]), atol=1e-9)
-    np.testing.assert_allclose(u[:, 0, 1], 0, atol=1e-12)
-    assert field.normal_share < 0.01
 
 
 def test_fill_values_of_blanked_nodes_bend_nothing() -> None:

@@ -42,24 +42,6 @@ def test_values_are_linear_in_space_and_time() -> None:
         values_at(field, (1, 2), 4)
 
 
-@pytest.mark.parametrize(
-    ("length", "time", "speed"),
-    [
-        ("m", "s", "m/s"),
-        ("", "s", ""),
-        ("m", "", ""),
-        ("chords", "chords / free-stream speed", "free-stream speed"),
-        ("m", "1/Hz", "m / (1/Hz)"),
-    ],
-)
-def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
-    y, x = np.mgrid[0:3.0, 0:3.0]
-    field = FlowField.from_arrays(
-        np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
-    )
-    assert values_at(field, (1, 1)).speed_unit == speed
-
-
 def test_a_vector_without_a_sign_does_not_cancel() -> None:
     y, x = np.mgrid[-1:1:5j, -1:1:5j]
     half = 0.5 * np.arctan2(y, x)

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.examples import double_gyre_field, double_gyre_velocity
-from flowtex.trace.trace import paths, trace
+from flowtex.trace.trace import paths
 
 #: Linear flows v = A x: bilinear interpolation has no error in them.
 FLOWS = {
@@ -186,17 +186,3 @@ def test_velocity_is_linear_between_the_steps() -> None:
         t = fine[fine >= 1.4 - lag - 1e-9]
         moved = [np.trapezoid(np.interp(t, times, speed[:, c]), t) for c in range(2)]
         np.testing.assert_allclose(position, 20 - np.array(moved) / 0.1, atol=1e-5)
-
-
-# --- symmetry -------------------------------------------------------------------------------
-
-
-def test_transposed_grid_gives_transposed_slices(rng: np.random.Generator) -> None:
-    points = grid(9, 12) * 0.1
-    velocity = rng.standard_normal(points.shape)
-    one = trace(FlowField.from_arrays(points, velocity, periodic=""))
-    two = trace(
-        FlowField.from_arrays(np.swapaxes(points, 0, 1), np.swapaxes(velocity, 0, 1), periodic="")
-    )
-    swapped = np.swapaxes(two.displacement, 2, 3)[..., ::-1]
-    np.testing.assert_allclose(one.displacement, swapped, atol=2e-3)

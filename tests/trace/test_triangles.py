@@ -113,25 +113,6 @@ def test_a_uniform_flow_is_exact_however_the_nodes_lie() -> None:
     )
 
 
-@pytest.mark.parametrize("along", [(1.0, 0.0), (0.6, 0.8)])
-def test_reach_is_the_lag_to_the_border(along: tuple[float, float]) -> None:
-    points, triangles = square(1000)
-    field = FlowField.from_triangles(points, triangles, np.broadcast_to(along, points.shape))
-    slices = trace(field, lags=[0.1, 5.0], unit=1.0)
-    ahead = np.where(np.array(along) > 0, along, 1e-30)
-    for reach, room in (
-        (slices.reach, field.points[0, :, :2] + 1),
-        (slices.forward_reach, 1 - field.points[0, :, :2]),
-    ):
-        assert reach is not None
-        np.testing.assert_allclose(
-            reach[0, 0], (np.maximum(room, 1e-9) / ahead).min(axis=1), atol=1e-5
-        )
-    np.testing.assert_allclose(
-        slices.displacement[0, 1, 0, :, :2] / -5, [along] * len(points), atol=1e-6
-    )
-
-
 def test_paths_are_those_of_the_structured_tracer() -> None:
     i, j = np.meshgrid(np.linspace(-1, 1, 61), np.linspace(-1, 1, 51))
     points = np.stack([i, j, 0.2 * i * j], axis=-1)

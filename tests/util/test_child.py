@@ -19,7 +19,7 @@ from child_handler import is_gone
 from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.child import FORKS, Child, ChildError
-from flowtex._util.child.worker import MessageError, read_message, settle, write_message
+from flowtex._util.child.worker import MessageError, read_message, write_message
 from flowtex._util.progress import Stopped, stoppable
 
 ENTRY = "child_handler:Handler"
@@ -222,20 +222,3 @@ def test_a_message_that_ends_early_is_none() -> None:
     assert value == {"a": [1, None]} and array.tolist() == [[0, 1, 2], [3, 4, 5]]
     for length in (0, 3, 10, len(whole) - 1):
         assert read_message(io.BytesIO(whole[:length]), 48) is None
-
-
-def test_a_limit_that_the_system_refuses_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    resource = pytest.importorskip("resource")
-    asked: list[Any] = []
-
-    def refuse(*limits: Any) -> None:
-        asked.append(limits)
-        if len(asked) > 1:
-            raise ValueError
-
-    monkeypatch.setattr(resource, "setrlimit", refuse)
-    monkeypatch.setattr(os, "dup2", lambda *_: None)
-    monkeypatch.setattr("flowtex._util.child.worker.OOM_SCORE", "none")
-    settle(100 * MB, prints=False)
-    (_, (soft, _)) = asked[1]
-    assert soft > 100 * MB
