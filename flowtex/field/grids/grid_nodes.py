@@ -272,14 +272,8 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
     # A vector at rest has no direction.
     valid = valid & (length > REST_SHARE * length.max()).reshape(valid.shape)
-    number = np.arange(valid.size).reshape(valid.shape)
-    pairs = [_along(number, valid, axis) for axis in (0, 1)]
-    for axis, closed in enumerate(periodic):
-        if closed:
-            lines = np.swapaxes(number, 0, axis)
-            is_valid = np.swapaxes(valid, 0, axis)[0]
-            pairs.append(np.stack([lines[0][is_valid], lines[-1][is_valid]]))
-    start, end = np.concatenate(pairs, axis=1)
+    pairs = neighbour_pairs(valid.shape, periodic)
+    start, end = pairs[valid.ravel()[pairs].all(axis=1)].T
     unit = flat / np.where(length > 0, length, 1.0)
     agree = np.sum(unit[start] * unit[end], axis=-1)
     cost = 1 + TURN_COST * (1 - np.abs(agree))
@@ -356,11 +350,13 @@ def _sign(products: Floats) -> Floats:
         return np.where(np.sum(products, axis=-1, keepdims=True) < 0, -1.0, 1.0)
 
 
-def _along(number: Indices, valid: Bools, axis: int) -> Indices:
-    """Return pairs of neighbouring valid nodes along an axis, (2, N)."""
-    n, ok = np.swapaxes(number, 0, axis), np.swapaxes(valid, 0, axis)
-    pairs = ok[:-1] & ok[1:]
-    return np.stack([n[:-1][pairs], n[1:][pairs]])
+def neighbour_pairs(shape: tuple[int, ...], periodic: tuple[bool, bool]) -> Indices:
+    """Return pairs of neighbouring nodes, (E, 2), counted row by row."""
+    number = np.arange(np.prod(shape)).reshape(shape)
+    pairs = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
+    pairs += [(number[:, :1], number[:, -1:])] * periodic[1]
+    pairs += [(number[:1], number[-1:])] * periodic[0]
+    return np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
 
 
 def _tree(graph: scipy.sparse.csr_array, valid: Bools) -> Indices:

@@ -7,6 +7,7 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.grids.grid_nodes import neighbour_pairs
 
 #: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
 ROUNDING_CELLS = 1e-9
@@ -122,7 +123,10 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
     if len(nodes) < 2:
         return result
-    edges = _edges(field)
+    if field.triangles is None:
+        edges = neighbour_pairs(field.shape, field.periodic)
+    else:
+        edges = np.concatenate([field.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
     edges = edges[valid[edges].all(axis=1)]
     needed = speed[edges].max(axis=1)
     order = np.argsort(needed)
@@ -151,17 +155,3 @@ def _paired(region: Indices, signs: Indices) -> Bools:
     rank = np.empty(len(kind), dtype=np.intp)
     rank[order] = np.arange(len(kind)) - (np.cumsum(counts) - counts)[kind[order]]
     return np.asarray(rank >= counts[kind] - counts[kind ^ 1])
-
-
-def _edges(field: FlowField) -> Indices:
-    """Return pairs of neighbouring nodes, (E, 2), counted row by row."""
-    if field.triangles is not None:
-        corners = np.asarray(field.triangles)
-        return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    number = np.arange(field.valid.size).reshape(field.shape)
-    pairs = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
-    if field.periodic[1]:
-        pairs.append((number[:, :1], number[:, -1:]))
-    if field.periodic[0]:
-        pairs.append((number[:1], number[-1:]))
-    return np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
