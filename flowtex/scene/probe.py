@@ -21,11 +21,10 @@ from flowtex.field.interpolation import bracket
 from flowtex.field.locate import SurfacePoint, locate, locator, surface_point
 from flowtex.field.quantities import PointValues, values_at
 from flowtex.rendering.camera import Camera
-from flowtex.rendering.cpu.fragments import Fragments, footprint, slice_level
+from flowtex.rendering.cpu.fragments import Fragments, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker, slices_at, view_state
-from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Side, Summing, Sums
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
@@ -42,37 +41,25 @@ class Probe:
     """How the texture at one point of the surface is computed.
 
     The K samples are in the order of the flow: from the farthest upstream of the point to the
-    farthest downstream. Samples beyond the end of the path are left out, so K may be less than
-    ``asked``. Lags are lengths in the mesh's units for paths by arc length, otherwise times in the
-    field's unit; they are positive upstream, where the particle comes from, and negative
-    downstream.
+    farthest downstream. Samples beyond the end of the path are left out. Lags are lengths in the
+    mesh's units for paths by arc length, otherwise times in the field's unit; they are positive
+    upstream, where the particle comes from, and negative downstream.
 
     Attributes
     ----------
     field_values
         Position, velocity and speed at the point, with units.
-    parameter
-        What a lag measures: ``"arclength"`` or ``"time"``.
-    setting
-        The setting ``samples``.
-    asked
-        Number of samples of a path that does not end: equally many on both sides of the point, and
-        about twice as many if the grains move.
     lags
         Lags of the samples, (K,), decreasing.
     points
         Positions of the samples in space, (K, 3), in the mesh's units. Beyond the seam of a flat
         map of one period they continue straight.
-    coordinates
-        Positions of the samples in index space, (K, 2) as (j, i), within one period.
     slices
         Numbers of the two trace slices around each sample, (K, 2): the one of smaller lag first, 0
         for the point itself.
     shares
         Position of each sample between these slices, (K,), 0 to 1; more for a last sample that
         fades out beyond the last slice.
-    slice_lags
-        Absolute lags of the trace slices at this point, (M + 1,), the first one 0.
     weights
         Weight of each sample in the mean, (K,); their sum is 1.
     noise
@@ -81,11 +68,6 @@ class Probe:
     level
         Level of detail; each level is twice as coarse as the previous one. For an image, its mip
         level.
-    pixel
-        Longer side of the area of a pixel on the surface, in the mesh's units.
-    grain
-        Size of a grain of the noise, or of a texel of the image, on the surface, in the mesh's
-        units.
     step
         Lag from the point to the next sample; NaN where the velocity is zero.
     gain
@@ -110,32 +92,18 @@ class Probe:
     """
 
     field_values: PointValues
-    parameter: str
-    setting: int
-    asked: int
     lags: Floats
     points: Floats
-    coordinates: Floats
     slices: Indices
     shares: Floats
-    slice_lags: Floats
     weights: Floats
     noise: Floats
     level: float
-    pixel: float
-    grain: float
     step: float
     gain: float
     value: float | Floats
     path: Floats
     path_lags: Floats
-
-    @property
-    def greys(self) -> Floats:
-        """The noise of the samples as grey values, (K,), from 0, black, to 1, white."""
-        if self.noise.ndim == 1:
-            return 0.5 + 0.5 * tone(self.noise, 1.0)
-        return np.asarray(self.noise[:, :3].mean(axis=-1) + 1.0 - self.noise[:, 3])
 
 
 def probe(
@@ -145,7 +113,6 @@ def probe(
     pixel: float | Camera,
     size: tuple[int, int] | None = None,
     clock: float = 0.0,
-    density: float = 1.0,
 ) -> Probe:
     """Return how the texture at a point of the surface is computed.
 
@@ -165,8 +132,6 @@ def probe(
         Width and height of the picture in pixels, for a camera.
     clock
         Clock of the streaming of a steady flow, in seconds.
-    density
-        Number of drawn pixels, along a side, per pixel of the settings.
 
     Raises
     ------
@@ -180,8 +145,8 @@ def probe(
     >>> from flowtex.scene.probe import locate, probe
     >>> from flowtex.scene.scene import Scene
     >>> field = flowtex.examples.double_gyre_field()
-    >>> probe(Scene.of(field), locate(field, (0.5, 0.25)), pixel=0.01).parameter
-    'arclength'
+    >>> probe(Scene.of(field, samples=9), locate(field, (0.5, 0.25)), pixel=0.01).points.shape
+    (9, 3)
     """
     surface = view.field.surface
     place = surface_point(surface, at)
@@ -194,7 +159,7 @@ def probe(
     else:
         camera = pixel
     before, after, between = view.moment
-    state = ViewState(between=between, still=True, clock=clock, density=density)
+    state = ViewState(between=between, still=True, clock=clock)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
     field_values = values_at(view.field, place.index, view.time)
@@ -204,8 +169,7 @@ def probe(
         nearest, _ = locator(drawn).nearest(field_values.position[None])
         surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
     fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
-    setting = view.settings.samples
-    return _Pixel(textures, (before, after), fragments, values, field_values, setting).probe()
+    return _Pixel(textures, (before, after), fragments, values, field_values).probe()
 
 
 class _Pixel:
@@ -218,11 +182,10 @@ class _Pixel:
         fragments: Fragments,
         values: Values,
         field_values: PointValues,
-        setting: int,
     ) -> None:
         loaded = LoadedTextures.of(textures)
-        self._field_values, self._setting = field_values, setting
-        self._textures, self._values, self._fragments = textures, values, fragments
+        self._field_values, self._textures = field_values, textures
+        self._values, self._fragments = values, fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
         self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
@@ -239,7 +202,7 @@ class _Pixel:
         lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
         order = np.argsort(-lags)
         lags = lags[order] + 0.0
-        points, coordinates = self._places(np.concatenate(recorder.displacement)[order])
+        points = self._points(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         first_slice, shares = bracket(knots, np.abs(lags), side="left")
         certainty = self._summing.certainty(self._fragments.place, self._level)
@@ -247,25 +210,16 @@ class _Pixel:
         cell = self._summing.cell(self._fragments.place, certainty)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
-        pixel, grain = self._sizes()
         moves = np.isfinite(sides[0].reach[0])
-        samples = values["u_samples"]
         return Probe(
             field_values=self._field_values,
-            parameter=self._textures.store.parameter,
-            setting=self._setting,
-            asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
             lags=lags * self._unit,
             points=points,
-            coordinates=coordinates,
             slices=np.stack([first_slice, first_slice + 1], axis=-1),
             shares=shares,
-            slice_lags=knots * self._unit,
             weights=recorder.weights[order],
             noise=recorder.noise[order],
             level=float(recorder.level[0]),
-            pixel=pixel,
-            grain=grain,
             step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
             gain=recorder.gain * (float(faded[0]) if np.ndim(value) == 0 else 1.0),
             value=float(value) if np.ndim(value) == 0 else np.asarray(value),
@@ -294,35 +248,18 @@ class _Pixel:
             displacements.append(moved)
         lag = np.concatenate(lags)
         order = np.argsort(-lag)
-        points, _ = self._places(np.concatenate(displacements)[order], coordinates=False)
-        return lag[order], points
+        return lag[order], self._points(np.concatenate(displacements)[order])
 
-    def _places(self, displacement: Floats, *, coordinates: bool = True) -> tuple[Floats, Floats]:
-        """Return points, and coordinates as (j, i), of displacements (N, 3)."""
+    def _points(self, displacement: Floats) -> Floats:
+        """Return points in space of displacements (N, 3)."""
         geometry, image = self._textures.geometry, self._textures.image
         place = self._fragments.image
         # Relative to the place in double precision, as renderers have the nodes in single.
         start, surface = self._field_values.position, geometry.field.surface
         if image is None or place is None:
-            points = start + displacement @ geometry.frame
-            nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
-            return points, nearest
+            return np.asarray(start + displacement @ geometry.frame)
         first, index = map(image.index, (place.value, place.value + displacement[:, :2]))
-        points = start + surface.at(index) - surface.at(first)
-        return points, surface.wrap(index)[:, ::-1]
-
-    def _sizes(self) -> tuple[float, float]:
-        """Return the longer side of the pixel, and the size of a grain."""
-        values, image, textures = self._values, self._fragments.image, self._textures.image
-        position = self._fragments.position
-        sides = [float(side[0]) for side in footprint(position.dx, position.dy)]
-        width = 2.0 ** float(self._lookup.level[0])
-        if image is None or textures is None:
-            return sides[0], width * values["u_texel"]
-        size = np.array(textures.texels.shape[1::-1]) * values["u_tiles"]
-        texels = [float(side[0]) for side in footprint(image.dx * size, image.dy * size)]
-        texel = np.sqrt(sides[0] * sides[1] / max(texels[0] * texels[1], 1e-30))
-        return sides[0], float(width * texel)
+        return start + surface.at(index) - surface.at(first)
 
 
 def cover_place(

@@ -43,11 +43,6 @@ def test_the_size_of_a_window_is_checked(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ({"scalar_bar_args": {"title": "speed"}}, "only with show_scalar_bar=True"),
-        (
-            {"scalar_bar_args": {"title": "speed"}, "show_scalar_bar": True, "annotations": True},
-            "only without annotations",
-        ),
         ({"clock": 3.0}, "clock is 3.0, but motion is 'off'"),
         ({"coastlines": True}, "coastlines is True, but the field is not on the Earth"),
         ({"graticule": True}, "graticule is True, but the field is not on the Earth"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import Any
@@ -51,7 +51,6 @@ class OffscreenPlotter:
         density: float = 1.0,
         still: bool = False,
         annotations: bool = False,
-        scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
         _check_size(size, supersampling)
         require_opengl()
@@ -69,7 +68,6 @@ class OffscreenPlotter:
             # Supersampling smooths outlines as well.
             outline_samples=OUTLINE_SAMPLES if supersampling == 1 else 0,
             labels=not annotations,
-            scalar_bar_args=scalar_bar_args,
             off_screen=True,
             lighting="light kit",
         )
@@ -170,7 +168,6 @@ def render(
     supersampling: int = 1,
     margin: float = CAMERA_LIMITS.margin,
     annotations: bool = False,
-    scalar_bar_args: dict[str, Any] | None = None,
     **options: Any,
 ) -> Bytes:
     """Draw a flow without a window.
@@ -197,9 +194,6 @@ def render(
     annotations
         Whether legend, scale bar, time and the field's name are drawn on the picture, each if it
         applies and has room. In a small picture the flow is drawn between them.
-    scalar_bar_args
-        As for ``plotter.add_mesh``. This bar is drawn only with ``show_scalar_bar=True`` and
-        without annotations.
     {options}
 
     Returns
@@ -223,9 +217,6 @@ def render(
     (120, 160, 3)
     """
     chosen = Options.split(**options)
-    if scalar_bar_args and (annotations or not chosen.appearance.show_scalar_bar):
-        case = "without annotations" if annotations else "with show_scalar_bar=True"
-        notify(f"scalar_bar_args is given, but this bar is drawn only {case}; it is not used")
     plotter = OffscreenPlotter(
         make_scenes(mesh, chosen),
         chosen.view,
@@ -234,7 +225,6 @@ def render(
         margin=margin,
         still=True,
         annotations=annotations,
-        scalar_bar_args=scalar_bar_args,
     )
     with closing(plotter):
         scene = plotter.handles[0].scene
