@@ -26,9 +26,9 @@ from scenes import Stage, gyre_field, gyre_view, vortex_view
 from seams import across_lines, seams
 
 import flowtex
-from flowtex._util.arrays import block_means
 from flowtex.rendering.diagnostics import require_opengl
 from paper import quality
+from paper.blocks import block_means
 
 Figures = dict[str, dict[str, float]]
 

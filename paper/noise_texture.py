@@ -19,7 +19,6 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Ints
-from flowtex._util.arrays import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import between_nodes
 from flowtex.rendering.cpu.fragments import Fragments, Varying
@@ -28,6 +27,7 @@ from flowtex.rendering.cpu.noise import covered_texels, mip_level
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums, shared
 from flowtex.textures.images import ImageTextures, coordinates, steps_of, texel_places
 from flowtex.trace.store import SliceStore
+from paper.blocks import block_means
 
 Values = Mapping[str, Any]
 

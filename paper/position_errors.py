@@ -11,6 +11,7 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line, between_nodes
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import paths, trace
+from paper.blocks import block_means
 
 #: Steps of time that a particle goes back.
 STEPS = 10
@@ -122,7 +123,8 @@ def position_errors(
         In the field's unit of length.
     """
     step = int(np.argmin(np.abs(field.times - slices.times[0])))
-    coarse, at = slices.downsample(factor), field.surface.at
+    coarse = slices.mapped(lambda data, axis: block_means(data, factor, axis))
+    at = field.surface.at
     entries = coarse.nodes.reshape(-1, 2)
     entries = entries[rng.permutation(len(entries))[:count]]
     start, true = _accurate(field, entries, step, tolerance)

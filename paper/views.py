@@ -13,7 +13,6 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Bools, Bytes, Floats
-from flowtex._util.arrays import block_means
 from flowtex.field import FlowField
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover
@@ -24,6 +23,7 @@ from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from paper import quality
 from paper.bench import Bench
+from paper.blocks import block_means
 
 #: Colour of a surface without scalars.
 SURFACE_GREY = (0.627, 0.627, 0.627)

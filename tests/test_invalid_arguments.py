@@ -265,9 +265,6 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
     partial(flowtex.trace(plane(), two_sided=False).positions, 0.1): [
         ({"forward": True}, "the slices have no forward side: trace with")
     ],
-    slices().downsample: [
-        ([factor], f"factor is {factor}; expected 1 to 3, the shorter") for factor in (0, -1, 22)
-    ],
     lambda count: textures(plane(), flowtex.trace(plane(), lags=np.linspace(0.1, 1, count))): [
         ([1], "1 lags were traced; drawing needs 2 to 32"),
         ([33], "33 lags were traced; drawing needs 2 to 32"),
@@ -490,7 +487,6 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     ),
     "lags": (partial(flowtex.trace, field()), {"lags": None}),
     "positions": (lambda **given: slices().positions(**given), {"lag": 0.5, "step": 0}),
-    "slices.downsample": (lambda **given: slices().downsample(**given), {"factor": 1}),
     "Camera": (Camera, {"position": (0, 0, 1), "focal_point": (0, 0, 0), "up": (0, 1, 0)}),
     "Settings": (flowtex.Settings, {name: row.default for name, row in TABLE.items()}),
     "Scene": (

@@ -1,4 +1,4 @@
-"""Arrays: means of blocks, work on large arrays by parts, and products of vectors."""
+"""Arrays: work on large arrays by parts, and products of vectors."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
@@ -40,15 +40,6 @@ def bounds(points: Floats) -> Floats:
     while ends[0].ndim > 1:
         ends = [ends[0].min(axis=0), ends[1].max(axis=0)]
     return np.stack(ends)
-
-
-def block_means(data: AnyArray, factor: int, axis: int = 0) -> AnyArray:
-    """Average blocks of ``factor`` x ``factor`` whole entries of (..., J, I, ...)."""
-    rows, columns = (n // factor for n in data.shape[axis : axis + 2])
-    whole = (*(slice(None),) * axis, slice(rows * factor), slice(columns * factor))
-    before, after = data.shape[:axis], data.shape[axis + 2 :]
-    blocks = data[whole].reshape(*before, rows, factor, columns, factor, *after)
-    return np.asarray(blocks.mean(axis=(axis + 1, axis + 3)))
 
 
 def dot(one: Floats, other: Floats) -> Floats:

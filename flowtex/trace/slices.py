@@ -16,7 +16,6 @@ import numpy as np
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import AnyArray, Floats, Indices
-from flowtex._util.arrays import block_means
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket
@@ -115,14 +114,14 @@ class TraceSlices:
     def at_step(self, step: int) -> TraceSlices:
         """Return the slices of one destination time, with T = 1."""
         span = slice(step, step + 1 or None)
-        slices = self._mapped(lambda data, axis: data[span] if axis else data)
+        slices = self.mapped(lambda data, axis: data[span] if axis else data)
         return replace(slices, times=self.times[span])
 
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return some rows and columns of the slices."""
-        return self._mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])
+        return self.mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])
 
-    def _mapped(self, function: Callable[[AnyArray, int], AnyArray]) -> TraceSlices:
+    def mapped(self, function: Callable[[AnyArray, int], AnyArray]) -> TraceSlices:
         """Apply a function to each array over the nodes, and to its axis of j."""
         arrays: dict[str, Any] = {
             name: function(data, axis)
@@ -179,22 +178,6 @@ class TraceSlices:
         rows, columns = np.indices(self.shape)
         before, after = mean[m, rows, columns], mean[m + 1, rows, columns]
         return np.asarray(self.nodes + held[..., None] * (before * (1 - late) + after * late))
-
-    def downsample(self, factor: int) -> TraceSlices:
-        """Average blocks of ``factor`` x ``factor`` entries, as a mip level does.
-
-        The new entries lie at the centres of their blocks (see ``nodes``), and displacements stay
-        in cells of the original grid. Lines that do not fill a block are dropped.
-
-        Raises
-        ------
-        FieldError
-            When the slices are smaller than one block.
-        """
-        most = min(self.shape)
-        expected = f"1 to {most}, the shorter side"
-        factor = checked_count("factor", factor, 1, most, expected=expected)
-        return self._mapped(lambda data, axis: block_means(data, factor, axis))
 
     def __repr__(self) -> str:
         rows, columns = self.shape

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex._util.arrays import block_means
 from flowtex.field.interpolation import bracket
 from flowtex.field.locate import surface_point
 from flowtex.rendering.cpu.fragments import Fragments, slice_level
@@ -17,6 +16,7 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.scene.probe import Recorder, camera_facing, cover_place
 from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
+from paper.blocks import block_means
 from paper.findings import Claim, Finding, Plot, Section, Table
 from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes

@@ -92,19 +92,6 @@ def test_positions_at_the_slices_are_the_slices(slices: TraceSlices) -> None:
     np.testing.assert_array_equal(slices.positions(0.0), slices.nodes)
 
 
-def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSlices) -> None:
-    small = slices.downsample(4)
-    assert small.shape == (5, 10)
-    np.testing.assert_allclose(small.nodes[0, 0], [1.5, 1.5])
-    np.testing.assert_allclose(small.nodes[-1, -1], [37.5, 17.5])
-    np.testing.assert_allclose(
-        small.displacement[0, 1, 2, 3],
-        slices.displacement[0, 1, 8:12, 12:16].mean(axis=(0, 1)),
-        rtol=1e-5,
-    )
-    np.testing.assert_array_equal(slices.downsample(1).displacement, slices.displacement)
-
-
 # --- arguments ------------------------------------------------------------------------------
 
 
