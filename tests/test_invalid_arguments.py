@@ -201,13 +201,13 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ([(np.nan, 0.0)], "point is"),
     ],
     partial(values_at, plane()): [
-        ([(9.5, 1)], "(9.5, 1), outside the surface; expected j from 0 to 2"),
+        ([(9.5, 1)], "(9.5, 1), not on the drawn surface; expected j from 0 to 2"),
         ([(1, 12.5)], "i from 0 to 3"),
         ([(1, np.nan)], "two finite numbers"),
     ],
     partial(values_at, triangles()): [
-        ([(-1.0, 0.2)], "number of the triangle"),
-        ([(0.0, 1.5)], "number of the triangle"),
+        ([(-1.0, 0.2)], "not on the drawn surface"),
+        ([(0.0, 1.5)], "not on the drawn surface"),
     ],
     plane().derive: [
         (["vortcity"], "'vortcity' cannot be derived; expected one of vorticity"),
@@ -352,7 +352,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
     ],
     Scene.of(plane()).beside: [([{"plane": "k=2"}], "beside has plane, which selects data")],
     lambda at, pixel: probe(Scene(plane()), at, pixel=pixel, size=(9, 9)): [
-        ([(41.0, 3.0), 0.1], "(41, 3), outside the surface"),
+        ([(41.0, 3.0), 0.1], "(41, 3), not on the drawn surface"),
         ([(1.0, 2.0), 0.0], "pixel is 0.0; expected a positive length"),
         ([(1.0, 2.0), np.nan], "pixel is nan"),
         ([(1.0, 2.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0))], "is behind the camera"),

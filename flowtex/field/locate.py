@@ -65,7 +65,14 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
         raise FieldError(f"index is {brief(index)}; expected {expected}")
-    place, number, weights = surface.triangle_at(at)
+    found = surface.triangle_at(at)
+    if found is None:
+        last_j, last_i = surface.last_index
+        raise FieldError(
+            f"(j, i) is ({at[0]:g}, {at[1]:g}), not on the drawn surface; expected j from 0 to "
+            f"{last_j:g} and i from 0 to {last_i:g}, in a cell without blanked nodes"
+        )
+    place, number, weights = found
     nodes = surface.corners_of(np.array([number]))[0]
     cell = int(surface.cells_of(np.array([number]))[0])
     return SurfacePoint((float(place[0]), float(place[1])), nodes, weights, cell)
@@ -282,10 +289,10 @@ def locate_lonlat(
     surface = (finder := _earth_locator(field)).surface
     target = EARTH.positions(np.array(lon), np.array(lat))
     index, distance = finder.nearest(target[None])
-    if not distance[0] <= max(tolerance, CURVED_TOLERANCE):
+    found = surface.triangle_at(index[0])
+    if found is None or not distance[0] <= max(tolerance, CURVED_TOLERANCE):
         return None
-    _, number, _ = surface.triangle_at(index[0])
-    nodes = surface.corners_of(np.array([number]))[0]
+    nodes = surface.corners_of(np.array([found[1]]))[0]
     if field.triangles is None:
         try:
             return _in_parallelogram(field, int(nodes[0]), (lon, lat), tolerance)
@@ -299,7 +306,7 @@ def locate_lonlat(
     if weights.min() < -max(tolerance, sag):
         return None
     weights = np.clip(weights, 0, None) / np.clip(weights, 0, None).sum()
-    i, j = surface.index_of(np.array([number]), weights[None])[0]
+    i, j = surface.index_of(np.array([found[1]]), weights[None])[0]
     return float(j), float(i)
 
 

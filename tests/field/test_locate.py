@@ -77,7 +77,7 @@ def test_a_blanked_cell_has_no_index() -> None:
     field = FlowField.from_arrays(points, np.ones_like(points), valid=valid)
     assert locate(field, (1.5, 1.5)) is None
     assert locate(field, (3.5, 1.5)) == pytest.approx((1.5, 3.5))
-    with pytest.raises(ValueError, match=r"\(1\.5, 1\.5\), in a cell with a blanked node"):
+    with pytest.raises(ValueError, match=r"\(1\.5, 1\.5\), not on the drawn surface"):
         values_at(field, (1.5, 1.5))
     # A node beside it belongs to other cells too.
     assert values_at(field, (3, 2)).position == pytest.approx([2, 3, 0])

@@ -18,7 +18,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import bounds, norm, row_blocks
-from flowtex.errors import FieldError
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
@@ -126,29 +125,22 @@ class GridSurface(NodeSurface):
         place = np.einsum("nk,nkc->nc", weights, CORNERS[number & 1])
         return np.asarray(place + np.stack(np.divmod(number >> 1, self.shape[1] - 1), -1))[:, ::-1]
 
-    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
-        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats] | None:
+        """Return a position (j, i) within one period, its drawn triangle, and shares of corners."""
         j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
         rows, columns = self.shape
-        if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
-            raise FieldError(
-                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} "
-                f"and i from 0 to {columns - 1}"
-            )
         # On a line of nodes a position belongs to two cells.
         cells = [
             {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
         ]
+        inside = 0 <= j <= rows - 1 and 0 <= i <= columns - 1
         for row, column in product(*(sorted(choice, reverse=True) for choice in cells)):
-            if self.cells[row, column]:
+            if inside and self.cells[row, column]:
                 b, a = j - row, i - column
                 number = 2 * (row * (columns - 1) + column) + int(a < b)
                 shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
                 return np.array([j, i]), number, np.array(shares)
-        raise FieldError(
-            f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point on the "
-            "drawn surface"
-        )
+        return None
 
     @cached_property
     def padded(self) -> Floats:

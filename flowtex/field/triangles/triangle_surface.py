@@ -16,7 +16,6 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
-from flowtex.errors import FieldError
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
 from flowtex.field.triangles.triangle_nodes import (
@@ -169,21 +168,11 @@ class TriangleSurface(NodeSurface):
         """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
         return np.asarray(self.neighbours[number, corner])
 
-    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
-        """Return a position (j, i), its triangle, and shares of the corners, (3,)."""
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats] | None:
+        """Return a position (j, i), its drawn triangle, and shares of the corners, (3,)."""
         j, i = map(float, index)
-        count = len(self.triangles)
-        if not (0 <= j < count and 0 <= i <= 1):
-            raise FieldError(
-                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {count}, "
-                "the number of the triangle plus the weight of its second corner, and i, the "
-                "weight of its third"
-            )
-        if not self.cells[int(j)]:
-            raise FieldError(
-                f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected a point "
-                "in another triangle"
-            )
+        if not (0 <= j < len(self.triangles) and 0 <= i <= 1 and self.cells[int(j)]):
+            return None
         return index, int(j), self.corners_at(index[::-1])[1]
 
     def node_near(self, index: Sequence[float]) -> tuple[int, int]:
