@@ -189,7 +189,7 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
 
     kind, plain = new.part.suffix[1:].upper(), Image.Dither.NONE
     shape = (size[1], size[0], 3)
-    most = 3 * PILLOW_MAX_PIXELS // math.prod(shape)
+    most = 3 * PILLOW_MAX_PIXELS // max(math.prod(shape), 1)
     with tempfile.TemporaryFile() as spool:
         count = 0
         while (picture := (yield)) is not None:
