@@ -274,17 +274,15 @@ def cover_place(
     matrix = camera.matrix(size[0] / size[1], surface.center)
     clip = points @ matrix[:, :3].T + matrix[:, 3]
     x, y, _, w = place.weights @ clip
-    if not w > 0:
-        msg = f"(j, i) = {place.index} is behind the camera at {camera.position}; expected a "
-        raise FieldError(msg + "camera that sees this point")
     # Derivatives of pixels to the right and down by the shares of the corners.
     pixels = np.array(size) * [0.5, -0.5]
     by_share = (clip[:, :2] - clip[:, 3:] * [x / w, y / w]) * pixels / w
     # The shares sum to one, so two of them are free.
     free = by_share[1:] - by_share[0]
-    if not abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2:
+    if not (w > 0 and abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2):
         raise FieldError(
-            f"the triangle at (j, i) = {place.index} is seen edge-on; expected a visible triangle"
+            f"(j, i) = {place.index} is behind the camera or in a triangle that is seen edge-on; "
+            "expected a camera that sees this point"
         )
     inverse = np.linalg.inv(free)
     shares = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)

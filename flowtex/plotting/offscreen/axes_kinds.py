@@ -155,14 +155,10 @@ class _Border(Locator):
         low, high = degrees.min(), degrees.max()
         room = most * abs(float(np.ptp(along) / np.ptp(limits[self._number])))
         step = _step(high - low, room)
-        places, values = [], []
-        for value in np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step:
-            beyond = degrees >= value
-            for k in np.flatnonzero(beyond[1:] != beyond[:-1]):
-                share = (value - degrees[k]) / (degrees[k + 1] - degrees[k])
-                places.append(along[k] + share * (along[k + 1] - along[k]))
-                values.append(value)
-        return np.array(places), np.array(values), text
+        values = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+        n, k = np.nonzero(np.diff(degrees >= values[:, None], axis=1))
+        share = (values[n] - degrees[k]) / (degrees[k + 1] - degrees[k])
+        return along[k] + share * (along[k + 1] - along[k]), values[n], text
 
 
 class _DegreeLocator(MaxNLocator):

@@ -28,7 +28,6 @@ Size = tuple[int, int]
 
 FORMATS = (".mp4", ".gif", ".webp")  #: Suffixes of the files that can be written.
 DEFAULT_QUALITY = 80  #: Quality where none is requested.
-MP4_MAX_PIXELS = 139_264 * 256  #: Pixels of a picture at the highest level of H.264.
 BT709 = 1  #: Matrix and primaries of BT.709, a number of ITU-T H.273 as those below.
 SRGB_CURVE = 13  #: Curve of sRGB.
 LIMITED = 1  #: Range from 16 to 235.
@@ -65,7 +64,6 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     path = checked_target(path)
     suffix = path.suffix.lower()
     width, height = checked_size(size, low=0)
-    shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
         why = f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
         msg = f"{path}: {why}; expected {', '.join(FORMATS)}"
@@ -77,9 +75,8 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
             "MP4 for more"
         )
     elif suffix == ".mp4" and (width % 2 or height % 2):  # 4:2:0 asks for even sides
-        msg = f"{shown}; an MP4 needs even sides, such as {width // 2 * 2} x {height // 2 * 2}"
-    elif suffix == ".mp4" and width * height > MP4_MAX_PIXELS:
-        msg = f"{shown}; an MP4 can have at most {MP4_MAX_PIXELS:,} pixels: choose a smaller size"
+        even = f"{width // 2 * 2} x {height // 2 * 2}"
+        msg = f"size is {width} x {height}; an MP4 needs even sides, such as {even}"
     else:
         if suffix == ".mp4":
             _pyav()
@@ -88,7 +85,6 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
 
 
 def _pyav() -> Any:
-    """Return PyAV; raise an error if it is missing or has no H.264."""
     try:
         import av
     except ModuleNotFoundError as error:
@@ -96,11 +92,6 @@ def _pyav() -> Any:
             "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
             f"{install_extra('movie')}"
         ) from error
-    if "libx264" not in av.codecs_available:
-        raise MovieError(
-            "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
-            "GIF"
-        )
     return av
 
 
