@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
 #: Width and height of a window, in pixels.
 WINDOW_SIZE = (1024, 768)
-#: Arguments that apply only to VTK.
-VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
 #: Name of PyVista's Jupyter backend that draws in the browser.
 BACKEND = "flowtex"
 
@@ -62,7 +60,6 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     >>> flowtex.show(mesh, scalars="vorticity", cmap="RdBu_r", zoom=3)  # doctest: +SKIP
     """
     if in_notebook():
-        _refuse_vtk(options)
         from flowtex.host.flow_widget import FlowWidget
 
         options |= {} if size is None else {"size": size}
@@ -88,15 +85,6 @@ def in_notebook() -> bool:
     return getattr(shell, "kernel", None) is not None
 
 
-def _refuse_vtk(options: dict[str, Any]) -> None:
-    for name in VTK_ARGUMENTS:
-        if name in options:
-            raise FieldError(
-                f"{name} applies to windows, but here the browser draws; omit it, or draw with "
-                "flowtex.render, or with plotter.flowtex.add and plotter.show"
-            )
-
-
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
     from flowtex.plotting.component import open_plotter
     from flowtex.scene.scene import make_scenes
@@ -109,7 +97,6 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 
 
 def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
-    _refuse_vtk(options)
     if size is not None:
         raise FieldError(
             f"size is {size!r}, but there is no display, and a page is as large as the browser's "

@@ -93,8 +93,7 @@ class Data(FlowOpener):
     def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
         self.names = self.library.names
-        unshown = [{"name": name, "why": why} for name, why in self.library.unshown.items()]
-        self.state.set(files=list(self.names), unshown=unshown)
+        self.state.set(files=list(self.names))
 
     def take_upload(self, name: str, path: Path) -> None:
         """Open a file that the page has sent."""

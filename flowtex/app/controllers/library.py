@@ -119,8 +119,6 @@ class Library:
         #: Flows that a branch has for itself, and all that could be opened when last listed.
         self._own: dict[str, Opener] = {}
         self._openers: dict[str, Opener] = {}
-        #: Files of the folder that cannot be shown, with the reasons.
-        self.unshown: dict[str, str] = {}
         # Branches have these in common.
         self._sources: ByteCache[Opener, FlowSource] = ByteCache(
             SOURCE_BYTES, max_count=MOST_SOURCES
@@ -182,8 +180,7 @@ class Library:
     def names(self) -> tuple[str, ...]:
         """Names of all flows; the folder is searched again."""
         files = [] if self._folder is None else find_files(self._folder)
-        self.unshown = {name: reason for name, path in files if (reason := _reason(path))}
-        found = {n: _Files((path,)) for n, path in files if n not in self.unshown}
+        found = {name: _Files((path,)) for name, path in files}
         self._openers = {**self._named, **found, **self._own}
         return tuple(self._openers)
 
@@ -341,12 +338,9 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
         for _, path in files
         if path.suffix.lower() == ".bin" and find_grid(path) not in (None, path)
     )
-    return [(name, path) for name, path in files if path not in members]
-
-
-def _reason(path: Path) -> str:
-    """Return the reason why a file cannot be drawn, by its ending; empty if it may be."""
-    beside = path.with_suffix(".npy")
-    if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
-        return f"it has no vectors, and {beside.name} does not exist"
-    return ""
+    return [
+        (name, path)
+        for name, path in files
+        if path not in members
+        and (path.suffix.lower() not in WITHOUT_VECTORS or path.with_suffix(".npy").exists())
+    ]

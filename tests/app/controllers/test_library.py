@@ -35,10 +35,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder: Path) -> None:
+def test_members_of_a_series_are_folded_and_surfaces_without_vectors_left_out(folder: Path) -> None:
     library = Library.of(folder)
     assert library.names == ("series.pvd",)
-    assert library.unshown == {"hull.stl": "it has no vectors, and hull.npy does not exist"}
     with pytest.raises(FieldError, match="is not among those"):
         library.source("hull.stl")
 
