@@ -7,12 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 from cyclopts import Parameter
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.whole_file import whole_file
-from flowtex._util.written import UnreadableError, numbers
 from flowtex.cli.console import (
     check_lines,
     check_page_file,
@@ -26,7 +24,6 @@ from flowtex.cli.console import (
 from flowtex.cli.options import (
     FILE,
     FLAT,
-    FLOW,
     PICTURE,
     FieldFlags,
     FrameFlags,
@@ -195,50 +192,22 @@ def _size(options: Mapping[str, Any]) -> str:
     return f"{width} × {height}"
 
 
-def _flag(text: str) -> Parameter:
-    return Parameter(group=FLOW, help=text, allow_leading_hyphen=True)
-
-
-_RANGE = "Range of the coordinate, such as -7,7."
-
-
 def formula(
-    *expressions: Annotated[
+    *words: Annotated[
         str,
         Parameter(
             allow_leading_hyphen=True,
             help=(
                 "The rates of x and y, such as y and -sin(x); on a surface the rates of u and v, "
                 "or the velocity along x, y and z. Or the name of a known formula, such as "
-                "pendulum."
+                "pendulum. Then ranges, x=-7,7; parameters, b=0.2, or with the range of the "
+                "slider, b=0.2,0,1; surface=sphere, torus or cylinder; and the first and last "
+                "time and their number, t=0,10,41."
             ),
         ),
     ],
     output: Annotated[
         Path | None, Parameter(name=["--output", "-o"], help="Page (.html) or picture to write.")
-    ] = None,
-    x: Annotated[str | None, _flag(_RANGE)] = None,
-    y: Annotated[str | None, _flag(_RANGE)] = None,
-    u: Annotated[str | None, _flag(_RANGE)] = None,
-    v: Annotated[str | None, _flag(_RANGE)] = None,
-    set: Annotated[
-        tuple[str, ...],
-        Parameter(
-            group=FLOW,
-            negative=(),
-            help="A parameter: b=0.2, or with the range of its slider b=0.2,0,1.",
-        ),
-    ] = (),
-    surface: Annotated[
-        str | None,
-        _flag(
-            "sphere, torus, cylinder, or x, y and z as expressions in u and v, separated by "
-            "semicolons."
-        ),
-    ] = None,
-    times: Annotated[str | None, _flag("First and last time, and their number: 0,10,41.")] = None,
-    resolution: Annotated[
-        int | None, Parameter(group=FLOW, help="Nodes along the longer side.")
     ] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
     frame: Annotated[FrameFlags | None, FLAT] = None,
@@ -249,26 +218,9 @@ def formula(
     is_page = output is not None and output.suffix.lower() in (".html", ".htm")
     if output is not None:
         (check_page_file if is_page else check_picture_file)(output)
-    ranges = {"x": x, "y": y, "u": u, "v": v}
-    choice: dict[str, Any] = {n: _numbers(n, text, 2) for n, text in ranges.items() if text}
-    for text in set:
-        name, equals, value = text.partition("=")
-        if not equals or not name.isidentifier() or name in ("surface", "times", *ranges):
-            raise UsageError(
-                f"--set is {text!r}; expected a parameter and its value, such as b=0.2"
-            )
-        ends = _numbers(f"set {name}", value, 1, 3)
-        choice[name] = ends if len(ends) > 1 else ends[0]
-    if surface:
-        choice["surface"] = tuple(surface.split(";")) if ";" in surface else surface
-    if times:
-        first, last, count = _numbers("times", times, 3)
-        choice["times"] = np.linspace(first, last, int(min(max(count, 1), 10_000)))
-    if resolution is not None:
-        choice["resolution"] = resolution
-    from flowtex.field.formula.make import formula as make
+    from flowtex.field.formula.make import line_field
 
-    field = make(*expressions, **choice)
+    field = line_field("; ".join(words))
     if output is None:
         from flowtex import show
 
@@ -287,11 +239,3 @@ def formula(
         result = frame.size
     report(output, describe(field), result)
     return 0
-
-
-def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
-    expected = f"{' or '.join(map(str, counts))} numbers separated by commas"
-    try:
-        return numbers(*counts, expected=expected)(text)
-    except UnreadableError as error:
-        raise UsageError(f"--{name} is {text!r}; expected {error}") from error
