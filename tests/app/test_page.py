@@ -329,11 +329,10 @@ def test_two_files_are_shown_side_by_side(page: Page) -> None:
         open_file(page, "series.pvd")
         settled(page, before)
     group(page, "View")
-    choose(page, page.locator("[data-setting=compare]"), "Another file")
-    # The next file of the folder is broken.
+    choose(page, page.locator("[data-setting=compare]"), "File: torn.vts")
     page.get_by_text(re.compile(r"torn\.vts: ")).wait_for()
     page.locator(".flowtex-complaint").get_by_role("button", name="Close").click()
-    choose(page, page.locator("[data-setting=file_beside]"), "block.vts")
+    choose(page, page.locator("[data-setting=compare]"), "File: block.vts")
     page.locator(".title", has_text="block.vts").wait_for()
     fold(page)
     both, before = settled(page, 0), count(page)

@@ -39,8 +39,8 @@ COMPARISONS: dict[str, dict[str, Any]] = {
 }
 #: Label of a second pane at another time.
 ANOTHER_TIME = "Another time"
-#: Label of a second pane with another file.
-ANOTHER_FILE = "Another file"
+#: Label of a second pane with another file, before its name.
+FILE = "File: "
 #: Label of a second pane with another scalar, before its name.
 COLOUR_BY = "Colour by: "
 #: Stops of the slider of another time between two steps of the field.
@@ -53,9 +53,7 @@ def comparison(name: str, time: float) -> dict[str, Any]:
         return {"time": time}
     if name.startswith(COLOUR_BY):
         return {"scalars": name.removeprefix(COLOUR_BY)}
-    if name == ANOTHER_FILE:
-        return {}
-    return COMPARISONS[name]
+    return {} if name.startswith(FILE) else COMPARISONS[name]
 
 
 def look_shown(look: Look) -> dict[str, Any]:
@@ -136,8 +134,8 @@ class Appearance(Controller):
                 raise
             self.compared = choice
             self.beside.end()
-            if choice == ANOTHER_FILE:
-                self.beside.begin()
+            if choice.startswith(FILE):
+                self.beside.open(choice.removeprefix(FILE))
             self._show_time_beside()
 
     def take_time_beside(self) -> None:
@@ -188,5 +186,6 @@ class Appearance(Controller):
 
     def _comparisons(self) -> list[str]:
         others = [] if self.viewport.field.steady else [ANOTHER_TIME]
-        others += [ANOTHER_FILE] if len(self.beside.data.names) > 1 else []
-        return [*COMPARISONS, *others, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]
+        others += [COLOUR_BY + name for name in self.area.scene.scalar_names]
+        data = self.beside.data
+        return [*COMPARISONS, *others, *(FILE + name for name in data.names if name != data.name)]

@@ -239,10 +239,7 @@ class FileBeside(FlowOpener):
     def __init__(self, context: Context, data: Data) -> None:
         super().__init__(context)
         self.data = data
-        self._active = False
         self._flow: LoadedFlow | None = None  #: The flow that is shown, with its traces.
-        self.state.set(file_beside="")
-        self.state.on(self.take_file, "file_beside")
         context.field_changed.connect(self.follow)
 
     @property
@@ -251,40 +248,27 @@ class FileBeside(FlowOpener):
         shown = self._flow if "field" in self.viewport.differences else None
         return "" if shown is None else shown.name
 
-    def begin(self) -> None:
-        """Show the file that was chosen last, or the next one of the list."""
-        self._active = True
-        self.open(self._chosen() or self._next())
+    def open(self, name: str) -> None:
+        """Open a file for the second pane, instead of the one being opened."""
+        follows = self._request is not None and self._request.name == name
+        self._begin(LoadRequest(name, self.data.choice), follows=follows)
 
     def end(self) -> None:
         """Forget the file, after another second pane or none has replaced it."""
-        self._active = False
-        self._forget()
+        if self._request is not None:
+            self._request.cancelled = True
+        self._request = self._flow = None
+        self.show_names()
 
     def cancel(self) -> None:
-        """Stop opening; one pane is shown until a file is chosen."""
+        """Stop opening; one pane is shown."""
         if self._opening is not None and not self._opening.done():
             self._fail()
 
-    def take_file(self) -> None:
-        """Show the file that the page requests."""
-        name, goal = self._chosen(), self._goal
-        if not name:
-            self.state.set(file_beside=goal)
-        elif self._active and name != goal:
-            self.open(name)
-
-    def open(self, name: str) -> None:
-        """Open a file for the second pane, instead of the one being opened."""
-        self.state.set(file_beside=name)
-        self._begin(LoadRequest(name, self.data.choice), follows=name == self._goal)
-
     def follow(self) -> None:
         """Follow the first pane to another plane, array or file."""
-        if self._goal and self._goal == self.data.name:  # which is in the first pane now
-            self.open(self._next())
-        elif self._request is not None and self._request.choice != self.data.choice:
-            self.open(self._goal)
+        if self._request is not None and self._request.choice != self.data.choice:
+            self.open(self._request.name)
         self.show_names()
 
     def show_names(self) -> None:
@@ -297,33 +281,10 @@ class FileBeside(FlowOpener):
         self.area.element.names = names
         self.area.element.follow()
 
-    def describe(self) -> State:
-        """Return the file."""
-        return {"beside_file": self._goal} if self._goal else {}
-
-    def restore(self, saved: State) -> None:
-        """Choose the file of a saved state."""
-        if saved.get("beside_file"):
-            self.state.set(file_beside=saved["beside_file"])
-            self.take_file()
-
     def close(self) -> None:
         """End running tasks."""
-        self._forget()
+        self.end()
         super().close()
-
-    @property
-    def _goal(self) -> str:
-        return "" if self._request is None else self._request.name
-
-    def _chosen(self) -> str:
-        name = self.state.get("file_beside")
-        return name if isinstance(name, str) and name != self.data.name else ""
-
-    def _next(self) -> str:
-        names = self.data.names
-        position = names.index(self.data.name) if self.data.name in names else -1
-        return names[(position + 1) % len(names)]
 
     async def _open(self, request: LoadRequest) -> None:
         flow = await self._read(request, partial(time_in, self.area.scene), nearest=True)
@@ -339,12 +300,4 @@ class FileBeside(FlowOpener):
             self.area.compare({"field": flow.field})
 
     def _fail(self) -> None:
-        self._forget()
-        self.area.compare(None)
-        self.state.send(file_beside="", busy="")
-
-    def _forget(self) -> None:
-        if self._request is not None:
-            self._request.cancelled = True
-        self._request = self._flow = None
-        self.show_names()
+        self.state.send(compare="nothing", busy="")

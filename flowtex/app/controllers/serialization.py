@@ -16,11 +16,11 @@ from urllib.parse import parse_qsl, quote, urlencode
 from flowtex._util.arguments import brief
 from flowtex._util.written import NUMBER, Form, UnreadableError
 from flowtex.app.controllers.appearance import (
-    ANOTHER_FILE,
     ANOTHER_TIME,
     BACKGROUNDS,
     COLOUR_BY,
     COMPARISONS,
+    FILE,
     LOOK,
     PLAIN,
     comparison,
@@ -136,7 +136,7 @@ def _name(text: str) -> str:
 
 
 NAME = Form(read=_name)
-_SPLIT = _one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE)
+_SPLIT = _one_of(*COMPARISONS, ANOTHER_TIME)
 #: How each name is read and written, in the order of a link.
 _FORMS: dict[str, Form] = {
     "file": NAME,
@@ -150,9 +150,10 @@ _FORMS: dict[str, Form] = {
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),
-    "split": Form(read=lambda text: (NAME if text.startswith(COLOUR_BY) else _SPLIT).read(text)),
+    "split": Form(
+        read=lambda text: (NAME if text.startswith((COLOUR_BY, FILE)) else _SPLIT).read(text)
+    ),
     "time_beside": NUMBER,
-    "beside_file": NAME,
     "camera": Form(
         read=lambda text: Camera.from_text(text).to_dict(),
         write=lambda camera: Camera.from_dict(camera).to_text(),
@@ -172,11 +173,11 @@ def to_python(
     ``source`` and ``source_beside`` are expressions that make the fields of the two views where
     they are not those of files, such as ``"flowtex.examples.cylinder_field()"``.
     """
-    split, name = state.get("split") or "nothing", state.get("beside_file")
+    split = state.get("split") or "nothing"
     lines = ["import flowtex", "", f"picture = {_render(state, source, size)}"]
     beside = comparison(split, state.get("time_beside") or 0.0)
-    if split == ANOTHER_FILE and name:
-        beside, source = {"file": name, "time": None}, source_beside
+    if split.startswith(FILE):
+        beside, source = {"file": split.removeprefix(FILE), "time": None}, source_beside
     if beside:
         settings = {n: value for n, value in beside.items() if n in TABLE}
         other = {**state, **beside, "settings": {**(state.get("settings") or {}), **settings}}

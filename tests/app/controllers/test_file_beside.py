@@ -23,7 +23,7 @@ from flowtex.sources.open_source import MeshSource
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
-FILE = "Another file"
+FILE = "File: "
 
 
 def other(*, steps: int = 1, **options: Any) -> FlowField:
@@ -41,23 +41,20 @@ def page(*flows: Any, **named: Any) -> FlowApp:
     return small_page(Library(openers) if openers else Library.of(*flows), 5, 240, 80)
 
 
-async def beside(app: FlowApp, name: str | None = None) -> None:
+async def beside(app: FlowApp, name: str) -> None:
     """Choose another file beside the first, and wait until it is there."""
-    if app.state.get("compare") != FILE:
-        app.state.send(compare=FILE)
-    if name is not None:
-        app.state.send(file_beside=name)
-    await until(lambda: app.beside.name == app.state.get("file_beside") != "")
+    app.state.send(compare=FILE + name)
+    await until(lambda: app.beside.name == name)
 
 
 async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
     app = page(one=small(), two=other())
     async with playing(app):
-        assert FILE in app.state.get("comparisons")
+        assert app.state.get("comparisons")[-1] == "File: two"
         app.area.cmap, app.area.settings.contrast = "magma", 2.0
-        await beside(app)
+        await beside(app, "two")
         first, second = app.viewport.panes
-        assert (app.state.get("file_beside"), second.field.shape) == ("two", (14, 20))
+        assert second.field.shape == (14, 20)
         assert second.settings.contrast == 2.0 and second.cmap == "magma"
         assert second.scene.scalar_limits == pytest.approx((3, 6))
         assert first.scene.scalar_limits[1] < 2
@@ -71,13 +68,12 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         assert second.scalars == "speed" and second.clim is None
         app.state.send(compare="nothing")
         assert len(app.viewport.panes) == 1 and not app.area.element.names
-        assert "beside_file" not in app.sharing.present_state()
 
 
 async def test_the_time_is_that_of_the_first_or_the_last() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
     async with playing(app):
-        await beside(app)
+        await beside(app, "two")
         second = app.viewport.panes[1]
         app.area.element.take_time(0.25)
         assert second.time == 0.25
@@ -86,9 +82,9 @@ async def test_the_time_is_that_of_the_first_or_the_last() -> None:
         assert app.area.element.names == ("one", "two")
         await beside(app, "three")
         app.state.send(file="three")
-        # The file beside is the first one now, and the next one comes beside it.
-        await until(lambda: app.beside.name == "one")
-        assert app.area.element.names == ("three", "one")
+        # The file beside is the first one now.
+        await until(lambda: app.state.get("compare") == "nothing")
+        assert len(app.viewport.panes) == 1 and not app.area.element.names
 
 
 def block(turn: float, nodes: int) -> pv.StructuredGrid:
@@ -115,7 +111,7 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         shown = app.beside
         app.state.send(index=4)
         await until(lambda: app.data.choice.plane == "k=4")
-        await beside(app)
+        await beside(app, "b.vts")
         assert shown.name == "b.vts" and height() == pytest.approx(0.8)
         app.state.send(index=1)
         await until(lambda: app.data.choice.plane == "k=1")
@@ -126,24 +122,21 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         # It has no such plane, and says which one it is.
         assert app.area.element.names == ("a.vts", "c.vts · k=1")
         assert height() == pytest.approx(0.5)
-        app.state.send(file_beside="torn.vts")
+        app.state.send(compare="File: torn.vts")
         await until(lambda: app.state.get("problem"))
         assert app.state.get("problem").startswith("torn.vts: ")
         assert str(tmp_path) not in app.state.get("problem")
         assert len(app.viewport.panes) == 1 and not app.area.element.names
-        assert (app.state.get("compare"), app.state.get("file_beside")) == (FILE, "")
+        assert app.state.get("compare") == "nothing"
         app.state.send(index=2)  # nothing is beside it that would follow
         await until(lambda: app.data.choice.plane == "k=2")
         await beside(app, "b.vts")
         assert height() == pytest.approx(0.4)
         before = app.viewport.panes[1]
-        for junk in (None, 3, "", [1], {"x": "y"}, "a.vts"):
-            app.state.send(file_beside=junk)
-            assert app.state.get("file_beside") == "b.vts"
+        for junk in ("File: ", "File: a.vts", "File: ../secret.vts"):
+            app.state.send(compare=junk)
+            assert app.state.get("compare") == "File: b.vts"
         assert app.viewport.panes[1] is before
-        app.state.send(problem="", file_beside="../secret.vts")
-        await until(lambda: app.state.get("problem"))
-        assert "the file '../secret.vts'" in app.state.get("problem")
 
 
 async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,18 +150,17 @@ async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(app.beside.library, "complete", slowly)
     async with playing(app):
-        app.state.send(compare=FILE)
+        app.state.send(compare="File: two")
         await until(lambda: app.state.get("busy") == "Opening two")
         app.cancel_opening()
-        assert (app.state.get("busy"), app.state.get("file_beside")) == ("", "")
-        app.state.send(file_beside="three")
-        app.state.send(file_beside="two")
-        app.state.send(file_beside="three")
+        assert (app.state.get("busy"), app.state.get("compare")) == ("", "nothing")
+        for name in ("three", "two", "three"):
+            app.state.send(compare=FILE + name)
         held.set()
         await until(lambda: app.beside.name)
         assert app.beside.name == "three"
         assert len(app.viewport.panes[1].field.times) == 3
-        app.state.send(file_beside="two")
+        app.state.send(compare="File: two")
         app.state.send(compare="nothing")
         opening = app.beside._opening
         assert opening is not None
@@ -181,7 +173,7 @@ async def test_files_in_different_length_units_raise() -> None:
     metres = FlowField.from_arrays(kilometres.points, kilometres.velocity[0], length_unit="m")
     app = page(one=metres, two=kilometres)
     async with playing(app):
-        app.state.send(compare=FILE)
+        app.state.send(compare="File: two")
         await until(lambda: app.state.get("problem"))
         assert app.state.get("problem").startswith("two is in km and one in m; expected the same")
         assert len(app.viewport.panes) == 1
@@ -196,7 +188,7 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         sharing = app.sharing
         state = sharing.present_state()
         link = to_link(state)
-        assert "split=Another%20file" in link and "beside_file=two" in link
+        assert "split=File:%20two" in link
         sharing.show_state()
         lines = app.state.get("python")
         assert "    field,\n" in lines and "    field_beside,\n" in lines
@@ -205,12 +197,10 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         app.state.send(compare="nothing")
         app.restore(from_link(link))
         await until(lambda: app.beside.name == "two")
-        app.restore(from_link(link.replace("beside_file=two", "beside_file=three")))
+        app.restore(from_link(link.replace("File:%20two", "File:%20three")))
         await until(lambda: app.beside.name == "three")
-        app.restore(from_link(link.replace("beside_file=two", "beside_file=../four")))
-        await until(lambda: app.state.get("problem"))
-        assert "the file '../four'" in app.state.get("problem")
-        assert len(app.viewport.panes) == 1
+        app.restore(from_link(link.replace("File:%20two", "File:%20../four")))
+        assert app.beside.name == "three"
 
 
 def test_a_choice_is_taken_as_far_as_a_file_has_it() -> None:

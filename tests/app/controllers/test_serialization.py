@@ -45,7 +45,6 @@ STATE: dict[str, Any] = {
     "background": "black",
     "split": "Colour by: p & q",
     "time_beside": 0.1,
-    "beside_file": "runs of June/post + wake.vtk",
     "camera": CAMERA,
     "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
 }
@@ -146,7 +145,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("split", ["Fixed grain: on", "Another file"])
+@pytest.mark.parametrize("split", ["Fixed grain: on", "File: later.vts"])
 def test_the_python_lines_draw_the_same_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
 ) -> None:
@@ -156,7 +155,7 @@ def test_the_python_lines_draw_the_same_picture(
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
     later = {"field": flowtex.FlowField.from_file("later.vts")}
-    scene.compare(later if split == "Another file" else comparison(split, 0.0) or None)
+    scene.compare(later if split == "File: later.vts" else comparison(split, 0.0) or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
     scene.clock = 0.7
@@ -170,7 +169,6 @@ def test_the_python_lines_draw_the_same_picture(
         "clock": 0.7,
         "theme": "light",
         "split": split,
-        "beside_file": "later.vts",
         "camera": scene.camera.to_dict(),
         "settings": dict(scene.handle.settings),
     }
