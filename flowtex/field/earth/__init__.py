@@ -74,18 +74,6 @@ def place_text(lon: float, lat: float, decimals: int = 2) -> str:
     return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
 
 
-class ProjectionError(FieldError):
-    """A projection is unknown, or cannot map a position.
-
-    Examples
-    --------
-    >>> from flowtex.field.earth import Projection
-    >>> Projection("flat earth")
-    Traceback (most recent call last):
-    flowtex.field.earth.ProjectionError: the projection 'flat earth' is unknown; ...
-    """
-
-
 @dataclass(frozen=True)
 class Projection:
     """A projection of the Earth, in metres.
@@ -105,7 +93,7 @@ class Projection:
 
     Raises
     ------
-    ProjectionError
+    FieldError
         When PROJ does not know the projection.
 
     Examples
@@ -187,13 +175,13 @@ class Projection:
         try:
             crs: CRS = pyproj.CRS.from_user_input(text)
             if not crs.is_projected:
-                raise ProjectionError(
+                raise FieldError(
                     f"the projection {self.name!r} is in degrees; expected one in metres: "
                     f"{', '.join((GLOBE, *NAMES))}, or a PROJ string"
                 )
             return crs
         except pyproj.exceptions.ProjError as error:
-            raise ProjectionError(
+            raise FieldError(
                 f"the projection {self.name!r} is unknown; expected one of "
                 f"{', '.join((GLOBE, *NAMES))}, or a PROJ string such as 'EPSG:3413' or "
                 "'+proj=laea +lat_0=52 +lon_0=10'"

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.formula.grammar import FormulaError, Tree, Values, evaluate, parse
+from flowtex.field.formula.grammar import Tree, Values, evaluate, parse
 
-__all__ = ["Formula", "FormulaError", "Parameter"]
+__all__ = ["Formula", "Parameter"]
 
 RANGE = (-5.0, 5.0)  #: Default range of a coordinate.
 MOST = 1e30  #: Greatest speed and length; values beyond are blanked.
@@ -113,7 +113,7 @@ class Expression:
         elif callable(source):
             return cls._function(source, names)
         else:
-            raise FormulaError(
+            raise FieldError(
                 f"an expression is {source!r}; expected a text, such as '-sin(x)', or a function"
             )
         return cls(str(source), tree, lambda values: evaluate(tree, values))
@@ -127,7 +127,7 @@ class Expression:
             inputs = ("?",)
         for name in inputs:
             if name not in names:
-                raise FormulaError(f"the function {text} takes {name}; {near_names(name, names)}")
+                raise FieldError(f"the function {text} takes {name}; {near_names(name, names)}")
         return cls(text, None, lambda values: function(**{name: values[name] for name in inputs}))
 
 
@@ -253,7 +253,7 @@ def _values(expressions: tuple[Expression, ...], values: Values) -> Floats:
             try:
                 result[..., k] = each.values(values)
             except (TypeError, ValueError) as error:
-                raise FormulaError(
+                raise FieldError(
                     f"{each.text} does not return numbers at nodes of shape {shape}: {error}"
                 ) from error
         result[~(np.abs(result) < MOST)] = np.nan

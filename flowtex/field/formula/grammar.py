@@ -63,22 +63,10 @@ _FOREIGN = re.compile(r"[^\w.+*/(),<>= -]")  #: Characters that no formula has.
 _PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*", "^": "**"})
 
 
-class FormulaError(FieldError):
-    """A formula cannot be read; the text points at the position.
-
-    Examples
-    --------
-    >>> import flowtex
-    >>> flowtex.formula("y", "-sin(x")
-    Traceback (most recent call last):
-    flowtex.field.formula.grammar.FormulaError: ...
-    """
-
-
 def parse(text: str, names: Collection[str]) -> Tree:
     """Return the tree of a formula with these names.
 
-    Raises a FormulaError for other texts, which points at the place.
+    Raises a FieldError for other texts, which points at the place.
     """
     return _Reader(text, names).whole()
 
@@ -104,7 +92,7 @@ class _Reader:
 
     def whole(self) -> Tree:
         if len(self.text) > MOST_LETTERS:
-            raise FormulaError(
+            raise FieldError(
                 f"the formula has {len(self.text)} characters; expected {MOST_LETTERS} at most"
             )
         if match := _FOREIGN.search(self.text):
@@ -123,7 +111,7 @@ class _Reader:
     def fail(self, problem: str, at: ast.expr | int) -> NoReturn:
         if isinstance(at, ast.expr):  # whose place is in bytes
             at = len(self.text.encode()[: at.col_offset].decode())
-        raise FormulaError(f"{problem}\n  {self.text}\n  {' ' * at}^")
+        raise FieldError(f"{problem}\n  {self.text}\n  {' ' * at}^")
 
     def tree(self, node: ast.expr, depth: int = 1) -> Tree:
         if depth > MOST_DEPTH:

@@ -94,10 +94,9 @@ def formula(
 
     Raises
     ------
-    FormulaError
-        When an expression cannot be read; the text points at the position.
     FieldError
-        When ranges, parameters or times are invalid.
+        When an expression cannot be read (the text points at the position), or ranges, parameters
+        or times are invalid.
 
     Notes
     -----
