@@ -338,9 +338,7 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     frame = np.stack([first, np.cross(normal, first)], axis=1)
     flat = np.einsum("mkc,mfc->mkf", corners - corners[:, :1], frame)
-    flow = np.einsum(
-        "mkc,mfc->mkf", _turned(velocity[triangles], normals[triangles], normal), frame
-    )
+    flow = np.einsum("mkc,mfc->mkf", velocity[triangles], frame)
     weights, gradient = linear_zeros(flat, flow)
     weights = np.where(np.isfinite(weights), weights, 1 / 3)
     weights = np.clip(weights, 0, None)
@@ -349,17 +347,6 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     index = surface.index_of(number, weights)
     found = _points(field, position, gradient, frame, index)
     return _resolved(found, field)
-
-
-def _turned(vectors: Floats, normals: Floats, normal: Floats) -> Floats:
-    """Return tangent vectors at corners, (M, 3, 3), turned into the plane of their triangles."""
-    n = normal[:, None]
-    axis = np.cross(normals, n)
-    cosine = np.einsum("mkc,mkc->mk", normals, np.broadcast_to(n, normals.shape))[..., None]
-    along = np.einsum("mkc,mkc->mk", axis, vectors)[..., None]
-    return np.asarray(
-        vectors * cosine + np.cross(axis, vectors) + axis * along / np.maximum(1 + cosine, 1e-6)
-    )
 
 
 def _points(
