@@ -28,13 +28,7 @@ class FieldConstructors:
 
     @classmethod
     @accepts_options(FieldOptions, names=("vectors", *OF_MESHES, "uncertainty"), settings=False)
-    def from_pyvista(
-        cls,
-        mesh: Any,
-        *,
-        name: str = "",
-        **options: Any,
-    ) -> Self:
+    def from_pyvista(cls, mesh: Any, *, name: str = "", **options: Any) -> Self:
         """Make a field from a PyVista mesh, or from a series of them.
 
         Parameters

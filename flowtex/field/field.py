@@ -26,14 +26,7 @@ from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity
 from flowtex.field.quantities import FieldQuantities
-from flowtex.field.steps import (
-    LazySteps,
-    Steps,
-    map_steps,
-    moves,
-    scaled_steps,
-    typical_steps,
-)
+from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
 from flowtex.field.triangles.triangle_nodes import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.units import factor, speed_unit

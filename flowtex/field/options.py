@@ -73,8 +73,7 @@ class FieldOptions:
     )
     globe: bool | None = option(None, "Whether data of the Earth are drawn on a globe.")
     level: float | str | None = option(
-        None,
-        "Level of a dataset, such as ``500``; by default the one nearest to the surface.",
+        None, "Level of a dataset, such as ``500``; by default the one nearest to the surface."
     )
     sel: Mapping[str, Any] | None = option(
         None, 'Selection along other axes of a dataset, by value: ``{"number": 3}``.'

@@ -3,12 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flowtex.field.interpolation import (
-    along_line,
-    bracket,
-    inverse_along_line,
-    steps_around,
-)
+from flowtex.field.interpolation import along_line, bracket, inverse_along_line, steps_around
 
 
 def test_a_time_lies_between_two_steps() -> None:

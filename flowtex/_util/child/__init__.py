@@ -29,15 +29,7 @@ from queue import Empty, SimpleQueue
 from typing import IO, Any, NoReturn
 
 from flowtex._util.array_types import AnyArray
-from flowtex._util.child.worker import (
-    MessageError,
-    command,
-    read_message,
-    serve,
-    settle,
-    spawned,
-    write_message,
-)
+from flowtex._util.child.worker import command, read_message, serve, settle, spawned, write_message
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 
@@ -216,10 +208,10 @@ def _listen(
                 header, arrays = message
                 number = header.get("number") if isinstance(header, dict) else None
                 if number not in waiting:
-                    raise MessageError(f"an answer to request {number!r}, which was not sent")
+                    raise ValueError(f"an answer to request {number!r}, which was not sent")
                 waiting.discard(number)
                 answers.put((header, [] if number in stale else arrays))
-    except (MessageError, OSError, MemoryError) as error:
+    except (ValueError, OSError, MemoryError) as error:
         ending = f"sent a malformed answer: {error}"
         process.end()
     answers.put(({"death": ending or _ending(process.status())}, []))

@@ -122,10 +122,6 @@ def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled:
         os._exit(0)
 
 
-class MessageError(ValueError):
-    """The bytes that were received are not a message."""
-
-
 def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()) -> None:
     """Write a header with a value of JSON, and arrays of numbers.
 
@@ -135,7 +131,7 @@ def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()
     infos = [[array.dtype.str, np.shape(array)] for array in arrays]
     header = json.dumps({"value": value, "arrays": infos}).encode()
     if len(header) > HEADER_BYTES:
-        raise MessageError(
+        raise ValueError(
             f"the header of a message has {len(header):,} bytes; expected {HEADER_BYTES:,}"
         )
     stream.write(_PREFIX.pack(len(header)) + header)
@@ -151,7 +147,7 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         return None
     (length,) = _PREFIX.unpack(prefix)
     if length > HEADER_BYTES:
-        raise MessageError(
+        raise ValueError(
             f"the header of a message has {length:,} bytes; expected {HEADER_BYTES:,} at most"
         )
     header = bytearray(length)
@@ -162,10 +158,10 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         value, infos = message["value"], message["arrays"]
         types = [(_type(kind), _shape(shape)) for kind, shape in infos]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise MessageError(f"the header of a message is malformed: {error}") from error
+        raise ValueError(f"the header of a message is malformed: {error}") from error
     size = sum(kind.itemsize * math.prod(shape) for kind, shape in types)
     if size > most_bytes:
-        raise MessageError(
+        raise ValueError(
             f"a message declares {size:,} bytes of arrays; expected {most_bytes:,} at most"
         )
     arrays: list[AnyArray] = []

@@ -146,11 +146,7 @@ class _Rays:
     """Rays from critical points; starts on them are distances and numbers of rays, (N,)."""
 
     def __init__(
-        self,
-        field: FlowField,
-        points: CriticalPoints,
-        around: CriticalPoints,
-        rates: Rates | None,
+        self, field: FlowField, points: CriticalPoints, around: CriticalPoints, rates: Rates | None
     ) -> None:
         self._field, self._rates, surface = field, rates, field.surface
         self._is_isolated = isolation(field)
