@@ -206,9 +206,8 @@ class FieldConstructors:
             DataFrame of pandas, GeoPandas or Polars has columns for positions, perhaps for time,
             and for the components: rows of a grid become a grid, other rows are points. Points
             along one dimension are joined by triangles to their neighbours, but not across gaps;
-            so are reduced Gaussian grids and cubed spheres. Only coordinates and one step
-            are read at first, or three where data are missing; further steps are read when they
-            are drawn.
+            so are reduced Gaussian grids. Only coordinates and one step are read at first, or three
+            where data are missing; further steps are read when they are drawn.
         u, v
             Names of the components. By default the only pair that is recognised as the velocity by
             CF standard names, long names or names.

@@ -139,9 +139,8 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
     """Raise a FieldError if a file has less than it declares."""
     if found < declared:
         raise FieldError(
-            f"the file is truncated or damaged: {what} declares {_text(declared)} {unit}, but the "
-            f"file has {max(found, 0):,}, and {_text(declared - max(found, 0))} are missing; "
-            "write or copy it again"
+            f"the file is truncated or damaged: {what} declares {declared:,} {unit}, but the "
+            f"file has {max(found, 0):,}; write or copy it again"
         )
 
 
@@ -164,10 +163,6 @@ def size_text(nbytes: int) -> str:
     while size >= 1000 and len(units) > 1:
         size, units = size / 1000, units[1:]
     return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"
-
-
-def _text(count: int) -> str:
-    return f"{count:,}" if count < 10**18 else f"some 10^{len(str(count)) - 1}"
 
 
 def values_in(array: Any) -> AnyArray:

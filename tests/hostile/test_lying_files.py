@@ -82,12 +82,12 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
         (
             "cells.vtk",
             lies.legacy("DATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOLYGONS 1 2000000000"),
-            "polygons declares 2,000,000,000 numbers, but the file has 3, and 1,999,999,997",
+            "polygons declares 2,000,000,000 numbers, but the file has 3",
         ),
         ("winds.json", lies.winds(20_000, 20_000), "declares 400,000,000 numbers"),
         ("deep.json", b"[" * 200_000, "it is not valid JSON"),
         ("classic.nc", lies.netcdf_header(1, 2**31), "2,147,483,8"),
-        ("wide.nc", lies.netcdf_header(5, 2**60), "declares some 10^18 bytes"),
+        ("wide.nc", lies.netcdf_header(5, 2**60), "declares 1,152,921,504,606,847,176 bytes"),
         ("constant.grib", lies.grib2(2**32 - 1), "the grid of message 1 declares 34.4 GB"),
         (
             "sections.grib",

@@ -68,13 +68,13 @@ class Choice:
     def check(self, names: set[str], drawn: set[str]) -> None:
         """Raise for a name that no axis has, or one of those that are drawn."""
         for name in {*self.sel, *self.isel} - self.used:
-            msg = f"the axis {name!r} does not exist; {near_names(name, sorted(names))}"
-            if name in drawn:
-                msg = (
-                    f"{name!r} is one of the surface's own axes, so it cannot be selected here; "
-                    f"subset the data first: data.sel({name}=slice(low, high))"
-                )
-            raise FieldError(msg)
+            if name not in drawn:
+                text = near_names(name, sorted(names))
+                raise FieldError(f"the axis {name!r} does not exist; {text}")
+            raise FieldError(
+                f"{name!r} is one of the surface's own axes, so it cannot be selected here; "
+                f"subset the data first: data.sel({name}=slice(low, high))"
+            )
 
 
 class Axis(NamedTuple):
@@ -84,11 +84,6 @@ class Axis(NamedTuple):
     dim: str
     line: AnyArray | None  #: Its labels; ``None`` where it has none.
     drawn: int | list[int]  #: Number of the label that is drawn, or those of a series.
-
-    @property
-    def length(self) -> int:
-        """Number of labels that are drawn."""
-        return len(self.drawn) if isinstance(self.drawn, list) else 1
 
 
 @dataclass(frozen=True)
@@ -103,7 +98,7 @@ class Drawn:
     @property
     def steps(self) -> int:
         """Number of time steps."""
-        return next((axis.length for axis in self.axes if axis.kind == TIME), 1)
+        return next((np.size(axis.drawn) for axis in self.axes if axis.kind == TIME), 1)
 
     @property
     def numbers(self) -> dict[str, int]:
@@ -222,14 +217,10 @@ def further_axes(array: xr.DataArray) -> dict[str, str]:
     """Return the dimensions beside those of the surface, by their kinds."""
     surface = horizontal_dims(array)
     dims = [str(d) for d in array.dims if d not in surface]
-    kinds = {axis_kind(array, d): d for d in dims}
-    if len(kinds) < len(dims):
-        times = [d for d in dims if axis_kind(array, d) == TIME and _dates(array, d) is not None]
-        first = times[0] if times else None
-        kinds = {
-            TIME if d == first else d if axis_kind(array, d) == TIME else axis_kind(array, d): d
-            for d in dims
-        }
+    times = [d for d in dims if axis_kind(array, d) == TIME]
+    # Of several axes of time the first one with dates is that of the series.
+    first = next((d for d in times if len(times) == 1 or _dates(array, d) is not None), None)
+    kinds = {TIME if d == first else d if d in times else axis_kind(array, d): d for d in dims}
     if len(kinds) < len(dims):
         raise FieldError(
             f"{array.name} has the axes {', '.join(dims)}, of one kind; select along one first"
@@ -441,8 +432,7 @@ def _pressure_unit(coordinate: xr.DataArray) -> str:
 
 def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> int:
     """Return the number of the value nearest to a target, within the ends of the axis."""
-    listed = ", ".join(_texts(line)[:8]) + (", ..." if len(line) > 8 else "")
-    msg = f"{name} is {target!r}; expected one of {listed}"
+    msg = f"{name} is {target!r}; expected one of {labels.text(line)}"
     try:
         at, (begin, end) = _places(line, target)
     except (TypeError, ValueError, AttributeError) as error:
@@ -461,21 +451,20 @@ def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> i
 
 def _within(target: slice, line: AnyArray, name: str) -> list[int]:
     """Return the numbers of the times in a range, its ends included as in xarray."""
-    ends = _texts(line)[0], _texts(line)[-1]
+    inside = np.ones(len(line), dtype=bool)
     try:
-        at, (low, _) = _places(line, ends[0] if target.start is None else target.start)
-        _, (begin, end) = _places(line, ends[1] if target.stop is None else target.stop)
+        if target.start is not None:
+            at, (low, _) = _places(line, target.start)
+            inside &= at >= low
+        if target.stop is not None:
+            at, (begin, end) = _places(line, target.stop)
+            inside &= (at <= begin) | (at < end)
     except (TypeError, ValueError, AttributeError):
-        at, low, begin, end = np.zeros(1), 1.0, 0.0, 0.0
-    numbers = np.flatnonzero((at >= low) & ((at <= begin) | (at < end)))[:: target.step]
+        inside[:] = False
+    numbers = np.flatnonzero(inside)[:: target.step]
     if not numbers.size:
-        raise FieldError(f"{name} is {target!r}; expected a range within {ends[0]} to {ends[1]}")
+        raise FieldError(f"{name} is {target!r}; expected a range within {labels.text(line)}")
     return [int(number) for number in numbers]
-
-
-def _texts(line: AnyArray) -> list[str]:
-    texts = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
-    return [str(text) for text in texts]
 
 
 def _places(line: AnyArray, target: Any) -> tuple[Floats, tuple[float, float]]:

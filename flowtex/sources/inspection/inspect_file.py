@@ -10,8 +10,8 @@ from os.path import realpath
 from pathlib import Path
 
 from flowtex.errors import FieldError, import_extra
-from flowtex.sources.inspection import netcdf, vtk_legacy, vtk_xml
-from flowtex.sources.inspection.vtk_legacy import Data
+from flowtex.sources.inspection import netcdf, vtk_files
+from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.reader_errors import check_count, check_memory
 
 #: Bytes that identify most files.
@@ -92,9 +92,9 @@ def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         check_grib(data)
     if suffix == ".vtk":
-        vtk_legacy.check_vtk_legacy(data)
-    is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
-    return tuple(vtk_xml.check_vtk_xml(path, data)) if is_xml else ()
+        vtk_files.check_vtk_legacy(data)
+    is_xml = suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head)
+    return tuple(vtk_files.check_vtk_xml(path, data)) if is_xml else ()
 
 
 def check_zarr(folder: Path) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from flowtex.errors import FieldError
-from flowtex.sources.inspection.vtk_legacy import Data
+from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.reader_errors import check_count, check_memory
 
 SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
