@@ -24,16 +24,7 @@ from flowtex.sources.datasets.axes import axis_values
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.maps import projection_of
-from flowtex.sources.meshes.parts import (
-    Parts,
-    TimeStep,
-    drawn_parts,
-    is_reader,
-    is_structured,
-    parts_of,
-    time_steps,
-    times_of,
-)
+from flowtex.sources.meshes import parts
 from flowtex.sources.meshes.vectors import candidates
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.opening.dataset_files import (
@@ -167,7 +158,7 @@ class MeshSource(FlowSource):
             self.name, self.nbytes = name or mesh.name, mesh.nbytes
         else:
             self._describe(self._first(mesh))
-            self.reads_late = is_reader(self._mesh)
+            self.reads_late = parts.is_reader(self._mesh)
 
     @classmethod
     def from_file(cls, path: str | Path) -> MeshSource:
@@ -213,17 +204,21 @@ class MeshSource(FlowSource):
             if block not in self._parts:
                 options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
                 part = MeshSource(self._mesh, **options, path=self._path, block=block)
-                self.nbytes += part.nbytes if is_reader(self._mesh) else 0
+                self.nbytes += part.nbytes if parts.is_reader(self._mesh) else 0
                 self._parts[block] = part
         return self._parts[block]
 
     def _errors(self) -> AbstractContextManager[None]:
         """Name the file, where there is one and it is read again."""
-        return errors_of_file(self._path) if is_reader(self._mesh) and self._path else nullcontext()
+        return (
+            errors_of_file(self._path)
+            if parts.is_reader(self._mesh) and self._path
+            else nullcontext()
+        )
 
     def _describe(self, mesh: Any) -> None:
         self.vectors = self._names(mesh)
-        if is_structured(mesh):
+        if parts.is_structured(mesh):
             i, j, k = map(int, mesh.dimensions)
             self.dimensions = i, j, k
         if mesh.max_cell_dimensionality < 3:
@@ -247,8 +242,8 @@ class MeshSource(FlowSource):
 
     def _first(self, mesh: Any) -> Any:
         """Return the mesh of the first step or block; series that fit stay in memory."""
-        series = len(times_of(mesh)) > 1
-        first = mesh.read() if is_reader(mesh) else mesh
+        series = len(parts.times_of(mesh)) > 1
+        first = mesh.read() if parts.is_reader(mesh) else mesh
         one = self._block is not None or isinstance(first, (list, tuple))
         if blocks := {} if one else _choices(first, series=series):
             self.blocks = tuple(blocks)
@@ -256,8 +251,8 @@ class MeshSource(FlowSource):
             if not series:
                 self._mesh, self.nbytes = first, sum(map(_bytes, blocks.values()))
             return next(iter(blocks.values()))
-        steps: list[TimeStep] = []
-        for step in time_steps(mesh if series else first, self._block):
+        steps: list[parts.TimeStep] = []
+        for step in parts.time_steps(mesh if series else first, self._block):
             steps.append(step)
             self.nbytes += _bytes(step.grid)
             if self.nbytes > MAX_SERIES_BYTES:
@@ -267,14 +262,14 @@ class MeshSource(FlowSource):
         return steps[0].grid
 
 
-def _choices(mesh: Any, *, series: bool) -> Parts:
+def _choices(mesh: Any, *, series: bool) -> parts.Parts:
     """Return the blocks that may be chosen, the default ones first; none for a single one."""
-    drawn, combination = drawn_parts(mesh, series=series)
+    drawn, combination = parts.drawn_parts(mesh, series=series)
     if combination in ("together", "steps"):
         return {}
-    others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
-    parts = {**drawn, **others}
-    return parts if len(parts) > 1 else {}
+    others = {name: part for name, part in parts.parts_of(mesh).items() if candidates(part)}
+    choices = {**drawn, **others}
+    return choices if len(choices) > 1 else {}
 
 
 def _bytes(grid: Any) -> int:

@@ -24,18 +24,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.meshes import plot3d
-from flowtex.sources.meshes.parts import (
-    drawn_parts,
-    is_reader,
-    leaves,
-    part_size,
-    parts_of,
-    pick,
-    several_fault,
-    time_steps,
-    times_of,
-)
+from flowtex.sources.meshes import parts, plot3d
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
@@ -190,12 +179,12 @@ def _path_problem(file: Path) -> str:
 
 def _at_time(source: Any, time: float) -> Any:
     if isinstance(source, list):
-        for step in time_steps(source):
+        for step in parts.time_steps(source):
             if step.time == time:
                 return step.grid
         times = [float(n) for n in range(len(source))]
     else:
-        times = times_of(source)
+        times = parts.times_of(source)
         for value in times:
             if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
                 source.set_active_time_value(value)
@@ -346,35 +335,37 @@ def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
     """Summarize the first step of a file, whether or not a flow can be drawn from it."""
     with errors_of_file(path):
         file = open_file(path)
-        mesh = file.source.read() if is_reader(file.source) else file.source
+        mesh = file.source.read() if parts.is_reader(file.source) else file.source
         mesh = mesh[0].grid if isinstance(mesh, list) else mesh
         return _summary(file, mesh, block)
 
 
 def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
-    parts, meshes = list(leaves(mesh)), list(parts_of(mesh))
-    drawn = list(drawn_parts(mesh)[0].values())
-    part = (drawn or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
+    found, meshes = list(parts.leaves(mesh)), list(parts.parts_of(mesh))
+    drawn = list(parts.drawn_parts(mesh)[0].values())
+    part = (
+        (drawn or [p for _, p in found] or [mesh])[0] if block is None else parts.pick(mesh, block)
+    )
     is_mesh = hasattr(part, "point_data")
     arrays, velocities = (catalogue(part), candidates(part)) if is_mesh else ([], [])
     names = dict.fromkeys(a.name for a in velocities) if file.velocity is None else [file.velocity]
-    times = times_of(file.source)
+    times = parts.times_of(file.source)
     if isinstance(file.source, list):
         times = [float(step.time) for step in file.source]
     whole = mesh if block is None else part
     blocks = [
-        BlockSummary(name, meshes.index(name), type(p).__name__, part_size(p))
+        BlockSummary(name, meshes.index(name), type(p).__name__, parts.part_size(p))
         if name in meshes
         else BlockSummary(name, None, type(p).__name__)
-        for name, p in parts
+        for name, p in found
     ]
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
-        size=part_size(part) if is_mesh else "",
+        size=parts.part_size(part) if is_mesh else "",
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if is_mesh else (),
         volume=is_mesh and part.max_cell_dimensionality == 3,
-        blocks=tuple(blocks) if len(parts) > 1 else (),
+        blocks=tuple(blocks) if len(found) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))),
         candidates=tuple(names),
         times=tuple(times),
@@ -384,10 +375,10 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
-    if drawn_parts(mesh, series=series)[1] == "choose":
-        return several_fault(mesh, "the file")
+    if parts.drawn_parts(mesh, series=series)[1] == "choose":
+        return parts.several_fault(mesh, "the file")
     try:
-        choose(next(time_steps(mesh)).grid, vectors, None, None, Record())
+        choose(next(parts.time_steps(mesh)).grid, vectors, None, None, Record())
     except FieldError as error:
         return str(error)
     return ""

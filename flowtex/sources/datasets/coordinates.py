@@ -71,9 +71,11 @@ class Places:
         return self.a[0], self.b[:, 0]
 
     @property
-    def on_sphere(self) -> Floats:
-        """Positions of longitudes and latitudes on the globe, (J, I, 3)."""
-        return Projection(GLOBE).positions(self.a, self.b)
+    def positions(self) -> Floats:
+        """Positions on the globe, (J, I, 3), or in the plane, (J, I, 2)."""
+        if self.is_earth:
+            return Projection(GLOBE).positions(self.a, self.b)
+        return np.stack([self.a, self.b], axis=-1)
 
     def is_near(self, other: Places) -> bool:
         """Return whether places are the same up to a hundredth of a degree."""
@@ -84,7 +86,7 @@ class Places:
 
     def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return components on the Earth, or along x and y, of those along rows and columns."""
-        p = self.on_sphere if self.is_earth else np.stack([self.a, self.b], axis=-1)
+        p = self.positions
         along_j, along_i = (sign * _directions(p, axis) for axis, sign in enumerate(ahead))
         vector = u[..., None] * along_i + v[..., None] * along_j
         if self.is_earth:

@@ -31,7 +31,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import typical_steps
-from flowtex.sources.datasets import labels
+from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
     NODES,
@@ -43,22 +43,8 @@ from flowtex.sources.datasets.axes import (
     horizontal_dims,
 )
 from flowtex.sources.datasets.coordinates import Beside, Places, ordered
-from flowtex.sources.datasets.masks import (
-    Mask,
-    find_masks,
-    is_constant,
-    moves_over_land,
-)
-from flowtex.sources.datasets.select import (
-    CARTESIAN,
-    FROM,
-    POLAR,
-    TOWARDS,
-    Pair,
-    choose_pair,
-    two_names,
-    velocity_unit,
-)
+from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
+from flowtex.sources.datasets.select import Pair
 from flowtex.sources.datasets.staggered import find_grid, unrepeated
 from flowtex.sources.datasets.values import (
     Component,
@@ -104,11 +90,11 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
 
     The unit is empty where neither has one. The factor of a direction is that to radians.
     """
-    if pair.kind in (FROM, TOWARDS):
+    if pair.kind in (select.FROM, select.TOWARDS):
         angle = str(pair.v.attrs.get("units", "")) or "degree"
         record("units", f"{pair.v.name} is a {pair.kind} north, clockwise")
-        return velocity_unit(pair.u), (1.0, units.factor(angle, "radian") or 1.0)
-    one, other = velocity_unit(pair.u), velocity_unit(pair.v)
+        return select.velocity_unit(pair.u), (1.0, units.factor(angle, "radian") or 1.0)
+    one, other = select.velocity_unit(pair.u), select.velocity_unit(pair.v)
     if not one or not other:
         if one != other:
             named, bare = (pair.u, pair.v) if one else (pair.v, pair.u)
@@ -145,8 +131,8 @@ def orientation(flow: Flow, wanted: str | None) -> Orientation:
 
 def _orientation(flow: Flow) -> Orientation:
     pair, places = flow.pair, flow.places
-    if pair.kind != CARTESIAN:
-        return Orientation("plane" if pair.kind == POLAR else "earth", pair.why)
+    if pair.kind != select.CARTESIAN:
+        return Orientation("plane" if pair.kind == select.POLAR else "earth", pair.why)
     if len(places.a) == 1 and places.is_earth:
         return Orientation("earth", "nodes without rows and columns")
     # Components on the sides of cells are across these, whatever a long name says.
@@ -251,7 +237,7 @@ class Flow:
 def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets, choice = as_datasets(data, record), Choice.of(options)
-    pair = choose_pair(datasets, *two_names(options.vectors))
+    pair = select.choose_pair(datasets, *select.two_names(options.vectors))
     check_faces(pair.u, {*choice.sel, *choice.isel})
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)
@@ -299,7 +285,7 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
     kind = "rows and columns" if places.is_line else "curvilinear"
     record("coordinates", places.why)
     bare = Component(grid.u.variable, 1.0), Component(grid.v.variable, 1.0)
-    angle = places.angle if pair.kind == POLAR else None
+    angle = places.angle if pair.kind == select.POLAR else None
     values = Values(bare, pair.kind, angle=angle, rows=grid.rows, columns=grid.columns)
     return Flow(
         replace(pair, u=grid.u, v=grid.v),

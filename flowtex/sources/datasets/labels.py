@@ -30,11 +30,6 @@ class Match(NamedTuple):
     one: Indices
     other: Indices
 
-    @property
-    def is_whole(self) -> bool:
-        """Whether both are the axes as they are."""
-        return all(np.array_equal(part, np.arange(len(part))) for part in self)
-
 
 def match(one: AnyArray, other: AnyArray, period: float | None = None) -> Match:
     """Return the labels that two axes, (N,) and (M,), have in common; each label counts once."""

@@ -69,21 +69,16 @@ def find_masks(
     beside = {
         name for a in velocity for name in str(a.attrs.get("ancillary_variables", "")).split()
     }
-    names: list[str] = []
-    for ds in datasets:
-        for key, array in ds.variables.items():
-            name = str(key)
-            if array.ndim == 0 or array.dtype.kind not in "fiub" or name in names:
-                continue
-            names.append(name)
-            if wanted is not None and name != wanted:
-                continue
-            mask = _mask(ds[name], name, is_flag=name in beside, is_wanted=wanted is not None)
+    named = {str(name): ds[name] for ds in reversed(datasets) for name in ds.variables}
+    named = {name: a for name, a in named.items() if a.ndim and a.dtype.kind in "fiub"}
+    if wanted is not None and wanted not in named:
+        words = near_names(str(wanted), named)
+        raise FieldError(f"mask is {wanted!r}; {words} (False draws all values)")
+    for name, array in named.items():
+        if wanted in (None, name):
+            mask = _mask(array, name, is_flag=name in beside, is_wanted=wanted is not None)
             if mask is not None:
                 yield mask
-    if wanted is not None and wanted not in names:
-        words = near_names(str(wanted), names)
-        raise FieldError(f"mask is {wanted!r}; {words} (False draws all values)")
 
 
 def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:

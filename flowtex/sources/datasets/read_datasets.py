@@ -26,7 +26,7 @@ from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import spread_name
-from flowtex.sources.datasets import labels
+from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.axes import (
     NODES,
     TIME,
@@ -38,13 +38,6 @@ from flowtex.sources.datasets.axes import (
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
-from flowtex.sources.datasets.select import (
-    choose_pair,
-    find_pairs,
-    other_velocities,
-    two_names,
-    variable,
-)
 from flowtex.sources.datasets.values import Regions, read_step, region_lines
 from flowtex.sources.datasets.vertical import is_section, read_section
 from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
@@ -80,7 +73,7 @@ def read_datasets(
     if options.globe and projection not in (None, GLOBE):
         raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
     projection = GLOBE if options.globe else projection
-    u, v = two_names(options.vectors)
+    u, v = select.two_names(options.vectors)
     datasets = as_datasets(data, record)
     with record.explain():
         if u is not None and v is not None and is_section(datasets, v):
@@ -93,7 +86,7 @@ def read_datasets(
             flow, spread = _averaged(datasets, uncertainty, record, options)
         else:
             flow = read_flow(datasets, options, record)
-        for note in other_velocities(datasets, flow.pair) if u is None else ():
+        for note in select.other_velocities(datasets, flow.pair) if u is None else ():
             record("select", note, notable=True)
         if not flow.places.is_earth and projection is not None:
             raise FieldError(
@@ -176,7 +169,10 @@ def _averaged(
     datasets: Datasets, dim: str, record: Record, options: FieldOptions
 ) -> tuple[Flow, Callable[[int], Floats]]:
     """Return the mean over a dimension, and a reader of the spread."""
-    pair, choice = choose_pair(datasets, *two_names(options.vectors)), Choice.of(options)
+    pair, choice = (
+        select.choose_pair(datasets, *select.two_names(options.vectors)),
+        Choice.of(options),
+    )
     u, v, chosen = pair.u, pair.v, {**choice.sel, **choice.isel}
     if dim in horizontal_dims(u) or dim not in {*u.dims} & {*v.dims}:
         names = [str(d) for d in u.dims if d not in horizontal_dims(u)]
@@ -330,7 +326,7 @@ def recognised(data: Any) -> dict[str, str]:
     """Return the velocity, grid and coordinates that are recognised, with reasons, and the axes."""
     record = Record()
     datasets = as_datasets(data, record)
-    pairs = find_pairs(datasets)
+    pairs = select.find_pairs(datasets)
     flow = read_flow(datasets, FieldOptions(vectors=pairs[0].names if pairs else None), record)
     rows = {"velocity": str(flow.pair)}
     if others := [pair for pair in pairs if pair.u.name != flow.pair.u.name]:
@@ -340,7 +336,7 @@ def recognised(data: Any) -> dict[str, str]:
     for step, title in (("align", "aligned"), ("mask", "masked"), ("units", "units")):
         if sentences := record.reading.of(step):
             rows[title] = "; ".join(sentences)
-    for name, words in axis_values(variable(datasets, str(flow.pair.u.name))).items():
+    for name, words in axis_values(select.variable(datasets, str(flow.pair.u.name))).items():
         listed = ", ".join(words[:MOST_VALUES]) + (", ..." if len(words) > MOST_VALUES else "")
         rows[name] = f"{len(words)}: {listed}"
     return rows

@@ -233,7 +233,7 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
             elif period and n and np.abs(a_u - a_v[kept.other]).max() > period / 2:
                 text = f"{v.name}: {dims[1][n]} counted from the meridian of {u.name}"
                 record("align", text)
-            elif not kept.is_whole:
+            elif (np.diff(kept.other) != 1).any():
                 word = "reversed" if (np.diff(kept.other) < 0).all() else "reordered"
                 record("align", f"{v.name}: {dims[1][n]} {word} to match {u.name}")
         u = u.isel({d: as_slice(found.one) for d, found in zip(dims[0], matches, strict=True)})
@@ -269,10 +269,7 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
     rows, columns = (min(pair) for pair in zip(at_u.a.shape, at_v.a.shape, strict=True))
     if min(rows, columns) < 2:
         return None
-    p, q = (
-        (at.on_sphere if at.is_earth else np.stack([at.a, at.b], axis=-1))[:rows, :columns]
-        for at in (at_u, at_v)
-    )
+    p, q = (at.positions[:rows, :columns] for at in (at_u, at_v))
     along, up, way = p[:-1, 1:] - p[:-1, :-1], p[1:, :-1] - p[:-1, :-1], (q - p)[:-1, :-1]
     basis = np.stack([up, along], axis=-1)
     square = np.swapaxes(basis, -1, -2) @ basis
@@ -333,7 +330,7 @@ def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: 
 def _moved(places: Places, sides: Sides, count: int) -> Places:
     """Return places of this many cells between sides along a row; unknown ones are NaN."""
     if places.is_earth:
-        lonlat = Projection(GLOBE).lonlat(_mean(places.on_sphere, 1, sides))
+        lonlat = Projection(GLOBE).lonlat(_mean(places.positions, 1, sides))
     else:
         lonlat = _mean(places.a, 1, sides), _mean(places.b, 1, sides)
     a, b = (np.full((places.a.shape[0], count), np.nan) for _ in range(2))
@@ -349,7 +346,7 @@ def _nemo_places(
     if dims != horizontal_dims(v) or u.shape != v.shape:
         return None
     names = {str(n) for ds in datasets for n in ds.variables}
-    if "glamt" in names and "gphit" in names and "glamu" in names:
+    if {"glamt", "gphit", "glamu"} <= names:
         of_t = next(ds for ds in datasets if "glamt" in ds.variables)
         if not {*dims} <= {*of_t["glamt"].dims}:  # of another model
             return None
@@ -366,7 +363,7 @@ def _nemo_places(
 def _wraps(places: Places) -> bool:
     if not places.is_earth:
         return False
-    p = places.on_sphere
+    p = places.positions
     step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
@@ -378,7 +375,7 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     """Return rows and columns without repeated ones, except for one repeated column."""
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
-    p = places.on_sphere
+    p = places.positions
     rows, columns = p.shape[:2]
 
     def same(one: Floats, other: Floats) -> bool:
@@ -392,14 +389,14 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
         if all(same(p[:, columns - halo + k], p[:, k]) for k in range(halo)):
             last = columns - halo + 1
             break
-    top = rows
-    for below in (1, 2):
-        inside = p[:, : last if last < columns else columns]
-        for shift in (0, 1, 2):
-            mirrored = np.roll(inside[rows - 1 - below, ::-1], shift, axis=0)
-            if rows > 4 and same(inside[rows - 1], mirrored):
-                top = rows - 1
-    return slice(0, max(top, 2)), slice(0, last)
+    inside = p[:, :last]
+    mirrored = (
+        np.roll(inside[rows - 1 - below, ::-1], shift, axis=0)
+        for below in (1, 2)
+        for shift in (0, 1, 2)
+    )
+    is_folded = rows > 4 and any(same(inside[rows - 1], line) for line in mirrored)
+    return slice(0, rows - is_folded), slice(0, last)
 
 
 def first_side(

@@ -6,7 +6,7 @@ for bit. Only names of files, and arrays that are read late, are sent to it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -17,19 +17,12 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
 from flowtex.field.steps import Nodes, typical_steps
+from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
 from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
-from flowtex.sources.maps import (
-    CYLINDERS,
-    Lines,
-    NodeLines,
-    lines_on_map,
-    projection_of,
-    shown_positions,
-    shown_rows,
-)
+from flowtex.sources.maps import Lines, NodeLines
 from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
 
@@ -219,16 +212,10 @@ class Regions:
 
     def scalar(self, name: str, step: int, rows: Lines, columns: Lines) -> Floats:
         """Return some rows and columns of a scalar."""
-        return self._between(
-            lambda lines: (read_step(self.scalars[name], step, lines),), rows, columns
-        )[0]
+        variable = self.scalars[name]
+        return self._between(lambda at: [read_step(variable, step, at)], rows, columns)[0]
 
-    def _between(
-        self,
-        read: Callable[[tuple[Indices, Indices]], Sequence[Floats]],
-        rows: Lines,
-        columns: Lines,
-    ) -> list[Floats]:
+    def _between(self, read: Callable[[Any], Any], rows: Lines, columns: Lines) -> list[Floats]:
         """Return what is read of some rows and columns; those on the edge of a map lie between."""
         lines = self.lines
         chosen, numbers, share = lines.rows[rows], lines.columns[:, columns], lines.share[columns]
@@ -248,15 +235,15 @@ def region_lines(places: Places, name: str | None) -> NodeLines | None:
     if not places.is_earth:
         columns = np.tile(np.arange(len(a)), (2, 1))
         return NodeLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, "")
-    projection = projection_of(places, name)
-    if not (projection.is_globe or projection.family in CYLINDERS):
+    projection = maps.projection_of(places, name)
+    if not (projection.is_globe or projection.family in maps.CYLINDERS):
         return None
-    lines = lines_on_map(places, projection)
+    lines = maps.lines_on_map(places, projection)
     if not (np.isfinite(lines.a).all() and np.isfinite(lines.b).all()):
         return None
     if projection.is_globe:
         return lines
-    kept = shown_rows(shown_positions(projection, lines.a[:1], lines.b[:, None]))
+    kept = maps.shown_rows(maps.shown_positions(projection, lines.a[:1], lines.b[:, None]))
     return replace(lines, b=lines.b[kept], rows=lines.rows[kept])
 
 

@@ -21,17 +21,8 @@ from flowtex.field.earth import DEGREE
 from flowtex.field.field_arrays import GridArrays, SectionAxes
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
+from flowtex.sources.datasets import axes
 from flowtex.sources.datasets.align import align, common
-from flowtex.sources.datasets.axes import (
-    LEVEL,
-    SECTION,
-    TIME,
-    Choice,
-    axis_kind,
-    choose,
-    is_pressure,
-    line_of,
-)
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import two_names, variable, velocity_unit
 from flowtex.sources.datasets.values import Component, checked_component, numbers_in
@@ -69,7 +60,7 @@ def read_section(
 ) -> GridArrays:
     """Read a vertical section, from the names of a component along it and a vertical one."""
     one, two = (variable(datasets, str(name)) for name in two_names(options.vectors))
-    u, v, choice = str(one.name), str(two.name), Choice.of(options)
+    u, v, choice = str(one.name), str(two.name), axes.Choice.of(options)
     if set(one.dims) != set(two.dims):
         raise FieldError(
             f"{u} has {', '.join(map(str, one.dims))} and {v} {', '.join(map(str, two.dims))}; "
@@ -77,19 +68,19 @@ def read_section(
         )
     level, along = _axes(one, {*choice.sel, *choice.isel})
     for dim in (level, along):
-        lines = line_of(one, dim), line_of(two, dim)
+        lines = axes.line_of(one, dim), axes.line_of(two, dim)
         if lines[0] is not None and lines[1] is not None:
             found = common(one, two, dim, lines[0], lines[1], record)
             one, two = one.isel({dim: found.one}), two.isel({dim: found.other})
     across, up = _coordinate(one, along), _coordinate(one, level)
     flat = [
         a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
-        .swap_dims({level: SECTION[0], along: SECTION[1]})
-        .transpose(..., *SECTION)
+        .swap_dims({level: axes.SECTION[0], along: axes.SECTION[1]})
+        .transpose(..., *axes.SECTION)
         for a in (one, two)
     ]
     first, second = align(flat[0], flat[1], choice, record)
-    drawn = choose(first, choice, record)
+    drawn = axes.choose(first, choice, record)
     parts = drawn.of(first), drawn.of(second)
     unit = velocity_unit(one)
     metres = (units.factor(unit, "m/s") if unit else None) or 1.0
@@ -130,10 +121,12 @@ def _velocity(u: LazySteps, v: LazySteps, across: float, up: float, step: int) -
 
 
 def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
-    kinds = {str(dim): axis_kind(array, str(dim)) for dim in array.dims}
-    levels = [dim for dim, kind in kinds.items() if kind == LEVEL]
+    kinds = {str(dim): axes.axis_kind(array, str(dim)) for dim in array.dims}
+    levels = [dim for dim, kind in kinds.items() if kind == axes.LEVEL]
     others = [
-        dim for dim, kind in kinds.items() if kind not in (LEVEL, TIME) and not {dim, kind} & chosen
+        dim
+        for dim, kind in kinds.items()
+        if kind not in (axes.LEVEL, axes.TIME) and not {dim, kind} & chosen
     ]
     # Without a choice a northward component is shown along a meridian.
     northward = re.search(r"north|merid|y_|^v", str(array.attrs.get("standard_name", array.name)))
@@ -197,4 +190,6 @@ def _is_downward(up: xr.DataArray) -> bool:
     positive = str(up.attrs.get("positive", "")).lower()
     if positive in ("up", "down"):
         return positive == "down"
-    return is_pressure(up) or (str(up.name).lower().startswith("depth") and float(up.max()) > 0)
+    return axes.is_pressure(up) or (
+        str(up.name).lower().startswith("depth") and float(up.max()) > 0
+    )

@@ -88,16 +88,10 @@ class _Header:
     def _variable(self) -> None:
         name = self._name()
         numbers = [self._number() for _ in range(self._number())]
-        if any(number >= len(self._dimensions) for number in numbers):
-            raise FieldError(
-                f"the file is damaged: the variable {name} has an undeclared dimension"
-            )
         self._attributes()
         kind = self._unpack(">I")
-        if kind not in SIZES:
-            raise FieldError(
-                f"the file is damaged: the variable {name} has the unknown type {kind}"
-            )
+        if kind not in SIZES or any(number >= len(self._dimensions) for number in numbers):
+            raise FieldError(f"the file is damaged: the type or dimensions of {name} are unknown")
         self._number()  # its size again, with too few bits for a large one
         begin = self._unpack(self._offset)
         shape = tuple(self._dimensions[number] for number in numbers)
@@ -162,16 +156,14 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
             file.id.links.visit(lambda name, link: links.append((name, link.type)), info=True)
             parents = Counter(name.rpartition(b"/")[0] for name, _ in links)
             check_variables(0 if whole else max(parents.values(), default=0))
-            for name, kind in links:
-                if kind not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
-                    external = kind == h5py.h5l.TYPE_EXTERNAL
-                    target = file.id.links.get_val(name)[0] if external else b"unknown"
-                    target = target.decode(errors="replace")
-                    _refuse(f"{name.decode(errors='replace')} is an external link", target)
-            for name, kind in links:
+            for path_in, kind in sorted(links, key=lambda link: link[1] == h5py.h5l.TYPE_HARD):
+                name = path_in.decode(errors="replace")
                 if kind == h5py.h5l.TYPE_HARD:
-                    item = h5py.h5o.open(file.id, name)
-                    _check_object(h5py, item, name.decode(errors="replace"), whole=whole)
+                    _check_object(h5py, h5py.h5o.open(file.id, path_in), name, whole=whole)
+                elif kind != h5py.h5l.TYPE_SOFT:
+                    external = kind == h5py.h5l.TYPE_EXTERNAL
+                    target = file.id.links.get_val(path_in)[0] if external else b"unknown"
+                    _refuse(f"{name} is an external link", target.decode(errors="replace"))
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         if isinstance(error, FieldError):
             raise
@@ -193,10 +185,9 @@ def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
         _refuse(f"{name} has external storage", target)
     layout = storage.get_layout()
     if layout == h5py.h5d.VIRTUAL:
-        targets = (storage.get_virtual_filename(n) for n in range(storage.get_virtual_count()))
-        for target in targets:
-            if target != ".":
-                _refuse(f"{name} is a virtual dataset", target)
+        names = {storage.get_virtual_filename(n) for n in range(storage.get_virtual_count())}
+        for target in names - {"."}:
+            _refuse(f"{name} is a virtual dataset", target)
     size, shape = item.get_type().get_size(), item.shape or ()
     if layout == h5py.h5d.CHUNKED:
         check_memory(size * math.prod(storage.get_chunk()), f"one chunk of {name}")

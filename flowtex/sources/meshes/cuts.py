@@ -21,15 +21,8 @@ from flowtex.field.triangles.triangle_nodes import (
     solid_triangles,
     triangle_normals,
 )
-from flowtex.sources.meshes.vectors import (
-    BLANKING,
-    MeshArray,
-    Sheet,
-    catalogue,
-    data_of,
-    hidden_nodes,
-    values_of,
-)
+from flowtex.sources.meshes import vectors
+from flowtex.sources.meshes.vectors import MeshArray, Sheet
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -136,25 +129,26 @@ def _number(raw: Any) -> float:
         return math.nan
 
 
-def cut_faults(mesh: pv.DataSet, cut: Cut | None) -> list[str]:
-    """Return faults in a cut of a mesh, and in a mesh that has no surface."""
+def check_cut(mesh: pv.DataSet, cut: Cut | None) -> None:
+    """Raise a FieldError for a mesh that cannot be cut so, or has no surface."""
     dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
-        return ["the mesh has no cells; check the file or filter that made it"]
+        raise FieldError("the mesh has no cells; check the file or filter that made it")
     if dimension < 2:
-        return ["the mesh has only points or lines; expected a surface, or a volume to cut"]
+        raise FieldError("the mesh has only points or lines; expected a surface, or a volume")
     if cut is not None and dimension == 2:
         name = type(cut).__name__.lower()
-        return [f"{name} is {cut.text}, but the mesh is already a surface; omit {name}"]
-    names = dict.fromkeys(a.name for a in catalogue(mesh) if a.numeric and a.components == 1)
-    if not isinstance(cut, Contour) or cut.name in names:
-        return []
-    text = f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
-    return [f"{text}; {near_names(cut.name, names)}"]
+        raise FieldError(f"{name} is {cut.text}, but the mesh is already a surface; omit {name}")
+    names = dict.fromkeys(
+        a.name for a in vectors.catalogue(mesh) if a.numeric and a.components == 1
+    )
+    if isinstance(cut, Contour) and cut.name not in names:
+        text = f"contour is {cut.text}, but the mesh has no array {cut.name!r} of one component"
+        raise FieldError(f"{text}; {near_names(cut.name, names)}")
 
 
 def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Record) -> Sheet:
-    """Return the nodes of the surface of a mesh, (N,), in which :func:`cut_faults` found none."""
+    """Return the nodes of the surface of a mesh, (N,), which :func:`check_cut` has checked."""
     surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
@@ -166,18 +160,18 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
 
     def nodes(array: MeshArray) -> Floats:
         if array.where == "points" or cut is not None:
-            return values_of(surface, replace(array, where="points")).astype(np.float64)
-        values = values_of(surface, array).astype(np.float64)
+            return vectors.values_of(surface, replace(array, where="points")).astype(np.float64)
+        values = vectors.values_of(surface, array).astype(np.float64)
         finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), finite)[0]
 
     def flat(array: MeshArray) -> Floats:
-        return np.asarray(values_of(surface, array)[cells], dtype=np.float64)
+        return np.asarray(vectors.values_of(surface, array)[cells], dtype=np.float64)
 
     return Sheet(
         points=points,
         shown=np.asarray(surface.point_data[HIDDEN]) <= 0,
-        arrays=[a for a in catalogue(mesh) if a.name in data_of(surface, a.where)],
+        arrays=[a for a in vectors.catalogue(mesh) if a.name in vectors.data_of(surface, a.where)],
         nodes=nodes,
         flat=flat,
         triangles=triangles,
@@ -231,17 +225,17 @@ def _examples(mesh: pv.DataSet) -> str:
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
-    arrays = catalogue(mesh)
+    arrays = vectors.catalogue(mesh)
     names = [a.name for a in arrays if a.real and a.components == 1 and a.name != HIDDEN]
     return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
-    hidden = hidden_nodes(mesh)
+    hidden = vectors.hidden_nodes(mesh)
     ghosts = mesh.cell_data.get("vtkGhostType", np.zeros(mesh.n_cells, np.uint8))
     mesh = mesh.copy(deep=False)
     for data in (mesh.point_data, mesh.cell_data):
-        for name in set(BLANKING) & set(data):
+        for name in set(vectors.BLANKING) & set(data):
             del data[name]
     mesh.point_data[HIDDEN] = hidden.astype(np.float64)
     shown = (np.asarray(ghosts) & _NOT_DRAWN) == 0
@@ -274,7 +268,7 @@ def _on_points(mesh: pv.DataSet, velocity: MeshArray, cut: Cut) -> pv.DataSet:
         moved.add(cut.name)
     cells = mesh.copy(deep=False)
     cells.clear_data()
-    for array in catalogue(mesh):
+    for array in vectors.catalogue(mesh):
         if array.where == "points":
             continue
         if array.name in moved:

@@ -17,13 +17,7 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.vectors import (
-    MeshArray,
-    Sheet,
-    candidates,
-    catalogue,
-    data_of,
-)
+from flowtex.sources.meshes.vectors import MeshArray, Sheet, candidates, catalogue, data_of
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:

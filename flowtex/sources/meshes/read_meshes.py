@@ -17,38 +17,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
-from flowtex.errors import FieldError, raise_faults
+from flowtex.errors import FieldError
 from flowtex.field.derived import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.options import OF_EARTH, FieldOptions
-from flowtex.sources.meshes.cuts import Cut, contour_of, cut_faults, slice_of, surface_sheet
-from flowtex.sources.meshes.parts import (
-    TimeStep,
-    aligned,
-    check_arrays,
-    check_nodes,
-    common_scalars,
-    is_structured,
-    ordered_times,
-    time_steps,
-    times_of,
-)
+from flowtex.sources.meshes import parts, volume
+from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
 from flowtex.sources.meshes.vectors import (
     NO_VELOCITY,
     Masks,
     MeshArray,
-    Selection,
     Sheet,
     named_axes,
     select_velocity,
     thick_axes,
-)
-from flowtex.sources.meshes.volume import (
-    Plane,
-    VolumeValues,
-    find_plane,
-    nodes_to_keep,
-    plane_sheet,
 )
 from flowtex.sources.notices import Record
 
@@ -68,9 +50,9 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
         raise FieldError(f"{' and '.join(given)}; choose one of them")
     cut: Cut | None = None if options.slice is None else slice_of(options.slice)
     cut = cut if options.contour is None else contour_of(options.contour)
-    steps = time_steps(mesh, options.block, cut=cut is not None, record=record)
+    steps = parts.time_steps(mesh, options.block, cut=cut is not None, record=record)
     first = next(steps)
-    on_grid = is_structured(first.grid) and cut is None
+    on_grid = parts.is_structured(first.grid) and cut is None
     refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if not on_grid and (given := [f"{k}={value!r}" for k, value in refused.items() if value]):
         raise FieldError(
@@ -82,17 +64,17 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
 
     def draw(grid: Any) -> Sheet:
         if chosen is not None:
-            return plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
+            return volume.plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
         return surface_sheet(grid, cut, velocity, record)
 
-    count = len(mesh) if isinstance(mesh, (list, tuple)) else len(times_of(mesh))
-    volume = VolumeValues(velocity, chosen or cut, count, preference)
+    count = len(mesh) if isinstance(mesh, (list, tuple)) else len(parts.times_of(mesh))
+    ranges = volume.VolumeValues(velocity, chosen or cut, count, preference)
     arrays = _stacked(
-        chain([first], steps), velocity, draw, options.times, preference, record, volume
+        chain([first], steps), velocity, draw, options.times, preference, record, ranges
     )
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
-    arrays["volume_values"] = volume.values()
+    arrays["volume_values"] = ranges.values()
     if first.grid.max_cell_dimensionality < 3:
         arrays["notable_normal"] = NOTABLE_SHARE
     if on_grid:
@@ -102,59 +84,52 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
 
 def choose(
     grid: Any, vectors: str | None, plane: str | None, cut: Cut | None, record: Record
-) -> tuple[MeshArray, Plane | None]:
-    """Find the velocity and the plane, if there is one; raise an error with all faults."""
-    chosen, text, selection = None, "", Selection(None, "")
-    if is_structured(grid) and cut is None:
-        chosen, text = find_plane(grid, plane)
-        faults = [] if chosen else [text]
+) -> tuple[MeshArray, volume.Plane | None]:
+    """Find the velocity and the plane, if there is one."""
+    chosen = None
+    if parts.is_structured(grid) and cut is None:
+        chosen = volume.find_plane(grid, plane, record)
     else:
-        faults = cut_faults(grid, cut)
-    if grid.n_cells:
-        selection = select_velocity(grid, vectors)
-        faults += [] if selection.array else [selection.text]
-    raise_faults(faults)
-    assert selection.array is not None
-    record("select", selection.text, notable=selection.notable)
-    if text:
-        record("select", text, notable=plane is None)
-    return selection.array, chosen
+        check_cut(grid, cut)
+    return select_velocity(grid, vectors, record), chosen
 
 
 def _stacked(
-    steps: Iterator[TimeStep],
+    steps: Iterator[parts.TimeStep],
     velocity: MeshArray,
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
     preference: str,
     record: Record,
-    volume: VolumeValues,
+    ranges: volume.VolumeValues,
 ) -> dict[str, Any]:
     masks, first, reordered = Masks(velocity), next(steps), 0
     start: Sheet | None = None
     read = []
     for step in chain([first], steps):
-        check_arrays(step, first, velocity)
-        same = aligned(step, first)
+        parts.check_arrays(step, first, velocity)
+        same = parts.aligned(step, first)
         grid = masks.masked(same.grid)
-        volume.add(grid)
+        ranges.add(grid)
         sheet = draw(grid)
         start = sheet if start is None else start
-        check_nodes(start, sheet, step.label)
+        parts.check_nodes(start, sheet, step.label)
         values = sheet.nodes(velocity), *_scalars(sheet, preference, velocity)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
         reordered += same is not step
     assert start is not None
     kept, shown, cells, vectors, *scalars = zip(*read, strict=True)
-    order, moments = ordered_times(kept, record) if times is None else (range(len(kept)), None)
+    order, moments = (
+        parts.ordered_times(kept, record) if times is None else (range(len(kept)), None)
+    )
     if reordered:
         text = f"nodes or cells of {reordered} steps are in another order than those of the first"
         record("align", f"{text}, and were matched by their labels or places", notable=True)
     masks.tell(record)
     valid = np.logical_and.reduce(shown)
     if start.cells is not None:
-        valid &= nodes_to_keep(np.logical_and.reduce(cells), start.wrap)
+        valid &= volume.nodes_to_keep(np.logical_and.reduce(cells), start.wrap)
     if velocity.where == "cells":
         record("surface", "velocity averaged from the cells to the nodes")
     axes = _axes(velocity, start, record, solid=first.grid.max_cell_dimensionality == 3)
@@ -166,7 +141,7 @@ def _stacked(
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
         record("mask", text, notable=True)
-    nodal, flat = (common_scalars([s[n] for n in order], moments, record) for s in scalars)
+    nodal, flat = (parts.common_scalars([s[n] for n in order], moments, record) for s in scalars)
     arrays = {"points": start.points, "velocity": flow, "valid": valid}
     arrays |= {"scalars": nodal, "cell_scalars": flat}
     single = {array.name for array in start.arrays if array.components == 1}
@@ -206,15 +181,15 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
     Names with x, y or z say it. Otherwise two components lie in the plane of a flat mesh; those of
     a volume or a curved surface are along x and y, or as ``u``, ``v`` and ``w`` say.
     """
-    name, parts = velocity.name, velocity.parts
-    if parts:
-        record("components", f"{', '.join(parts)} combined")
+    name = velocity.name
+    if velocity.parts:
+        record("components", f"{', '.join(velocity.parts)} combined")
     if velocity.components == 3:
         return [0, 1, 2]
     points = sheet.points[sheet.shown & np.isfinite(sheet.points).all(axis=-1)]
     in_plane = thick_axes(points)
     variances = np.linalg.eigvalsh(np.cov(points.T)) if len(points) > 2 else np.ones(3)
-    named, is_sure = named_axes(parts)
+    named, is_sure = named_axes(velocity.parts)
     if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
         axes = list(named)
     elif len(in_plane) == 2 and not solid:

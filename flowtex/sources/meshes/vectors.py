@@ -12,7 +12,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -84,14 +84,6 @@ class MeshArray:
     def __str__(self) -> str:
         made = f" from {', '.join(self.parts)}" if self.parts else ""
         return f"{self.name} ({self.where}, {self.components}{made})"
-
-
-class Selection(NamedTuple):
-    """The velocity and the reason for it, or ``None`` and the fault."""
-
-    array: MeshArray | None
-    text: str
-    notable: bool = False
 
 
 def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
@@ -167,12 +159,12 @@ def thick_axes(points: AnyArray) -> list[int]:
     return [axis for axis, span in enumerate(spans) if span > FLAT_SHARE * spans.max()]
 
 
-def select_velocity(mesh: pv.DataSet, vectors: Any) -> Selection:
+def select_velocity(mesh: pv.DataSet, vectors: Any, record: Record) -> MeshArray:
     """Return the selected vectors; of ``None`` those that can be the velocity."""
     arrays = catalogue(mesh)
     known = f"with their numbers of components: {', '.join(map(str, arrays)) or 'none'}"
     if vectors is None:
-        return _found(mesh, known)
+        return _found(mesh, known, record)
     words = tuple(word.strip() for word in str(vectors).split(","))
     named = [a for a in (*arrays, *_component_vectors(mesh)) if a.name == vectors]
     if not named and len(words) in (2, 3):
@@ -184,17 +176,18 @@ def select_velocity(mesh: pv.DataSet, vectors: Any) -> Selection:
         ]
     for array in named:
         if array.numeric and array.components in (2, 3):
-            return Selection(array, f'the velocity is "{array.name}", as selected')
+            record("select", f'the velocity is "{array.name}", as selected')
+            return array
     reason = "; " + near_names(str(vectors), [array.name for array in arrays])
     if named or len(words) > 1:
         reason = (
             "; expected an array of 2 or 3 components, or the names of 2 or 3 arrays of one "
             "component, all on points or all on cells, separated by commas"
         )
-    return Selection(None, f"vectors is {vectors!r}{reason}. The arrays of the mesh, {known}")
+    raise FieldError(f"vectors is {vectors!r}{reason}. The arrays of the mesh, {known}")
 
 
-def _found(mesh: pv.DataSet, known: str) -> Selection:
+def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
     """Return the only velocity, or the one that the mesh marks or a name identifies."""
     arrays = candidates(mesh)
     active = mesh.active_vectors_name
@@ -205,25 +198,27 @@ def _found(mesh: pv.DataSet, known: str) -> Selection:
     named = [a for a in arrays if VELOCITY.fullmatch(a.name)]
     preferred = marked or (named if len(named) == 1 else arrays)
     if not preferred:
-        text = (
+        raise FieldError(
             "the mesh has no vectors that could be the velocity; expected a point or cell array "
             f"of real numbers with 2 or 3 components. Its arrays, {known}. To use single "
             'components, separate their names by commas, as in vectors="u,v,w"'
         )
-        return Selection(None, text)
-    array = preferred[0]
     if len(preferred) > 1:
-        text = f"the mesh has {len(preferred)} arrays that could be the velocity: "
-        text += f"{', '.join(map(str, preferred))}; choose one, as in vectors="
-        return Selection(None, f'{text}"{preferred[-1].name}"')
-    text = f'the velocity is "{array.name}"'
-    if mesh.active_vectors_name == array.name and len(arrays) > 1:
-        return Selection(array, f"{text}, the active vectors of the mesh")
-    if others := [other for other in arrays if other != array]:
-        text += f", chosen by its name; other vectors: {', '.join(map(str, others))}. Choose one of"
-        return Selection(array, f'{text} them as in vectors="{others[0].name}"', notable=True)
-    kind = f"{array.where.removesuffix('s')} array with {array.components} components"
-    return Selection(array, f"{text}, the only {kind}")
+        raise FieldError(
+            f"the mesh has {len(preferred)} arrays that could be the velocity: "
+            f'{", ".join(map(str, preferred))}; choose one, as in vectors="{preferred[-1].name}"'
+        )
+    (array,) = preferred
+    others = [other for other in arrays if other != array]
+    by_name = bool(others) and mesh.active_vectors_name != array.name
+    reason = f"the only {array.where.removesuffix('s')} array with {array.components} components"
+    if others:
+        reason = "the active vectors of the mesh"
+    if by_name:
+        reason = f"chosen by its name; other vectors: {', '.join(map(str, others))}. Choose one of "
+        reason += f'them as in vectors="{others[0].name}"'
+    record("select", f'the velocity is "{array.name}", {reason}', notable=by_name)
+    return array
 
 
 def find_vectors(

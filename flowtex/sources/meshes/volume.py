@@ -17,18 +17,13 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.arrays import dot, norm, row_blocks
 from flowtex._util.cache import ByteCache
+from flowtex.errors import FieldError
 from flowtex.field.grids.grid_nodes import axes, find_closure, products
 from flowtex.field.validation import MAGNITUDES
+from flowtex.sources.meshes import vectors
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
-from flowtex.sources.meshes.vectors import (
-    BLANKING,
-    MeshArray,
-    Sheet,
-    catalogue,
-    hidden_nodes,
-    values_of,
-    visible_cells,
-)
+from flowtex.sources.meshes.vectors import MeshArray, Sheet
+from flowtex.sources.notices import Record
 
 #: Values that are kept of an array, of all steps together.
 MOST_VALUES = 1 << 16
@@ -66,7 +61,9 @@ class VolumeValues:
         if grid.max_cell_dimensionality < 3:
             return
         arrays = {self._velocity.name: self._velocity}
-        ordered = sorted(catalogue(grid), key=lambda a: a.where.startswith(self._preference))
+        ordered = sorted(
+            vectors.catalogue(grid), key=lambda a: a.where.startswith(self._preference)
+        )
         arrays |= {a.name: a for a in ordered if a.numeric and a.components <= 3}
         wanted: dict[str, tuple[MeshArray, Any]] = {}
         if self._velocity.components == 3 and not isinstance(self._plane, Contour | None):
@@ -84,7 +81,13 @@ class VolumeValues:
 
     def _keep(self, name: str, grid: Any, array: MeshArray, part: Any) -> None:
         data = (grid.GetPointData(), grid.GetCellData())
-        names = {*BLANKING, *array.parts, array.name, *self._velocity.parts, self._velocity.name}
+        names = {
+            *vectors.BLANKING,
+            *array.parts,
+            array.name,
+            *self._velocity.parts,
+            self._velocity.name,
+        }
         held = [d.GetAbstractArray(n) for d in data for n in sorted(names) if d.HasArray(n)]
         place = grid.GetMTime() if isinstance(part, Plane) else None
         key = (*(a.GetMTime() for a in held), place, part, array, self._velocity, self._count)
@@ -93,13 +96,15 @@ class VolumeValues:
 
     def _sample(self, grid: Any, array: MeshArray, part: Slice | Plane | int | None) -> Floats:
         """Return values of an array, or of a component or the part in planes of vectors."""
-        values, most = values_of(grid, array), np.float64(MAGNITUDES[1])
+        values, most = vectors.values_of(grid, array), np.float64(MAGNITUDES[1])
         if isinstance(part, int):
             values = values[:, part]
         elif values.ndim > 1:
             values = _lengths(values, None if part is None else _normals(grid, array, part))
-        shown = visible_cells(grid) if array.where == "cells" else ~hidden_nodes(grid)
-        velocity = values_of(grid, self._velocity)
+        shown = (
+            vectors.visible_cells(grid) if array.where == "cells" else ~vectors.hidden_nodes(grid)
+        )
+        velocity = vectors.values_of(grid, self._velocity)
         if array.where == self._velocity.where and np.isnan(velocity.min(initial=0)):
             shown &= ~np.isnan(velocity).any(axis=-1)
         known = values if shown.all() else values[shown]
@@ -126,11 +131,11 @@ def _normals(grid: Any, array: MeshArray, drawn: Slice | Plane) -> Floats:
     return (normals if array.where == "points" else normals[:-1, :-1, :-1]).reshape(-1, 3)
 
 
-def _lengths(vectors: Floats, normals: Floats | None) -> Floats:
+def _lengths(values: Floats, normals: Floats | None) -> Floats:
     """Return lengths of vectors (N, 3), or of their parts across normals, one or (N, 3)."""
-    lengths = np.empty(len(vectors))
-    for rows in row_blocks(len(vectors), 1):
-        part = vectors[rows].astype(float)
+    lengths = np.empty(len(values))
+    for rows in row_blocks(len(values), 1):
+        part = values[rows].astype(float)
         if normals is not None:
             normal = normals if normals.ndim == 1 else normals[rows].astype(float)
             with np.errstate(all="ignore"):  # where sides of a cell have no length
@@ -161,34 +166,28 @@ class Plane:
         return np.moveaxis(np.take(shaped, sides, axis=2 - self.axis), 2 - self.axis, 0)
 
 
-def find_plane(mesh: Any, plane: Any) -> tuple[Plane | None, str]:
-    """Return a plane and a sentence about it, or ``None`` and the fault in the choice.
-
-    ``None`` stands for the mesh itself, or the middle of a volume.
-    """
+def find_plane(mesh: Any, plane: Any, record: Record) -> Plane:
+    """Return the plane of a structured mesh; ``None`` stands for itself, or its middle."""
     dimensions = tuple(mesh.dimensions)
     size = " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
-    if min(dimensions) < 1:
-        return None, "the mesh has no nodes; check the file or filter that made it"
-    if sum(n > 1 for n in dimensions) < 2:
-        return None, f"the mesh has {size}; a surface needs at least 2 nodes along two of the axes"
+    if min(dimensions) < 1 or sum(n > 1 for n in dimensions) < 2:
+        raise FieldError(f"the mesh has {size}; a surface needs at least 2 along two of the axes")
     if plane is None and min(dimensions) == 1:
-        return Plane(dimensions, dimensions.index(1), 0), ""
+        return Plane(dimensions, dimensions.index(1), 0)
     if plane is None:
         ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
-        return Plane(dimensions, 2, dimensions[2] // 2), (
-            f'the plane is "k={dimensions[2] // 2}", the middle of {size}; choose another as in '
-            f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
-        )
+        text = f'the plane is "k={dimensions[2] // 2}", the middle of {size}; choose another as in '
+        text += f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
+        record("select", text, notable=True)
+        return Plane(dimensions, 2, dimensions[2] // 2)
     match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
     axis = "ijk".index(match[1].lower()) if match else 0
     count, index = dimensions[axis], int(match[2]) if match else 0
     if match is None or not -count <= index < count or (min(dimensions) == 1 and count > 1):
         text = 'expected "i=N", "j=N" or "k=N" with a whole number N'
-        return None, f"plane is {plane!r}; {text} within {size}, and no plane for a surface"
-    return Plane(
-        dimensions, axis, index % count
-    ), f"plane {'ijk'[axis]} = {index % count} of {size}"
+        raise FieldError(f"plane is {plane!r}; {text} within {size}, and no plane for a surface")
+    record("select", f"plane {'ijk'[axis]} = {index % count} of {size}")
+    return Plane(dimensions, axis, index % count)
 
 
 def plane_sheet(
@@ -196,12 +195,12 @@ def plane_sheet(
 ) -> Sheet:
     """Return the nodes of a plane of a structured mesh, (J, I)."""
     points = _positions(grid, plane)
-    shown = ~plane.nodes(hidden_nodes(grid))
+    shown = ~plane.nodes(vectors.hidden_nodes(grid))
     wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
-    visible = plane.cells(visible_cells(grid))
+    visible = plane.cells(vectors.visible_cells(grid))
 
     def nodes(array: MeshArray) -> Floats:
-        values = values_of(grid, array)
+        values = vectors.values_of(grid, array)
         if array.where == "points":
             return plane.nodes(values).astype(np.float64)
         layers = plane.cells(values).astype(np.float64)
@@ -212,18 +211,18 @@ def plane_sheet(
 
     def flat(array: MeshArray) -> Floats:
         """Return the values beyond the plane, as of PyVista's ``extract_subset``, or before it."""
-        layers = plane.cells(values_of(grid, array)).astype(np.float64)
+        layers = plane.cells(vectors.values_of(grid, array)).astype(np.float64)
         layers[~visible] = np.nan
         seen = visible[-1].reshape(*visible.shape[1:], *[1] * (layers.ndim - 3))
         return np.asarray(np.where(seen, layers[-1], layers[0]))
 
     cells = visible
     if velocity.where == "cells":
-        cells = visible & np.isfinite(plane.cells(values_of(grid, velocity))).all(axis=-1)
+        cells = visible & np.isfinite(plane.cells(vectors.values_of(grid, velocity))).all(axis=-1)
     return Sheet(
         points=points,
         shown=shown,
-        arrays=catalogue(grid),
+        arrays=vectors.catalogue(grid),
         nodes=nodes,
         flat=flat,
         cells=np.asarray(cells.any(axis=0)),

@@ -23,13 +23,7 @@ from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.notices import Record
-from flowtex.sources.opening.tables import (
-    as_dataset,
-    read_csv,
-    read_vec,
-    read_winds,
-    split_components,
-)
+from flowtex.sources.opening import tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +35,7 @@ DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR = (".zarr",)
 JSON = (".json", ".geojson")
-TABLES = {".csv": read_csv, ".vec": read_vec}
+TABLES = {".csv": tables.read_csv, ".vec": tables.read_vec}
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 
@@ -73,8 +67,12 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
-        part = of_tree(ds) if isinstance(ds, xarray.DataTree) else as_dataset(ds, several=several)
-        result.append(split_components(_decoded(part)))
+        part = (
+            of_tree(ds)
+            if isinstance(ds, xarray.DataTree)
+            else tables.as_dataset(ds, several=several)
+        )
+        result.append(tables.split_components(_decoded(part)))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
@@ -328,7 +326,7 @@ def open_files(path: Path) -> Opened:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:
-            return Opened([read_winds(path)])
+            return Opened([tables.read_winds(path)])
         if suffix in TABLES:
             return Opened([TABLES[suffix](path)])
         if suffix in GRIB:

@@ -124,11 +124,7 @@ def roms(kind: str) -> Any:
     """u and v on the sides of cells, along the grid."""
     ds = xr.Dataset()
     dims = {"rho": ("eta_rho", "xi_rho"), "u": ("eta_u", "xi_u"), "v": ("eta_v", "xi_v")}
-    points = {
-        "rho": (I, J),
-        "u": (I[:, :-1] + 0.5, J[:, :-1]),
-        "v": (I[:-1], J[:-1] + 0.5),
-    }
+    points = {"rho": (I, J), "u": (I[:, :-1] + 0.5, J[:, :-1]), "v": (I[:-1], J[:-1] + 0.5)}
     for number, name in enumerate(("u", "v")):
         lon, lat, angle = turned_grid(*points[name])
         text = f"time-averaged {name}-momentum component"

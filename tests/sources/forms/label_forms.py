@@ -226,10 +226,7 @@ def names_without_units() -> Any:
 def two_dimensional_places_of_other_dimension_order() -> Any:
     a, b = np.meshgrid(LON, LAT, indexing="ij")
     ds = earth(LON, LAT, dims=("j", "i")).drop_vars(["i", "j"])
-    coords = {
-        "lon": (("i", "j"), a, DEGREES["lon"]),
-        "lat": (("i", "j"), b, DEGREES["lat"]),
-    }
+    coords = {"lon": (("i", "j"), a, DEGREES["lon"]), "lat": (("i", "j"), b, DEGREES["lat"])}
     return ds.assign_coords(coords), STEADY
 
 

@@ -102,8 +102,7 @@ CALENDARS = ["standard", "noleap", "360_day", "proleptic_gregorian", "julian", "
 def calendar(name: str) -> Any:
     numbers = {"units": "hours since 2024-01-01", "calendar": name}
     ds = xr.decode_cf(
-        retimed(series(), HOURS, **numbers),
-        decode_times=xr.coders.CFDatetimeCoder(use_cftime=True),
+        retimed(series(), HOURS, **numbers), decode_times=xr.coders.CFDatetimeCoder(use_cftime=True)
     )
     return ds, SERIES
 

@@ -324,10 +324,7 @@ def axis_of_components(place: str) -> Any:
     """One array with an axis of components named x and z, over (x, z)."""
     values = np.stack(plane(*np.meshgrid(X, Y, indexing="ij")))
     array = xr.DataArray(
-        values,
-        dims=("vdims", "x", "z"),
-        coords={"vdims": ["x", "z"], "x": X, "z": Y},
-        name="B",
+        values, dims=("vdims", "x", "z"), coords={"vdims": ["x", "z"], "x": X, "z": Y}, name="B"
     )
     order = {"first": ("vdims", "x", "z"), "last": ("x", "z", "vdims")}
     return array.transpose(*order.get(place, ("x", "vdims", "z"))), in_plane(X, Y)

@@ -240,8 +240,7 @@ def shuffled(mesh: Any, seed: int, labels: str = "") -> Any:
 
 @property_test(12)
 @given(
-    st.integers(0, 2**31),
-    st.sampled_from(["grid", "triangles", "faces", "tetrahedra", "slice"]),
+    st.integers(0, 2**31), st.sampled_from(["grid", "triangles", "faces", "tetrahedra", "slice"])
 )
 def test_steps_in_another_order_are_matched(seed: int, kind: str) -> None:
     options = {"slice": "0.3,1,0.2"} if kind == "slice" else {}
