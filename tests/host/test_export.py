@@ -180,30 +180,6 @@ def test_a_module_shows_its_flow_in_any_page(page: Page, tmp_path: Path) -> None
 
 
 @pytest.mark.browser
-def test_colours_are_chosen_on_a_page(page: Page, tmp_path: Path) -> None:
-    export(gyre(), tmp_path / "page.html", samples=5, strength=0.0)
-    page.goto((tmp_path / "page.html").as_uri())
-    page.locator(COMPLETE).wait_for()
-    page.locator("[data-name=settings]").click()
-    ramp, drawn, ramps = page.locator(".flowtex .ramp"), [pixels(page)], []
-    for choose in (
-        page.locator("[data-cmap=magma]").click,
-        lambda: page.get_by_label("Highest value").fill("0.1"),
-        page.get_by_text("auto", exact=True).click,
-    ):
-        with acted(page):
-            choose()
-            page.keyboard.press("Tab")
-        drawn.append(pixels(page))
-        ramps.append(ramp.get_attribute("style"))
-    height, width = drawn[0].shape[:2]
-    inside = (slice(height // 3, height // 2), slice(width // 4, width // 2))
-    steps = [np.abs(drawn[n + 1] - drawn[n])[inside].mean() for n in range(3)]
-    assert min(steps) > 20 and np.abs(drawn[3] - drawn[1])[inside].mean() < 1
-    assert "gradient" in str(ramps[0]) and len(set(ramps)) == 1
-
-
-@pytest.mark.browser
 def test_a_page_has_its_own_ground_in_light_and_dark(page: Page, tmp_path: Path) -> None:
     export(gyre(), tmp_path / "page.html", samples=5, axes="scale")
     page.goto((tmp_path / "page.html").as_uri())

@@ -37,11 +37,6 @@ def shown(plotter: Any, **options: Any) -> Any:
     return plotter.show(return_viewer=True, **options)
 
 
-def test_it_is_found_by_its_name() -> None:
-    names = {backend.name for backend in pv.registered_jupyter_backends()}
-    assert "flowtex" in names
-
-
 def test_a_widget_looks_as_the_plotter(notebook: Any) -> None:
     notebook.set_background("black")
     handle = add(notebook, cmap="cividis", clim=(0.0, 0.2))

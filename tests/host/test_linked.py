@@ -10,7 +10,6 @@ import pytest
 from page_reader import Reader
 
 from flowtex import FlowField
-from flowtex.cli import main
 from flowtex.field import FieldError
 from flowtex.host.export import export, page_text, source_of
 from flowtex.host.view import web_views
@@ -172,14 +171,3 @@ def test_a_store_that_is_not_whole_is_told(tmp_path: Path) -> None:
     group.attrs["flowtex"] = sealed({**told, "complete": False})
     with pytest.warns(UserWarning, match="incomplete"):
         text_of(tmp_path / "a.zarr")
-
-
-def test_the_shell_exports_a_page_of_a_store(
-    store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    page = tmp_path / "page.html"
-    assert main(["export", str(store), "-o", str(page), "--store", "./flow.zarr"]) == 0
-    assert Reader(page.read_text("utf-8")).header()["store"]["url"] == "./flow.zarr"
-    capsys.readouterr()
-    assert main(["export", str(store), "-o", str(page), "--store", "s3://bucket/flow.zarr"]) == 2
-    assert "expected the address" in capsys.readouterr().err

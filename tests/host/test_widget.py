@@ -22,7 +22,6 @@ import flowtex
 from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
 from flowtex.examples import gyre_nodes as nodes_of
-from flowtex.field.earth import Projection
 from flowtex.host import feed, still
 from flowtex.host.view import MOST_THREADS, in_pool
 from flowtex.rendering.camera import Camera
@@ -233,14 +232,6 @@ def test_a_setting_sends_what_it_changes_and_no_more(
     assert "position" not in {name for m in heard.messages for name in names_of(m)}
     widget.noise = "procedural"
     wait_until(lambda: "FLOWTEX_IMAGE" not in widget._header["variant"])
-
-
-def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    widget = make()
-    widget.set_image(SQUARES)
-    assert widget.noise == "image"
-    assert widget._feeds[0].settled.wait(PATIENCE_S)
-    assert widget._header["image"]
 
 
 def test_an_error_while_tracing_is_told(
@@ -543,25 +534,6 @@ def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
     assert widget.scene.field is field
 
 
-@pytest.mark.parametrize("name", ["samples", "noise", "camera", "size"])
-def test_none_raises_and_leaves_the_value(make: Make, name: str) -> None:
-    widget = make()
-    before = getattr(widget, name)
-    with pytest.raises(ValueError, match=f"^{name} is None; expected"):
-        setattr(widget, name, None)
-    assert getattr(widget, name) == before
-
-
-def test_axes_are_named_or_refused(make: Make) -> None:
-    widget = make(axes="scale")
-    assert widget.axes == "scale"
-    with pytest.raises(ValueError, match=r"^axes is 'bar'; expected 'ticks'"):
-        widget.axes = "bar"
-    assert widget.axes == "scale"
-    assert Reader(str(widget.to_html())).header()["axes"] == "scale"
-    assert widget._header["background"] is None
-
-
 def coloured(times: int = 1) -> flowtex.FlowField:
     field = gyre(times)
     heights = field.points[..., 1] - 0.4
@@ -610,43 +582,3 @@ def test_colours_that_are_chosen_in_the_browser_are_taken(
         heard.say(kind="appearance", changes=wrong)
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
     assert widget.opacity == 1.0
-
-
-def test_lines_of_the_earth_are_switched_from_both_sides(
-    make: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    projection = Projection("globe")
-    lon, lat = np.meshgrid(np.linspace(0, 60, 13), np.linspace(10, 50, 9))
-    velocity = projection.vectors(lon, lat, 0 * lon + 1, 0 * lon)
-    field = flowtex.FlowField.from_arrays(
-        projection.positions(lon, lat), velocity, projection=projection
-    )
-    widget = make(field)
-    heard = Heard(widget, monkeypatch)
-    heard.settle()
-    headers: list[Any] = []
-    widget.observe(lambda change: headers.append(change["new"]["earth"]), "_header")
-    widget.coastlines, widget.land = False, "red"
-    heard.say(kind="appearance", changes={"graticule": False})
-    assert widget.graticule is False
-    wait_until(lambda: headers and not headers[-1]["graticule"])
-    assert headers[-1]["land"] == [1, 0, 0] and not headers[-1]["coastlines"]
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "said"),
-    [
-        ("scalars", "hight", "the field has no scalar 'hight'; expected one of 'speed', 'hei"),
-        ("cmap", "virids", "the colour map 'virids' does not exist; did you mean 'viridis'"),
-        ("clim", (1, 0), "the lower one first"),
-        ("opacity", 3, "opacity is 3; expected a number from 0 to 1"),
-        ("colour_map", "magma", "FlowWidget has no attribute 'colour_map'; "),
-        ("sampels", 3, "FlowWidget has no attribute 'sampels'; did you mean 'samples'"),
-    ],
-)
-def test_an_appearance_that_does_not_fit_is_refused(
-    make: Make, name: str, value: Any, said: str
-) -> None:
-    widget = make(coloured())
-    with pytest.raises((AttributeError, FieldError), match=said):
-        setattr(widget, name, value)

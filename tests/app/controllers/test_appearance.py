@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-import flowtex
-
 pytest.importorskip("trame_rca")
 
-from earth_fields import winds
-from small_pages import difference, picture, small, small_page
 
 from flowtex.app import FlowApp
 
@@ -44,14 +40,6 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     viewport.set_time(now)
 
 
-def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
-    slow = small(steps=4)
-    faster = flowtex.FlowField.from_arrays(slow.points, 3 * slow.velocity, times=slow.times)
-    series.area.show(faster, keep_range=True)
-    assert series.area.clim is None
-    assert series.area.scene.scalar_limits[1] == pytest.approx(3 * 1.7, rel=0.01)
-
-
 def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     area, appearance = flat.area, flat.appearance
     before = area.scene.appearance
@@ -64,18 +52,3 @@ def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     appearance.restore({"colour": "no such", "cmap": "os_system", "opacity": 1.0})
     assert (area.scalars, area.cmap, area.opacity) == ("height", "magma", 1.0)
     area.scene.appearance = before
-
-
-def test_a_link_switches_lines_of_a_map() -> None:
-    app = small_page(winds("platecarree"), 5, 240, 160)
-    try:
-        with_lines = picture(app)
-        app.area.element.take_colours({"coastlines": False})
-        assert app.area.coastlines is False and app.area.graticule is not False
-        assert difference(with_lines, picture(app)) > 0.2
-        saved = app.appearance.describe()
-        assert (saved["coastlines"], saved["graticule"]) == (False, True)
-        app.appearance.restore({"coastlines": True})
-        assert difference(picture(app), with_lines) == 0
-    finally:
-        app.close()

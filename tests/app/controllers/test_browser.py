@@ -141,16 +141,6 @@ def test_nothing_is_complained_of_and_nothing_comes_from_outside(
     assert not [url for url in heard["asked"] if not url.startswith(own)]
 
 
-def test_without_the_right_secret_there_is_no_picture(page: Page, demo: Served) -> None:
-    tried: list[object] = []
-    page.on("websocket", lambda link: tried.append(link))
-    for path in ("", "?secret=wslink-secret"):
-        page.goto(demo.bare + path)
-        page.get_by_text("including the secret").wait_for()
-        assert page.locator(".flowtex-page").count() == 0
-    assert not tried
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
 def test_the_secret_is_new_each_time_and_not_in_the_list_of_processes(demo: Served) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import pyvista as pv
 pytest.importorskip("trame_rca")
 
 from small_pages import playing, small, small_page
-from waiting import PATIENCE_S, until
+from waiting import until
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, Library
@@ -137,35 +136,6 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
             app.state.send(compare=junk)
             assert app.state.get("compare") == "File: b.vts"
         assert app.viewport.panes[1] is before
-
-
-async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = page(one=small(), two=other(), three=other(steps=3))
-    held = threading.Event()
-    complete = app.beside.library.complete
-
-    def slowly(name: str, choice: Choice, **options: Any) -> Choice:
-        assert held.wait(PATIENCE_S)
-        return complete(name, choice, **options)
-
-    monkeypatch.setattr(app.beside.library, "complete", slowly)
-    async with playing(app):
-        app.state.send(compare="File: two")
-        await until(lambda: app.state.get("busy") == "Opening two")
-        app.cancel_opening()
-        assert (app.state.get("busy"), app.state.get("compare")) == ("", "nothing")
-        for name in ("three", "two", "three"):
-            app.state.send(compare=FILE + name)
-        held.set()
-        await until(lambda: app.beside.name)
-        assert app.beside.name == "three"
-        assert len(app.viewport.panes[1].field.times) == 3
-        app.state.send(compare="File: two")
-        app.state.send(compare="nothing")
-        opening = app.beside._opening
-        assert opening is not None
-        await until(opening.done)
-        assert len(app.viewport.panes) == 1
 
 
 async def test_files_in_different_length_units_raise() -> None:

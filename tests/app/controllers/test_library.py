@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from cfd_files import CGNS, TIMES, box, write_ensight, write_exodus, write_foam
 from small_pages import small
 
 from flowtex import FlowField, examples
@@ -69,34 +68,6 @@ def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
     for library in (other, shared):
         with pytest.raises(FieldError, match="is not among those"):
             library.source(name)
-
-
-def test_files_of_solvers_offer_blocks_arrays_and_times(tmp_path: Path) -> None:
-    with CGNS.write(tmp_path / "wing.cgns") as file:
-        file.base("Base", [("Tip", box(4, 3, 2)), ("Body", box(6, 5, 4, 3.0))], times=TIMES)
-    write_ensight(tmp_path / "wing.case", [("tip", box(4, 3, 2)), ("body", box(6, 5, 4, 3.0))])
-    write_foam(tmp_path / "run.foam")
-    write_exodus(tmp_path / "wing.ex2", box(4, 3, 2))
-    library = Library.of(tmp_path)
-    assert library.names == ("run.foam", "wing.case", "wing.cgns", "wing.ex2")
-    for name, plane in (("run.foam", "y=0.5"), ("wing.ex2", "z=0.5")):
-        choice = library.complete(name, Choice())
-        assert choice.plane == plane
-        assert library.field(name, choice).triangles is not None
-        outer = library.complete(name, Choice(plane="outer=0"), nearest=True)
-        assert library.field(name, outer).points[..., 2].max() == 1
-    for name, blocks in (("wing.case", ("tip", "body")), ("wing.cgns", ("Base/Tip", "Base/Body"))):
-        assert library.source(name).blocks == blocks
-        choice = library.complete(name, Choice(block=blocks[1]))
-        assert (choice.vectors.lower(), choice.plane) == ("velocity", "k=2")
-        field = library.field(name, choice)
-        assert field.shape == (5, 6)
-        assert tuple(field.times) == TIMES
-        assert library.complete(name, Choice()).block == blocks[0]
-    (tmp_path / "torn.case").write_text((tmp_path / "wing.case").read_text()[:30])
-    assert "torn.case" in library.names
-    with pytest.raises(FieldError, match=r"torn\.case: "):
-        library.source("torn.case")
 
 
 # --- files that change --------------------------------------------------------------------------

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import errno
 import io
 import logging
 from collections.abc import Iterator
@@ -18,7 +16,6 @@ from flowtex.app.server.site import (
     MOST_RECORDS,
     WINDOW_S,
     RepeatFilter,
-    bounded_log,
 )
 
 
@@ -60,17 +57,3 @@ def test_what_is_long_is_cut(log: Log) -> None:
         logger.exception("a" * 10**6 + "%s", "b" * 10**6)
     assert len(written.getvalue()) < 2 * MESSAGE_LENGTH + 20
     assert "Traceback" in written.getvalue()
-
-
-def test_connections_that_cannot_be_accepted_are_few_lines(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    async def story() -> None:
-        handle = asyncio.get_running_loop().call_exception_handler
-        for _ in range(1000):
-            error = OSError(errno.EMFILE, "Too many open files")
-            handle({"message": "socket.accept() out of system resource", "exception": error})
-
-    with bounded_log():
-        asyncio.run(story())
-    assert 0 < len(caplog.records) <= MOST_RECORDS
