@@ -173,13 +173,9 @@ def _ends(mapper: Any) -> Ends:
 
 def _same_colours(one: Any, other: Any) -> bool:
     """Return whether two mappers have the same colour map, however many entries it has."""
-    if one is other:
-        return True
     tables = [mapper.lookup_table for mapper in (one, other)]
-    if any(isinstance(table, NormTable) for table in tables):
-        return False
-    if not all(isinstance(table, pv.LookupTable) for table in tables):
-        return False
+    if one is other or any(type(table) is not pv.LookupTable for table in tables):
+        return one is other
     first, second = (
         np.asarray(table.values, dtype=int)[np.arange(COMPARED) * table.n_values // COMPARED]
         for table in tables

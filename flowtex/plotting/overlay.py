@@ -17,10 +17,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Floats
 from flowtex._util.progress import pool
-from flowtex.field import FlowField
-from flowtex.field.earth import MapLines
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
@@ -211,11 +209,14 @@ class MapOverlay(Overlay):
         """Return the lines of an option, coarse to fine, made once; none far from a coast."""
         has_globe = self._radius is not None
         if (option, has_globe) not in self._lines:
-            for name, lines in map_lines(self._field, has_globe=has_globe).items():
-                forms = ((s, lines.thinned(s) if s else lines) for s in SPACINGS)
-                self._lines[name, has_globe] = tuple(
-                    (s, _line_mesh(form)) for s, form in forms if len(form.points)
-                )
+            for name, whole in map_lines(self._field, has_globe=has_globe).items():
+                self._lines[name, has_globe] = ()
+                for spacing in SPACINGS:
+                    lines = whole.thinned(spacing) if spacing else whole
+                    if len(lines.points):
+                        first = np.delete(np.arange(len(lines.points)), lines.starts[1:] - 1)
+                        mesh = piece_mesh(lines.points[first], lines.points[first + 1])
+                        self._lines[name, has_globe] += ((spacing, mesh),)
         return self._lines[option, has_globe]
 
     def _add_land(self, color: Any) -> None:
@@ -225,7 +226,11 @@ class MapOverlay(Overlay):
         # Behind a transparent flow there is the background instead of land.
         tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
         if (land := land_cells(self._field, tiled=tiled)).any():
-            meshes.append((_cell_mesh(self._field, land), -LAND_FARTHER))
+            faces = self._field.surface.nodes_of(land)
+            points, numbers = np.unique(faces, return_inverse=True)
+            places: Any = self._field.surface.points.reshape(-1, 3)[points]
+            mesh = pv.PolyData.from_regular_faces(places, numbers.reshape(faces.shape))
+            meshes.append((mesh, -LAND_FARTHER))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
             around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
@@ -265,20 +270,6 @@ class MapOverlay(Overlay):
         far = max(far, depth + radius)
         near = min(near, max(depth - radius, NEAREST * far))
         camera.SetClippingRange(near, far)
-
-
-def _line_mesh(lines: MapLines) -> pv.PolyData:
-    joined = np.ones(len(lines.points), dtype=bool)
-    joined[lines.starts[1:] - 1] = False
-    first = np.flatnonzero(joined)
-    return piece_mesh(lines.points[first], lines.points[first + 1])
-
-
-def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
-    faces = field.surface.nodes_of(cells)
-    points, numbers = np.unique(faces, return_inverse=True)
-    shape: Any = numbers.reshape(faces.shape)
-    return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[points], shape)
 
 
 class StructureOverlay(Overlay):

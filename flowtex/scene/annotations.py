@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import ColourScale, distinct_texts, is_light, rgb
-from flowtex.field.dates import UNIT_LENGTH, time_text
+from flowtex.field.dates import time_text
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.marks import (
     KIND_MARKS,
@@ -48,7 +48,6 @@ LINE = 0.1  #: Width of thin lines, in heights of the text.
 OPACITY = 0.8  #: How opaque a plate is.
 TICK_PX = 4  #: Length of ticks in pixels.
 BEYOND = 0.004  #: Share of the range by which a number may lie beyond an end: less than a pixel.
-TIME_WIDTH = 0.4  #: Greatest share of the picture's width for a time with a long unit.
 LEGEND_WIDTH = 0.6  #: Widest legend with all of its values, as a share of the width of the picture.
 METRES_PER_KM = 1000
 SMOOTH = 4  #: Supersampling factor of the tips of a legend.
@@ -219,16 +218,13 @@ class _Writer:
             yield image
 
     def times(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield the time, if it is known, with a long unit and without it."""
+        """Yield the time, if it is known."""
         field = scene.field
         if field.steady and field.start is None and not field.times[0]:
             return
-        for longest in (len(field.time_unit), UNIT_LENGTH):
-            times = (scene.time, *map(float, field.times[[0, -1]]))
-            text, *ends = (_printable(time_text(field, time, longest)) for time in times)
-            for image in self.texts(text, tuple(ends)):
-                if longest <= UNIT_LENGTH or image.width <= TIME_WIDTH * self._size[0]:
-                    yield image
+        times = (scene.time, *map(float, field.times[[0, -1]]))
+        text, *ends = (_printable(time_text(field, time)) for time in times)
+        yield from self.texts(text, tuple(ends))
 
     def scale_bars(self, scene: Scene, camera: Camera) -> Iterator[Image.Image]:
         """Yield a scale bar of a round length, if the scale is the same in the whole picture."""

@@ -237,7 +237,12 @@ class Scene:
         textures, version = self._textures, self._version
         if textures is None:
             image = self.image if self.settings.noise == "image" else None
-            textures = _shared_textures(self.store, image, self.pyramid)
+            store, pyramid = self.store, self.pyramid
+            # Textures keep their store alive, so its id is unique while they live.
+            textures = _textures.get(
+                (id(store), None if image is None else digest(image)),
+                lambda: pyramid.root_textures(store) if pyramid else TextureSet.build(store, image),
+            )
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
@@ -531,14 +536,3 @@ def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None
 
 _coarse_stores: WeakCache[SliceStore] = WeakCache()
 _textures: WeakCache[TextureSet] = WeakCache()
-
-
-def _shared_textures(
-    store: SliceStore, image: Floats32 | None, pyramid: Pyramid | None
-) -> TextureSet:
-    """Return :meth:`TextureSet.build` of a store, cached."""
-    # Textures keep their store alive, so its id is unique while they live.
-    key = (id(store), None if image is None else digest(image))
-    if pyramid is not None:
-        return _textures.get(key, lambda: pyramid.root_textures(store))
-    return _textures.get(key, lambda: TextureSet.build(store, image))

@@ -86,7 +86,8 @@ def frame_times(
         if chosen == (TABLE["speed"].default, TABLE["speed_in"].default):
             speed = max(speed, WAVE_PIXELS / duration)
         return FrameTimes((), clocks, fps, duration, closed=True, speed=speed)
-    closed = _is_periodic(field)
+    start, end = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
+    closed = bool(np.abs(end - start).max() <= SAME_SHARE * max(np.abs(start).max(), 1e-300))
     first, last = float(field.times[0]), float(field.times[-1])
     times = np.linspace(first, last, max(count, 2), endpoint=not closed)
     return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed, speed=0.0)
@@ -116,12 +117,6 @@ def _check_motion(field: FlowField, settings: Settings) -> None:
     else:
         return
     raise MovieError(msg)
-
-
-def _is_periodic(field: FlowField) -> bool:
-    """Return whether the velocity of the last time is that of the first."""
-    first, last = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
-    return bool(np.abs(last - first).max() <= SAME_SHARE * max(np.abs(first).max(), 1e-300))
 
 
 @dataclass(frozen=True)
