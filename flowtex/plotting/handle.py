@@ -93,7 +93,7 @@ class FlowHandle(AppearanceAttributes):
         end = scene.observe(self._changed)
         self.scene, self.actor, self.bar = scene, actor, bar
         self._plotter, self._renderer, self._forget = plotter, renderer, forget
-        self._surface, self._shown_time, self._end = surface, scene.time, end
+        self.surface, self._shown_time, self._end = surface, scene.time, end
         self._shown: Appearance | None = None
         #: What the flow was read from, and how, and the state in which that was.
         self._source: tuple[Any, FieldOptions] | None = None
@@ -101,13 +101,11 @@ class FlowHandle(AppearanceAttributes):
         self._map = MapOverlay(actor, renderer, scene, surface)
         self._structure = StructureOverlay(actor, renderer, scene, surface)
         self._show_appearance()
-        drawn: list[tuple[Any, str, Callable[[], None], float]] = [
-            (renderer, "StartEvent", self._before_frame, FIRST),
-            (renderer.GetViewProps(), "ModifiedEvent", self._check_actor, 0.0),
-        ]
+        before, check = weak_callback(self._before_frame), weak_callback(self._check_actor)
+        props = renderer.GetViewProps()
         self._observed = [
-            (subject, subject.AddObserver(event, weak_callback(method), priority))
-            for subject, event, method, priority in drawn
+            (renderer, renderer.AddObserver("StartEvent", before, FIRST)),
+            (props, props.AddObserver("ModifiedEvent", check)),
         ]
         self._is_made = True
 
@@ -123,26 +121,13 @@ class FlowHandle(AppearanceAttributes):
     @property
     def clock(self) -> float:
         """Clock of the animation in seconds; set it to draw any frame."""
-        return self._surface.view.clock
+        return self.surface.view.clock
 
     @clock.setter
     def clock(self, value: float) -> None:
         limit = float(np.finfo(float).max)
         expected = "a finite number of seconds"
-        self._surface.view.clock = checked_number("clock", value, -limit, limit, expected=expected)
-        self._draw()
-
-    @property
-    def still(self) -> bool:
-        """Whether the grains of a time-varying flow stand still unless ``motion`` moves them.
-
-        A picture of one moment is sharper so; from one frame to the next, grains should move.
-        """
-        return self._surface.view.still
-
-    @still.setter
-    def still(self, value: bool) -> None:
-        self._surface.view.still = value
+        self.surface.view.clock = checked_number("clock", value, -limit, limit, expected=expected)
         self._draw()
 
     @property
@@ -152,12 +137,12 @@ class FlowHandle(AppearanceAttributes):
         A density of 2 draws the same picture with twice as many pixels along each side, for
         high-resolution screens, print and supersampling.
         """
-        return self._surface.view.density
+        return self.surface.view.density
 
     @density.setter
     def density(self, value: float) -> None:
         least, expected = float(np.finfo(float).tiny), "a positive number, 1 for a standard screen"
-        self._surface.view.density = checked_number("density", value, least, expected=expected)
+        self.surface.view.density = checked_number("density", value, least, expected=expected)
         self._draw()
 
     @property
@@ -171,27 +156,13 @@ class FlowHandle(AppearanceAttributes):
         Only the visible tiles of a large surface are traced. By default a picture waits for the
         tiles that it needs.
         """
-        self._surface.load_in_background(notify)
+        self.surface.load_in_background(notify)
         self._structure.notify = notify
-
-    @property
-    def mesh(self) -> pv.PolyData:
-        """PyVista mesh of the surface; of a large one, which has tiles, see :attr:`meshes`."""
-        return self.meshes[0]
-
-    @property
-    def meshes(self) -> list[pv.PolyData]:
-        """PyVista meshes of the last picture; several if the surface is large."""
-        return self._surface.meshes
-
-    def draw_for(self, height: int, whole: int) -> None:
-        """Choose tiles for this many pixels of a ``whole`` picture and its drafts."""
-        self._surface.full_height, self._surface.whole_height = height, whole
 
     @property
     def busy(self) -> bool:
         """Whether tiles or the structure of the last picture are still being computed."""
-        return self._surface.busy or self._structure.busy
+        return self.surface.busy or self._structure.busy
 
     def set_surface(self, mesh: Any, **options: Any) -> None:
         """Draw the flow on another surface, such as a cutting plane that has moved.
@@ -241,8 +212,8 @@ class FlowHandle(AppearanceAttributes):
             raise
         old, self.scene, self._shown_time = self.scene, scene, scene.time
         self._end()
-        self._surface.show(textures, scene.pyramid, scene.moment)
-        self._surface.set_moment(*scene.moment)
+        self.surface.show(textures, scene.pyramid, scene.moment)
+        self.surface.set_moment(*scene.moment)
         self._map.show(scene)
         self._structure.show(scene)
         self._show_appearance("lighting")
@@ -271,7 +242,7 @@ class FlowHandle(AppearanceAttributes):
         self.scene.close()
         self._map.close()
         self._structure.close()
-        self._surface.close()
+        self.surface.close()
         self.bar.remove()
         plotter.remove_actor(self.actor, render=False)
         self._forget(self)
@@ -293,12 +264,12 @@ class FlowHandle(AppearanceAttributes):
         if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
             if not self.field.steady and self._shown_time != self.scene.time:
                 self._shown_time = self.scene.time
-                self._surface.set_moment(*self.scene.moment)
-                self._surface.write_scalars()
+                self.surface.set_moment(*self.scene.moment)
+                self.surface.write_scalars()
         elif affects == "appearance":
             self._show_appearance()
         else:
-            self._surface.set_textures(self.scene.textures, self.scene.pyramid)
+            self.surface.set_textures(self.scene.textures, self.scene.pyramid)
             self._map.show(self.scene)
         self._draw()
 
@@ -345,7 +316,7 @@ class FlowHandle(AppearanceAttributes):
         self._table = mapper.lookup_table = lookup_table(self.scene.colour_scale)
         mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name))
         mapper.SelectColorArray(name)
-        self._surface.set_scalars(
+        self.surface.set_scalars(
             name,
             lambda field: self.scene.scalar(name, field),
             on_cells=name in self.scene.field.on_cells,

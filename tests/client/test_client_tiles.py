@@ -104,7 +104,7 @@ def drawn_by_vtk(
     plotter.window_size = list(SIZE)
     plotter.set_background(GROUND)
     handle = plotter.flowtex.add(make(), **{**LOOK, **options})
-    handle.still = True
+    handle.surface.view.still = True
     if time is not None:
         handle.time = time
     apply_camera(camera, plotter.camera)

@@ -45,7 +45,7 @@ def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
     handle = plotter.flowtex.add(view.field(), image=view.image, **shown, **settings)
     if view.time is not None:
         handle.time = view.time
-    handle.clock, handle.still = view.clock, True
+    handle.clock, handle.surface.view.still = view.clock, True
     apply_camera(camera, plotter.camera)
     plotter.camera_set = True
     plotter.renderer.reset_camera_clipping_range()

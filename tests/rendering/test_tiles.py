@@ -94,7 +94,7 @@ def test_tiles_in_the_background_come_after_a_coarse_picture(
     first = np.asarray(plotter.screenshot(return_img=True), float)
     assert handle.busy
     go.set()
-    handle._surface._loader.wait()
+    handle.surface._loader.wait()
     assert told
     plotter.render()
     second = np.asarray(plotter.screenshot(return_img=True), float)
@@ -149,7 +149,7 @@ def test_tiles_have_the_colours_of_this_moment(_tiled: None) -> None:
         field = replace(flat(), scalars={"depth": depth[None]})
         handle = plotter.flowtex.add(field, show_scalar_bar=False, **options)
         pictures.append(plotter.screenshot(return_img=True))
-        assert len(handle.meshes) > 1
+        assert len(handle.surface.meshes) > 1
         for name, value in changes.items():
             setattr(handle, name, value)
         if changes:

@@ -128,7 +128,7 @@ def test_large_triangles_draw_what_small_ones_do(
                 point_camera(plotter, flow.surface, ViewOptions(zoom=zoom, focus=focus))
             plotter.render()
             pictures.append(np.asarray(plotter.screenshot(return_img=True), float))
-            counts.append(sum(mesh.n_cells for mesh in handle.meshes))
+            counts.append(sum(mesh.n_cells for mesh in handle.surface.meshes))
     assert counts[0] > 3 * counts[1]
     covered: Any = (np.array(pictures) < 255).any(axis=(0, 3))
     inside = binary_erosion(covered, iterations=8)
@@ -203,7 +203,7 @@ def test_a_closed_plotter_lets_everything_go(opengl: Any) -> None:
     plotter: Any = pv.Plotter(off_screen=True, window_size=[100, 100])
     handle = plotter.flowtex.add(gyre_field())
     plotter.screenshot(return_img=True)
-    layer = weakref.ref(handle._surface)
+    layer = weakref.ref(handle.surface)
     plotter.close()
     assert handle.closed
     del handle, plotter

@@ -112,7 +112,7 @@ class Viewport:
 
     def _pane(self, scene: Scene) -> FlowHandle:
         handle = self._component.add_scene(scene, reset_camera=False)
-        handle.still = self._still
+        handle.surface.view.still = self._still
         if self._tile_ready is not None:
             handle.load_in_background(self._tile_ready)
         return handle
@@ -209,7 +209,7 @@ class Viewport:
         """Let the grains of a field that varies stand still, as while no time goes by."""
         self._still = still
         for pane in self.panes:
-            pane.still = still
+            pane.surface.view.still = still
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""
@@ -339,7 +339,7 @@ class Viewport:
         for other in self.panes:
             other.actor.SetVisibility(other is pane and other.visible)
         (left, top, across, down), (wide, high) = part or (0, 0, *self._picture), self._picture
-        pane.draw_for(down, high)
+        pane.surface.full_height, pane.surface.whole_height = down, high
         camera, window = self.plotter.camera, cast("Any", self.plotter.render_window)
         self.plotter.renderer.SetViewport(
             0, 0, *np.divide((width, height), self.plotter.window_size)

@@ -74,7 +74,7 @@ class OffscreenPlotter:
         window = self._plotter.render_window
         window.SetDPI(window.GetDPI() * supersampling)
         for handle in self.handles:
-            handle.density, handle.still = supersampling * density, still
+            handle.density, handle.surface.view.still = supersampling * density, still
         #: Image without the flow, with room for annotations; ``None`` without these.
         self._canvas: Bytes | None = None
         if annotations:
