@@ -255,16 +255,3 @@ def test_x_and_y_of_a_rectilinear_grid_make_its_nodes() -> None:
         assert np.array_equal(FlowField.from_arrays(points, velocity).points, expected)
     lifted = (*np.meshgrid(x, y), np.full((3, 4), 7.0))
     assert (FlowField.from_arrays(lifted, velocity).points[..., 2] == 7).all()
-
-
-def test_hidden_coordinates_blank_a_node() -> None:
-    x, y = np.meshgrid(np.arange(5.0), np.arange(4.0))
-    hidden = np.zeros((4, 5), dtype=bool)
-    hidden[2, 3] = True
-    field = FlowField.from_arrays((np.ma.array(x, mask=hidden), y), np.ones((4, 5, 2)))
-    assert np.array_equal(~field.valid, hidden)
-
-
-def test_rows_of_positions_are_no_coordinates() -> None:
-    points = flat(2, 3)
-    assert np.array_equal(FlowField.from_arrays(points.tolist(), ones(points)).points, points)

@@ -144,19 +144,6 @@ def test_to_the_plane_and_back(end: int, turned: bool, bent: float) -> None:
     np.testing.assert_allclose(pole.depth(pole.index(np.zeros((2, 1)))), 0)
 
 
-def test_nearest_keeps_a_path_together() -> None:
-    pole = poles(sphere())[0]
-    start = np.array([[4.0], [0.5]])
-    beyond = pole.index(-pole.place(start))
-    np.testing.assert_allclose(beyond, [[22.0], [0.5]], atol=1e-9)
-    np.testing.assert_allclose(pole.nearest(beyond, start), [[4.0], [-0.5]], atol=1e-9)
-    # A quarter of a turn to the side both are as near, and it stays on the side where it is.
-    aside = np.array([[13.0], [0.5]])
-    for j in (0.5, -0.5):
-        found = pole.nearest(aside, np.array([[22.0], [j]]))
-        np.testing.assert_allclose(found, [[13.0 if j > 0 else 31.0], [j]], atol=1e-9)
-
-
 # --- velocity -------------------------------------------------------------------------------
 
 

@@ -64,26 +64,6 @@ def turning(size: int = 4) -> tuple[Floats, Floats]:
     return points, points[..., ::-1] * [-1, 1]
 
 
-@pytest.mark.parametrize("step", [1e-60, 1e-6, 1e6, 1e60])
-def test_time_steps_of_any_length(step: float) -> None:
-    points, velocity = turning()
-    times = step * np.array([0.0, 1.0, 2.0, 2.5])
-    for even in (True, False):
-        t = times[:3] if even else times
-        field = FlowField.from_arrays(points, np.stack([velocity] * len(t)), times=t)
-        steady = SliceStore(field.at_step(0), parameter="time").at(0)
-        store = SliceStore(field)
-        slices = store.at(0)
-        check(slices)
-        # Before the first time step nothing changes, however short the steps are.
-        lag = 0.4 * float(steady.lags[-1] * steady.unit[0, 0])
-        expected = steady.positions(lag / steady.unit[0, 0])
-        if lag < slices.lags[-1] * slices.unit[0, 0]:
-            found = slices.positions(lag / slices.unit[0, 0])
-            inside = (slices.reach[0] == np.inf) & (steady.reach[0] == np.inf)
-            np.testing.assert_allclose(found[inside], expected[inside], atol=0.05)
-
-
 def test_a_change_in_time_is_not_jumped_over_on_the_way_forward() -> None:
     points, _ = turning(9)
     gust = np.zeros((9, *points.shape))

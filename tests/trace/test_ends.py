@@ -52,17 +52,6 @@ def test_path_around_a_small_vortex_takes_few_steps(
     assert np.hypot(*np.diff(far, axis=0).T).min() > 0.02
 
 
-def test_positions_are_held_where_a_path_ended() -> None:
-    slices = trace(wind(11, 21, (1.0, 0.0)), lags=[1.0, 5.0, 25.0])
-    np.testing.assert_allclose(slices.positions(25.0)[..., 0], 0, atol=1e-3)
-    np.testing.assert_allclose(slices.positions(25.0, forward=True)[..., 0], 20, atol=1e-3)
-    np.testing.assert_allclose(
-        slices.positions(3.0)[..., 0],
-        np.maximum(np.arange(21) - 3, 0) + np.zeros((11, 1)),
-        atol=1e-3,
-    )
-
-
 def test_a_path_ends_where_it_meets_a_mask() -> None:
     valid = np.ones((11, 31), bool)
     valid[3:8, 10:13] = False

@@ -1,17 +1,12 @@
-"""Trace slices: the paper's figures 3 and 4, reading and writing, and what callers get wrong."""
+"""Trace slices, and the store of a field."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
-
 import numpy as np
 import pytest
-from scipy.ndimage import map_coordinates
 
-from flowtex import FlowField, TraceSlices, trace
-from flowtex._util.array_types import Floats
-from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
+from flowtex import TraceSlices, trace
+from flowtex.examples import double_gyre_field, vortex_field
 from flowtex.trace.slices import choose_lags
 from flowtex.trace.store import SliceStore
 
@@ -19,65 +14,6 @@ from flowtex.trace.store import SliceStore
 @pytest.fixture(scope="module")
 def slices() -> TraceSlices:
     return trace(double_gyre_field(shape=(21, 41)), lags=[0.25, 1.0, 4.0])
-
-
-# --- figures 3 and 4 ------------------------------------------------------------------------
-
-FIGURES: dict[str, tuple[Callable[[], FlowField], float, int]] = {
-    "vortex": (vortex_field, 0.04, 10),
-    "double gyre": (lambda: double_gyre_field(True, shape=(51, 101)), 0.5, 30),
-    "cylinder": (cylinder_field, 0.2, 30),
-}
-
-
-def displacements(field: FlowField, lags: Floats, step: int) -> Floats:
-    """Integrated slices (M, J, I, 2) of one step."""
-    slices = trace(field, lags=lags, parameter="time", steps=[step], compose=False)
-    return np.asarray(slices.displacement[0], dtype=float)
-
-
-@cache
-def compared(name: str, factor: int) -> dict[str, Floats]:
-    """Mean errors in cells for lags of 1 to 10 steps, against the slices of the whole field.
-
-    "slices" keeps every ``factor``-th entry of the slices, "field" traces the field of every
-    ``factor``-th node; "at nodes" compares at the entries that are left, "everywhere" at all
-    nodes, interpolated.
-    """
-    make, step_length, step = FIGURES[name]
-    field, lags = make(), np.linspace(step_length, 10 * step_length, 10)
-    full = displacements(field, lags, step)
-    coarse = displacements(field.downsample(factor), lags, step) * factor
-    rows, columns = ((n - 1) // factor * factor + 1 for n in field.shape)
-    full, kept = full[:, :rows, :columns], full[:, :rows:factor, :columns:factor]
-    coarse = coarse[:, : kept.shape[1], : kept.shape[2]]
-    j, i = np.meshgrid(np.arange(rows) / factor, np.arange(columns) / factor, indexing="ij")
-
-    def everywhere(data: Floats) -> Floats:
-        return np.stack(
-            [[map_coordinates(d[..., c], [j, i], order=1) for c in range(2)] for d in data]
-        )
-
-    exact = np.moveaxis(full, -1, 1)
-    return {
-        "field, at nodes": np.linalg.norm(coarse - kept, axis=-1).mean(axis=(1, 2)),
-        "field, everywhere": np.linalg.norm(everywhere(coarse) - exact, axis=1).mean(axis=(1, 2)),
-        "slices, everywhere": np.linalg.norm(everywhere(kept) - exact, axis=1).mean(axis=(1, 2)),
-    }
-
-
-@pytest.mark.parametrize("factor", [2, 4])
-@pytest.mark.parametrize("name", FIGURES)
-def test_figures_3_and_4(name: str, factor: int) -> None:
-    """Slices are true wherever an entry is left, at any lag; traces of a coarse field drift off."""
-    found = compared(name, factor)
-    drift, by_field, by_slices = found.values()
-    # At the entries that are left slices have no error, and the field's accumulates.
-    assert (np.diff(drift) > 0).all()
-    assert drift[-1] > 4 * drift[0]
-    # Between them slices have the error of interpolation; the field's has its drift on top.
-    assert (by_slices < 0.95 * by_field).all()
-    assert by_field[-1] - by_slices[-1] > 2 * (by_field[0] - by_slices[0])
 
 
 # --- one set of slices ----------------------------------------------------------------------
