@@ -153,7 +153,8 @@ class FlowtexAccessor:
         >>> len(panels.axs.flat)
         4
         """
-        if transform is not None and not _is_geodetic(transform):
+        turned = float(getattr(transform, "proj4_params", {}).get("pm", 0))
+        if type(transform).__name__ not in ("NoneType", "Geodetic", "PlateCarree") or turned:
             raise flowtex.FieldError(
                 f"transform is {brief(transform)}; expected ccrs.PlateCarree() or none: the "
                 "positions follow from the longitudes and latitudes of the data"
@@ -218,9 +219,3 @@ def _axes(figsize: tuple[float, float] | None, options: Mapping[str, Any]) -> Ax
     if figsize is None and not options:
         return plt.gca()
     return cast("Axes", plt.figure(figsize=figsize).add_subplot(**options))
-
-
-def _is_geodetic(transform: Any) -> bool:
-    name = type(transform).__name__
-    turned = getattr(transform, "proj4_params", {}).get("pm", 0)
-    return name == "Geodetic" or (name == "PlateCarree" and not float(turned))

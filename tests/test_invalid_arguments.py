@@ -223,7 +223,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"z": 1}, "z is a coordinate or the time"),
         ({"times": [1, 0]}, "expected times that increase"),
         ({"resolution": 1}, "resolution is 1; expected 2 to 10,000 nodes"),
-        ({"surface": "cube"}, "surface is 'cube'; expected one of: sphere, torus, cylinder"),
+        ({"surface": "cube"}, "surface is 'cube'; expected ... one of sphere, torus, cylinder"),
         ({"surface": ("u", "v")}, "expected x, y and z of u and v"),
         (["1", "2", "3"], "3 expressions are given; expected two, the rates"),
         (["sqrt(-1 - x*x)", "y"], "has no value in any cell of the grid"),

@@ -128,7 +128,7 @@ def test_the_double_gyre_has_saddles_on_its_border_and_lines_between_them() -> N
     assert repr(points) == "CriticalPoints(6 x saddle, 2 x centre)"
     places = {tuple(np.round(p.position[:2], 3)) for p in points.of_kind("saddle")}
     assert places == {(x, y) for x in (0.0, 1.0, 2.0) for y in (0.0, 1.0)}
-    assert points.to_pyvista().n_points == len(points.to_pandas()) == 8
+    assert points.to_pyvista().n_points == len(points.records()) == 8
     lines = flowtex.separatrices(field)
     middle = [line for line in lines if np.abs(line.points[:, 0] - 1).max() < 0.01]
     assert len(middle) == 2  # from below, as it leaves one saddle and comes to the other
@@ -136,7 +136,7 @@ def test_the_double_gyre_has_saddles_on_its_border_and_lines_between_them() -> N
     for line in middle:
         assert np.ptp(line.points[:, 1]) == pytest.approx(1.0, abs=1e-6)
     mesh = lines.to_pyvista()
-    assert mesh.n_cells == len(lines) == len(lines.to_pandas())
+    assert mesh.n_cells == len(lines) == len(lines.records())
     assert mesh.n_points == sum(len(line.points) for line in lines)
 
 

@@ -7,7 +7,6 @@ sphere as on a crooked grid, and no term for the curvature of coordinates is nee
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -27,7 +26,6 @@ COLLAPSED_AREA = 1e-10
 QUADRATIC_NEIGHBOURS = 5  #: Least number of neighbours for a quadratic fit.
 REGULARISATION = 1e-12  #: Regularisation of a fit, as a share of the largest entry.
 LEAST_INDEPENDENCE = 1e-9  #: Determinant of the correlations of the terms of a fit, at least.
-MOST_JUDGED = 40_000  #: Approximate number of nodes by which the side of a surface is determined.
 
 
 def true_positions(points: Floats, projection: Projection | None) -> Floats:
@@ -256,11 +254,9 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
-    """Return whether turning from the first direction to the second is negative, by some nodes."""
-    sample = (slice(None, None, 1 + math.isqrt(valid.size // MOST_JUDGED)),) * 2
-    one, two, points = (a[:, *sample] for a in (one, two, points))
+    """Return whether turning from the first direction to the second is negative."""
     normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])
-    usable = valid[sample] & np.isfinite(normal).all(axis=0)
+    usable = valid & np.isfinite(normal).all(axis=0)
     if not usable.any():
         return False
     normal, place = normal[:, usable], points[:, usable]

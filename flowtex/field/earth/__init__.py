@@ -7,6 +7,7 @@ Earth moves along the map of its path; on a globe directions and lengths are tho
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -172,20 +173,15 @@ class Projection:
                 if parallels[0] * parallels[1] <= 0:
                     parallels = (near, near)
                 text += f" +lat_0={near:.12g} +lat_1={parallels[0]:.12g} +lat_2={parallels[1]:.12g}"
-        try:
+        with suppress(pyproj.exceptions.ProjError):
             crs: CRS = pyproj.CRS.from_user_input(text)
-            if not crs.is_projected:
-                raise FieldError(
-                    f"the projection {self.name!r} is in degrees; expected one in metres: "
-                    f"{', '.join((GLOBE, *NAMES))}, or a PROJ string"
-                )
-            return crs
-        except pyproj.exceptions.ProjError as error:
-            raise FieldError(
-                f"the projection {self.name!r} is unknown; expected one of "
-                f"{', '.join((GLOBE, *NAMES))}, or a PROJ string such as 'EPSG:3413' or "
-                "'+proj=laea +lat_0=52 +lon_0=10'"
-            ) from error
+            if crs.is_projected:
+                return crs
+        raise FieldError(
+            f"the projection {self.name!r} is unknown, or in degrees; expected one of "
+            f"{', '.join((GLOBE, *NAMES))}, or a PROJ string of one in metres, such as "
+            "'EPSG:3413' or '+proj=laea +lat_0=52 +lon_0=10'"
+        )
 
     @cached_property
     def _transform(self) -> Transformer:

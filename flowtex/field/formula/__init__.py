@@ -264,12 +264,8 @@ def _surface(surface: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, f
     """Return the expressions of a surface, and its coordinates with their usual ranges."""
     if surface is None:
         return (), {"x": RANGE, "y": RANGE}
-    if isinstance(surface, str):
-        if surface in SURFACES:
-            return SURFACES[surface]
-        raise FieldError(
-            f"surface is {surface!r}; {near_names(surface, SURFACES)}, or give three expressions"
-        )
+    if isinstance(surface, str) and surface in SURFACES:
+        return SURFACES[surface]
     if not isinstance(surface, (tuple, list)) or len(surface) != COMPONENTS:
         names = ", ".join(SURFACES)
         raise FieldError(

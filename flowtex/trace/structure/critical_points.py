@@ -13,7 +13,7 @@ import scipy
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.progress import track
-from flowtex.errors import FieldError, import_extra, notify
+from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
 from flowtex.field.formula import Rates
@@ -145,10 +145,6 @@ class CriticalPoints(UserList[CriticalPoint]):
                 row |= {f"real_{n}": float(value.real), f"imaginary_{n}": float(value.imag)}
             rows.append(row)
         return rows
-
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.DataFrame`` of :meth:`records`."""
-        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_pyvista(self) -> pv.PolyData:
         """Return a ``pyvista.PolyData`` of the points.

@@ -12,7 +12,6 @@ import scipy
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
-from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
@@ -95,10 +94,6 @@ class Separatrices(list[Separatrix]):
             row |= dict(zip(names, line.points[[0, -1]].ravel().tolist(), strict=True))
             rows.append(row)
         return rows
-
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.DataFrame`` of :meth:`records`."""
-        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_pyvista(self) -> pv.PolyData:
         """Return lines as a ``pyvista.PolyData``.
