@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField, examples
-from flowtex.examples import _shipped, delta_wing_field
+from flowtex.examples import delta_wing_field
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -132,19 +132,6 @@ def test_fields_need_no_pyvista() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
-
-
-def test_the_shipped_period_closes() -> None:
-    points, velocity, _, times = _shipped.cylinder_arrays()
-    assert points.shape == (65, 161, 2)
-    assert velocity.shape == (31, 65, 161, 2)
-    np.testing.assert_allclose(np.diff(times), times[1], rtol=1e-9)
-    assert np.abs(velocity[-1] - velocity[0]).max() < 5e-4
-    assert np.abs(velocity[15] - velocity[0]).max() > 0.5
-    assert not velocity[:, 0].any()
-    # Half a period later the wake is its own mirror image.
-    mirrored = velocity[15, :, ::-1] * [1.0, -1.0]
-    assert np.abs(mirrored - velocity[0]).max() < 2e-3
 
 
 @pytest.fixture(scope="module")

@@ -101,14 +101,3 @@ def test_vectors_on_cells_come_to_the_nodes() -> None:
     field = FlowField.from_pyvista(mesh, vectors="axis", sign_free=True)
     np.testing.assert_allclose(np.abs(field.velocity[0]), np.broadcast_to([0.6, 0.8, 0], (7, 9, 3)))
     assert cut(field) == 0
-
-
-# --- words and refusals ---------------------------------------------------------------------
-
-
-def test_it_is_said() -> None:
-    field = FlowField.from_arrays(grid(), half(grid()), sign_free=True)
-    assert field.sign_free
-    assert "sign-free" in repr(field)
-    assert field.downsample(2).sign_free
-    assert "sign-free" not in repr(FlowField.from_arrays(grid(), half(grid())))

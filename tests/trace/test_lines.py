@@ -11,7 +11,7 @@ from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import AnyArray
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.scene.scene import Scene
-from flowtex.trace.store import SliceStore, changing_share, chosen_lines
+from flowtex.trace.store import changing_share, chosen_lines
 
 
 def mirrored(field: FlowField) -> FlowField:
@@ -45,21 +45,6 @@ def test_forward_paths_are_those_of_the_flow_run_backward(compose: bool) -> None
     np.testing.assert_allclose(ahead.forward_reach[::-1], back.reach, rtol=1e-3)
 
 
-@pytest.mark.parametrize("parameter", ["arclength", "time"])
-def test_streamlines_are_those_of_each_step_alone(parameter: str) -> None:
-    field = double_gyre_field(shape=(11, 21), time_varying=True)
-    store = SliceStore(field, parameter=parameter, lines="streamlines")
-    assert store.parameter == parameter
-    assert store.two_sided
-    for step in (3, 17):
-        slices = store.at(step)
-        options = {"unit": store.unit, "parameter": parameter, "compose": True}
-        alone = trace(field.at_step(step), lags=store.lags, **options)  # type: ignore[arg-type]
-        assert slices.times == field.times[step]
-        np.testing.assert_allclose(slices.displacement, alone.displacement)
-        np.testing.assert_allclose(ahead_of(slices), ahead_of(alone))
-
-
 def test_what_changes_within_a_streak_has_streamlines() -> None:
     for field in (cylinder_field(), vortex_field(), waving(30.0)):
         assert chosen_lines(field) == Scene(field).lines == "streamlines"
@@ -76,13 +61,3 @@ def test_neither_nodes_nor_steps_change_the_choice() -> None:
     assert changing_share(field.downsample(2)) == pytest.approx(share, abs=0.05)
     fewer = replace(field, velocity=field.velocity[::2], times=field.times[::2])
     assert changing_share(fewer) == pytest.approx(share, abs=0.05)
-
-
-def test_a_scene_follows_the_setting() -> None:
-    scene = Scene(double_gyre_field(shape=(11, 21), time_varying=True))
-    assert scene.store.streamlines
-    scene.settings.lines = "pathlines"
-    assert not scene.store.streamlines
-    assert scene.store.parameter == "time"
-    assert scene.textures.sides == 2
-    assert not scene.coarsened(100).store.streamlines

@@ -39,46 +39,6 @@ def test_the_file_is_small_and_has_closed_rings() -> None:
     assert (np.abs(points) <= np.array([180, 90]) * STEPS_PER_DEGREE).all()
 
 
-@pytest.mark.parametrize(
-    ("lon", "lat", "is_land"),
-    [
-        (20, 20, True),  # Africa
-        (10, 50, True),  # Europe
-        (90, 50, True),  # Asia
-        (-100, 45, True),  # North America
-        (-50, -15, True),  # South America
-        (135, -25, True),  # Australia
-        (60, -80, True),  # Antarctica
-        (-30, 0, False),  # the Atlantic
-        (-140, 30, False),  # the Pacific
-        (5, 40.5, False),  # the Mediterranean
-    ],
-)
-def test_land_is_within_coasts(lon: float, lat: float, is_land: bool) -> None:
-    """Count the coasts on the way from a place outward, on a map with that place in the middle."""
-    a, b = pieces(coastlines(Projection(f"+proj=aeqd +lat_0={lat} +lon_0={lon} +R={EARTH_RADIUS}")))
-    crosses = (a[:, 1] > 0) != (b[:, 1] > 0)
-    a, b = a[crosses], b[crosses]
-    at = a[:, 0] - a[:, 1] * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-    # Up to a quarter of the way around: there the map is whole, and each of these ways ends at sea.
-    assert bool(((at > 0) & (at < END[int(lon)] * DEGREE)).sum() % 2) == is_land
-
-
-#: Degrees eastward from each place along its great circle to one that is at sea.
-END: dict[float, float] = {
-    20: 17,
-    10: 75,
-    90: 65,
-    -100: 45,
-    -50: 25,
-    135: 30,
-    60: 90,
-    -30: 15,
-    -140: 10,
-    5: 1,
-}
-
-
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("center", CENTERS)
 def test_no_line_shoots_across_a_map(name: str, center: tuple[float, float]) -> None:

@@ -10,7 +10,7 @@ from strategies import property_test
 from triangle_meshes import cube, random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
-from flowtex.field.locate import locate, locator, surface_point
+from flowtex.field.locate import locate, locator
 from flowtex.field.quantities import values_at
 
 
@@ -79,16 +79,6 @@ def test_values_at_a_point_are_linear(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(values.position, [0.4, 0.7, 0], atol=1e-12)
     np.testing.assert_allclose(values.velocity, [1.4, 0.8, 0], atol=1e-12)
     assert values.scalars["height"] == pytest.approx(1.8)
-
-
-def test_a_blanked_triangle_has_no_point() -> None:
-    points, triangles = sphere(2)
-    valid = points[:, 2] < 0.5
-    field = FlowField.from_triangles(points, triangles, points[:, [1, 0, 2]], valid=valid)
-    number = int(np.flatnonzero(~field.surface.cells)[0])
-    with pytest.raises(ValueError, match="blanked"):
-        surface_point(field.surface, (number + 0.2, 0.2))
-    assert locate(field, (0.0, 0.0, 1.0)) is None
 
 
 def test_the_speed_on_sharp_edges_is_that_of_the_faces() -> None:
