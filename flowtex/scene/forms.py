@@ -11,7 +11,6 @@ from flowtex._util.written import (
     PLAIN,
     SWITCH,
     Form,
-    UnreadableError,
     named_texts,
     number_or_text,
     numbers,
@@ -24,23 +23,18 @@ from flowtex.settings import setting
 
 
 def _read_ends(text: str) -> str | tuple[float, ...]:
-    if text == ROBUST:
-        return ROBUST
-    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
-    if not low < high:
-        raise UnreadableError("two numbers, the lower one first")
-    return low, high
+    return ROBUST if text == ROBUST else numbers(2, expected="two numbers, such as 1.5,3")(text)
 
 
 def _read_differences(words: Sequence[str]) -> dict[str, Any]:
     """Read words such as ``lod=false`` as settings and as fields of :class:`Appearance`."""
     texts = named_texts(str, "name=value, such as --beside lod=false")(words)
-    values: dict[str, Any] = {}
-    for name, text in texts.items():
-        key = name.strip().replace("-", "_")
-        is_look = key in Appearance.__dataclass_fields__
-        values[key] = FORMS[key].read(text) if is_look else setting(key).parse(text)
-    return values
+    named = {name.replace("-", "_"): text for name, text in texts.items()}
+    looks = Appearance.__dataclass_fields__
+    return {
+        name: FORMS[name].read(text) if name in looks else setting(name).parse(text)
+        for name, text in named.items()
+    }
 
 
 #: Form of a whole number or a name.
@@ -77,11 +71,9 @@ _SPECIAL = {
     "background": Form("Background colour; by default white, or that of the surrounding page."),
     "beside": Form(read=_read_differences, repeated=True),
 }
-_SWITCHES = (*SWITCHES, *EARTH_LINES)
-
 #: Form of each argument that can be written as text.
 FORMS: dict[str, Form] = {
-    name: SWITCH if name in _SWITCHES else _SPECIAL.get(name, PLAIN)
+    name: SWITCH if name in (*SWITCHES, *EARTH_LINES) else _SPECIAL.get(name, PLAIN)
     for kind in (FieldOptions, Appearance, ViewOptions)
     for name in kind.__dataclass_fields__
     if name != "times"
