@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +18,6 @@ from flowtex.pyramid.layout import (
     DIGESTS,
     FLOW,
     MOST_HELD,
-    VALUES,
     Part,
     about_source,
     check_about,
@@ -189,19 +188,23 @@ def build(
     threads = Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
     with plain_faults(), closing(workers), building(place):
-        group, arrays, about, new = _prepared(place, about, data, fresh=fresh)
-        run, depth = _Run(place, group, arrays, about, progress), about["depth"]
+        group, about, new = _prepared(place, about, data, fresh=fresh)
+        run, depth = _Run(place, group, about, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
-            units = sorted({u for name in run.arrays for u in _existing_units(run, name)}, key=repr)
+            units: list[Part | TileTask] = []
+            for level in range(depth + 1):
+                units += _existing_parts(run, level)
+                tiles = sorted(run.shards(f"{level}/{FLOW}"))
+                units += [TileTask(TileKey(level, j, i), (step,)) for step, j, i, _ in tiles]
             run.work(workers, mend, units, "Checking existing objects", TILE_BYTES, new=False)
         _write_finest(run, data, workers if data.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(data.shape, level))
             run.work(workers, make_part, parts, f"Level {level} of {depth}", PART_BYTES)
         run.update(levels_done=True)
-        tiles = [task for level in range(depth, -1, -1) for task in _missing_tiles(run, level)]
-        run.work(workers, make_tile, tiles, "Tiles", TILE_BYTES)
+        tasks = [task for level in range(depth, -1, -1) for task in _missing_tiles(run, level)]
+        run.work(workers, make_tile, tasks, "Tiles", TILE_BYTES)
         run.update(complete=True)
     return Built(place, depth, run.made, run.kept)
 
@@ -264,7 +267,7 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
 
 def _prepared(
     place: str, about: dict[str, Any], source: NodeSource, *, fresh: bool
-) -> tuple[Group, dict[str, Sequence[str]], dict[str, Any], bool]:
+) -> tuple[Group, dict[str, Any], bool]:
     zarr = import_extra("zarr", "store")
     store = store_at(place, read_only=False)
     if fresh:
@@ -279,27 +282,15 @@ def _prepared(
         if differing:
             raise PyramidError(
                 f"{place} contains the pyramid of another field ({', '.join(differing)} differ); "
-                "build with fresh=True to replace it, or choose another place"
+                "build with fresh=True, or in another place"
             )
         about = {**stored, "complete": False}
-    arrays = _describe(store, about)
-    return zarr.open_group(store, mode="r+"), arrays, about, stored is None
-
-
-def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
-    """Write the metadata that follow from ``about``; return the axes of the arrays by name."""
-    zarr = import_extra("zarr", "store")
-    group = described(about)
-
-    async def copy() -> None:
-        kind = zarr.core.buffer.default_buffer_prototype()
-        # The metadata of the group come first: they show that the place is taken.
-        for name in sorted([name async for name in group.store.list()], key=lambda n: n.count("/")):
-            await store.set(name, await group.store.get(name, kind))
-
-    sync(copy())
-    arrays = (array for _, array in group.members(max_depth=None) if isinstance(array, zarr.Array))
-    return {array.path: array.metadata.dimension_names for array in arrays}
+    metadata, kind = described(about).store, zarr.core.buffer.default_buffer_prototype()
+    # Those of the group come first: they show that the place is taken.
+    for name in sorted(listed(metadata.list_prefix), key=lambda name: name.count("/")):
+        document: Any = sync(metadata.get(name, kind))
+        sync(store.set(name, document))
+    return zarr.open_group(store, mode="r+"), about, stored is None
 
 
 def _remove(store: Store) -> None:
@@ -316,7 +307,6 @@ class _Run:
 
     place: str
     group: Any
-    arrays: Mapping[str, Sequence[str]]
     about: dict[str, Any]
     progress: bool
     name: str = field(default_factory=lambda: uuid.uuid4().hex)
@@ -348,10 +338,7 @@ class _Run:
         *arguments: Any,
         new: bool = True,
     ) -> None:
-        """Run tasks, and raise when some have failed though they were tried again.
-
-        Each needs ``need`` bytes. Shards that are not ``new`` were counted when they were made.
-        """
+        """Run tasks that need ``need`` bytes each, and raise when some have failed."""
         if new:
             self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
         named = [(self.place, self.name, task) for task in tasks]
@@ -377,17 +364,6 @@ class _Run:
             ) from first
 
 
-def _existing_units(run: _Run, name: str) -> Iterator[Part | TileTask]:
-    axes, (top, _, kind) = run.arrays[name], name.partition("/")
-    if kind in (FLOW, VALUES):
-        for step, row, column, *_ in run.shards(name):
-            yield TileTask(TileKey(int(top), row, column), (step,))
-    elif {"j", "i"} <= {*axes}:
-        for numbers in run.shards(name):
-            step, row, column = (numbers if axes[0] == "time" else (0, *numbers))[:3]
-            yield Part(int(top), step, row, column)
-
-
 def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
     """Write level 0; the first step comes first, as it determines the valid nodes."""
     existing, parts = _existing_parts(run, 0), _missing_parts(run, 0, source.shape)
@@ -408,8 +384,7 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
     fingerprint = digest(digests, words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         raise ChangedError(
-            f"{run.place} was built from an earlier version of the field; build with fresh=True "
-            "to replace it"
+            f"{run.place} was built from an earlier version of the field; build with fresh=True"
         )
     run.update(fingerprint=fingerprint)
 

@@ -162,10 +162,7 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
 
 
 def described(about: About, levels: Iterable[int] | None = None) -> Group:
-    """Return a group in memory with the arrays of levels, by default all, as they are written.
-
-    Its attributes are the field, and its levels as others read them.
-    """
+    """Return a group in memory with the arrays of levels, by default all, as they are written."""
     layout: list[dict[str, Any]] = [{"asset": "0", "transform": {"scale": [1.0, 1.0]}}]
     for level in range(1, about["depth"] + 1):
         step = {"scale": [2.0, 2.0], "translation": [0.0, 0.0]}
@@ -220,10 +217,7 @@ def _create_level(group: Group, level: int, about: About) -> None:
 def create_array(
     group: Group, name: str, dtype: str, axes: Mapping[str, tuple[int, ...]], *, nodal: bool = False
 ) -> None:
-    """Create an array by axes: the size, that of a chunk and, if the array has shards, of a shard.
-
-    In ``nodal`` arrays bits of equal significance lie side by side.
-    """
+    """Create an array by axes: sizes of it, of a chunk and, if any, of a shard."""
     codecs = import_extra("zarr.codecs", "store")
     packer = codecs.GzipCodec(level=GZIP_LEVEL)
     if nodal:
@@ -379,8 +373,7 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     version = about.get("format") if isinstance(about, dict) else None
     if version != FORMAT:
         raise PyramidError(
-            f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again, or "
-            "use the version of flowtex that wrote it"
+            f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again"
         )
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
     if not wrong and math.prod(level_shape(about["nodes"], about["depth"])) > MOST_ROOT_NODES:

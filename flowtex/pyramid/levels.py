@@ -73,8 +73,7 @@ class Levels:
             raise
         except Exception as error:
             raise PyramidError(
-                f"{self.place} contains no readable pyramid ({_error_text(error)}); build one with "
-                "flowtex.pyramid.build"
+                f"{self.place} contains no readable pyramid ({_error_text(error)}); build one"
             ) from None
         #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
@@ -260,8 +259,7 @@ class Levels:
         need, free = sum(map(_size, pieces, arrays)), available_bytes()
         if need > free:
             raise PyramidError(
-                f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
-                "of memory are available"
+                f"{pieces[0].name} of {self.place} takes {need:,} bytes of {free:,} available ones"
             )
 
         async def together() -> list[AnyArray]:

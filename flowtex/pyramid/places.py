@@ -219,15 +219,12 @@ def _remote_document(text: str) -> bytes:
 def check_room(place: str, names: Iterable[str]) -> None:
     """Raise a PyramidError where a build would write among other data, whose names these are."""
     if not is_remote(place) and Path(place).is_file():
-        raise PyramidError(
-            f"{place} is a file; expected a new folder, an empty one, or a flowtex store"
-        )
+        raise PyramidError(f"{place} is a file; expected a new or empty folder, or a store")
     others = sorted({*names} - {BUILDING})
     if others and not is_store(place):
         examples = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
         raise PyramidError(
-            f"{place} contains other data ({examples}); expected a new folder, an empty one, or a "
-            "flowtex store"
+            f"{place} contains other data ({examples}); expected a new or empty folder, or a store"
         )
 
 
@@ -302,8 +299,7 @@ def building(place: str) -> Iterator[None]:
     if holder.get("id") != own:
         raise PyramidError(
             f"{place} is being built by process {holder.get('process', '?')} on "
-            f"{holder.get('host', 'another machine')}; wait until it ends. If it is no longer "
-            f"running, delete {BUILDING} in the store and build again"
+            f"{holder.get('host', 'another machine')}; wait, or delete {BUILDING} if it has ended"
         )
     try:
         yield

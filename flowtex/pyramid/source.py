@@ -61,8 +61,7 @@ class FieldSource:
         if field.triangles is not None or field.sign_free:
             kind = "on triangles" if field.triangles is not None else "sign-free"
             raise FieldError(
-                f"the field is {kind}; expected a field on a structured surface that is not "
-                "sign-free"
+                f"the field is {kind}; expected one with signs on a structured surface"
             )
         self.field, self.shape = field, field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
@@ -108,10 +107,7 @@ class FieldSource:
 
 
 class RegionSource:
-    """A dataset of which each task reads a region.
-
-    Its ``field`` has the names, the times and the map, but no nodes.
-    """
+    """A dataset of which each task reads a region; its ``field`` has no nodes."""
 
     travels = True
     has_position = None
@@ -274,15 +270,13 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     except Exception as error:
         words = str(error) if isinstance(error, ReadFault) else fault_words(error)
         raise PyramidError(
-            f"{place} contains no readable pyramid ({words}); build one with "
-            "flowtex.pyramid.build, or give a Zarr group that xarray can open (on the web with "
-            "consolidated metadata, see zarr.consolidate_metadata)"
+            f"{place} contains no readable pyramid ({words}); build one, or give a Zarr group that "
+            "xarray can open (on the web see zarr.consolidate_metadata)"
         ) from None
     levels = [d for d in groups.values() if (components and components <= {*d}) or find_pairs([d])]
     if not levels:
         raise PyramidError(
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
-            "v in each level, or their names (on the web with consolidated metadata, see "
-            "zarr.consolidate_metadata)"
+            "v, or their names (on the web see zarr.consolidate_metadata)"
         )
     return sorted(levels, key=lambda level: -max(array.size for array in level.values()))

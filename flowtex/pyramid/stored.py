@@ -78,15 +78,13 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     levels = Levels(store)
     if not levels.about.get("levels_done"):
         raise PyramidError(
-            f"{levels.place} is incomplete, and its coarsest level is missing; run "
-            "flowtex.pyramid.build again to build the missing parts"
+            f"{levels.place} is incomplete: its coarsest level is missing; build it again"
         )
     stored = levels.template.uncertainty
     requested = uncertainty if isinstance(uncertainty, str) else "an array"
     if uncertainty is not None and requested not in (stored, stored.removeprefix(spread_name(""))):
         raise FieldError(
-            f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}; "
-            "set it when you build the store"
+            f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}"
         )
     root = root_of(levels)
 
@@ -176,8 +174,7 @@ class StoredPyramid(Pyramid):
             pairs.append((mean[coarse.valid][:, : velocity.shape[-1]], velocity))
         if not all(_agree(values, reference) for values, reference in pairs):
             raise PyramidError(
-                f"the nodes of tile {tuple(key)} of {stored.place} do not match those of the "
-                "level above it; build the store again"
+                f"tile {tuple(key)} of {stored.place} does not match the level above; build again"
             )
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:

@@ -98,9 +98,8 @@ def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None
     ):
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
         raise ChangedError(
-            f"{place} contains the pyramid of another field, or of an earlier version of this "
-            f"one: rows {rows}, columns {columns} differ at step {part.step}. Build with "
-            "fresh=True to replace it, or choose another place"
+            f"{place} contains the pyramid of another field, or of earlier values: rows {rows}, "
+            f"columns {columns} differ at step {part.step}. Build with fresh=True to replace it"
         )
 
 
@@ -238,10 +237,7 @@ def _writable(place: str, run: str) -> Arrays:
 
 
 def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
-    """Write the data of a tile for browsers at some steps; with step 0 also its surface.
-
-    The flow is the velocity where the client can trace it, else slices, as along pathlines.
-    """
+    """Write the data of a tile for browsers at some steps; with step 0 also its surface."""
     fingerprint = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
     data, at = None, key[1:]
@@ -281,8 +277,7 @@ def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts:
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
     if size > FILE_BYTES:
         raise PyramidError(
-            f"{name} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at "
-            "most. Build with lines='streamlines', or with fewer nodes"
+            f"{name} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at most"
         )
     array(name)[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
 
@@ -448,7 +443,6 @@ def _packed(value: object) -> bytes | None:
         data: bytes = import_extra("cloudpickle", "store").dumps(value)
     except Exception as error:
         raise PyramidError(
-            f"the dataset cannot be sent to the workers ({type(error).__name__}: {error}); open it "
-            "from a file or a store, or build without a scheduler"
+            f"the dataset cannot be sent to workers ({error}); build without a scheduler"
         ) from error
     return data if len(data) <= MOST_SENT else None

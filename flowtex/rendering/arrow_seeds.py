@@ -242,10 +242,7 @@ def _shares(key: Hashes) -> Floats:
 def vertex_data(
     geometry: SurfaceGeometry | TriangleGeometry, corners: Indices, place: Floats, radius: Floats
 ) -> dict[str, Floats]:
-    """Return the vertex attributes of seeds by name.
-
-    Seeds lie between the vertices at the ``corners`` (n, 4) of a cell.
-    """
+    """Return vertex attributes of seeds between vertices at the ``corners`` (n, 4) of a cell."""
     nodes = geometry.at_vertices(geometry.position)[corners].astype(float)
     across = np.cross(
         nodes[:, 1] + nodes[:, 3] - nodes[:, 0] - nodes[:, 2],
@@ -266,11 +263,7 @@ def vertex_data(
 def in_tile(
     pyramid: Pyramid, key: TileKey, geometry: SurfaceGeometry, places: Floats
 ) -> tuple[Bools, Indices, Floats]:
-    """Find places (n, 2), (i, j) of the root of a grid, in a tile.
-
-    Returns a mask of those inside, and of these the corners of their cells, (m, 4), and their
-    places in the cells.
-    """
+    """Return which places (n, 2) of a root lie in a tile, and the corners and places of cells."""
     lines = zip(pyramid.line_numbers(pyramid.depth), pyramid.line_numbers(key.level), strict=True)
     position = np.stack(
         [

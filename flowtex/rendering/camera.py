@@ -192,8 +192,7 @@ class Camera:
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):
                 raise FieldError(
-                    f"focus is {brief(focus)}; expected two or three coordinates in the mesh's "
-                    "units"
+                    f"focus is {brief(focus)}; expected two or three coordinates of the mesh"
                 )
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
@@ -363,10 +362,7 @@ class Camera:
         return result
 
     def project(self, points: ArrayLike, aspect: float) -> Floats:
-        """Return the positions in the view, (..., 2), of points of the mesh, (..., 3).
-
-        They are NaN for points behind the camera.
-        """
+        """Return positions in the view, (..., 2), of points (..., 3); NaN behind the camera."""
         # Relative to the focal point the digits are those of the view.
         offset = np.asarray(points, dtype=float) - np.asarray(self.focal_point)
         right, up, depth = (offset @ axis for axis in self.axes)

@@ -77,10 +77,7 @@ def land_cells(field: FlowField, *, tiled: bool = False) -> Bools:
 
 
 def globe_radius(field: FlowField) -> float | None:
-    """Return the radius of the sphere below a globe, which no cell reaches.
-
-    It is ``None`` for a map, and where the field covers all of the Earth.
-    """
+    """Return the radius of the sphere below a globe; ``None`` for a map or all of the Earth."""
     surface = field.surface
     if not surface.on_globe or surface.is_closed:
         return None

@@ -26,10 +26,7 @@ _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
 def shader_folder(package: Path = _PACKAGE) -> Path:
-    """Return the folder that holds the shaders of a package.
-
-    Raises a FileNotFoundError when neither an installed nor a checkout's folder is there.
-    """
+    """Return the folder that holds the shaders of a package, or raise a FileNotFoundError."""
     installed = package / "_shaders"
     if installed.is_dir():
         return installed
@@ -38,8 +35,7 @@ def shader_folder(package: Path = _PACKAGE) -> Path:
     if (checkout / "pyproject.toml").is_file() and (checkout / "shaders").is_dir():
         return checkout / "shaders"
     raise FileNotFoundError(
-        f"flowtex's shaders are missing: neither {installed} nor {checkout / 'shaders'} exists. "
-        "Install flowtex again: python -m pip install --force-reinstall --no-deps flowtex"
+        f"flowtex's shaders are missing in {installed} and {checkout / 'shaders'}: install it again"
     )
 
 
@@ -53,26 +49,19 @@ def shader_names() -> tuple[str, ...]:
 
 
 def shader_source(name: str) -> str:
-    """Return the text of one shader.
-
-    Raises a FileNotFoundError when the shader does not exist; the text lists those that there are.
-    """
+    """Return the text of one shader, or raise a FileNotFoundError."""
     path = shader_folder() / name
     # Listing all names takes longer than reading one, and is left to the error.
     inside = not any(part.startswith((".", "/")) for part in PurePosixPath(name).parts)
     if not inside or not path.is_file():
         raise FileNotFoundError(
-            f"the shader {name!r} does not exist; expected one of: "
-            f"{', '.join(shader_names()) or 'none'}"
+            f"the shader {name!r} does not exist; expected one of: {', '.join(shader_names())}"
         )
     return path.read_text(encoding="utf-8")
 
 
 def shader_text(name: str, variants: Iterable[str] = ()) -> str:
-    """Return a shader with its includes, and the names of variants defined before it.
-
-    Raises a FileNotFoundError when the file does not exist.
-    """
+    """Return a shader with its includes, and the names of variants defined before it."""
     defines = "".join(
         f"#ifndef {variant}\n#define {variant}\n#endif\n" for variant in sorted(set(variants))
     )

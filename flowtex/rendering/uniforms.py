@@ -72,11 +72,7 @@ def variants(
     near: bool = False,
     sparse: bool = False,
 ) -> frozenset[str]:
-    """Return the names of the shader's variant for a texture set.
-
-    The grains may change in time and be sparse, and the view may be so near that paths stay in
-    their cells.
-    """
+    """Return the names of the shader's variant for a texture set and what is seen of it."""
     flow = textures.geometry.field
     conditions = {
         "FLOWTEX_SPARSE": sparse,
@@ -122,10 +118,7 @@ def client_constants() -> dict[str, Any]:
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
-    """Return the uniforms by name.
-
-    ``moving``, ``near`` and ``sparse`` are not uniforms: shaders have variants for them.
-    """
+    """Return the uniforms by name, and ``moving``, ``near`` and ``sparse`` for the variant."""
     geometry = textures.geometry
     # A power of two, so that it is exact.
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
@@ -174,10 +167,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
 
 
 def is_moving(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
-    """Return whether the grains change in time: with a field that varies, or by the clock.
-
-    A sign-free field has no forward, so nothing streams; images stand still.
-    """
+    """Return whether grains change in time: in a field that varies, or streaming by the clock."""
     if textures.image is not None:
         return False
     streams = settings.motion != "off" and not textures.geometry.field.sign_free
@@ -201,10 +191,7 @@ def arrow_distance(settings: Settings) -> float:
 
 
 def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
-    """Return whether a path may be so short that it stays in a cell where the flow turns.
-
-    In perspective the nearest point of the surface counts, or of the ball around it.
-    """
+    """Return whether a path may be so short that it stays in a cell where the flow turns."""
     near, geometry = view.pixel, textures.geometry
     if view.eye[3]:
         to_focus = float(np.linalg.norm(view.eye[:3] - view.focus))
@@ -263,10 +250,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
 
 
 def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
-    """Return the noise's origin in space and in the finest cells of both families of lattices.
-
-    It is a lattice point near the focus that a float holds exactly.
-    """
+    """Return the noise's origin near the focus, in space and in the finest cells."""
     coarse, limit = 2**CLEAR_DOUBLINGS, 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     even = np.clip(np.rint(focus / finest / coarse), -limit, limit) * coarse + 0.0
     odd = even / np.sqrt(2.0)

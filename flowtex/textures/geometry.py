@@ -102,10 +102,7 @@ class NodeDisplacements:
     def _straight(
         self, nodes: Indices, along_i: Floats32, along_j: Floats32
     ) -> tuple[Floats32, Bools]:
-        """Return displacements (C, N) that are straight beyond the last known cell on their way.
-
-        The second value is whether the cell at the end of the way is known.
-        """
+        """Return displacements (C, N), straight beyond known cells, and whether they end in one."""
         start, along = np.stack([self._j, self._i])[:, nodes], np.stack([along_j, along_i])
         most = np.array(self._cells.shape)[:, None] - 1
         share = np.zeros(len(nodes), np.float32)
@@ -256,10 +253,7 @@ class DrawnSurface:
         return self.position_from(np.zeros(3))
 
     def position_from(self, anchor: Floats) -> Floats32:
-        """Return nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
-
-        Close to the anchor single precision resolves points that it would not from the middle.
-        """
+        """Return nodes in the frame relative to an anchor (3,), precise near it, (J, I, 3)."""
         local = (self.points - self.center) @ self.frame.T
         return np.asarray(local - anchor, dtype=np.float32)
 
@@ -344,10 +338,7 @@ class SurfaceGeometry(DrawnSurface):
         return faces_of(self.cells)
 
     def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return a function from displacements (J, I, 2) in cells to those in a frame, (C, J, I).
-
-        Its second argument is the error that is allowed.
-        """
+        """Return a function from displacements (J, I, 2) in cells and an error to (C, J, I)."""
         return NodeDisplacements(self.surface, frame, self.texels)
 
     @property

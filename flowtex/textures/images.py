@@ -98,8 +98,7 @@ def _fractions(array: AnyArray) -> Floats32:
     low, high = float(array.min()), float(array.max())
     if low < -SLACK or high > 1 + SLACK:
         raise ImageError(
-            f"the image's floats range from {low:g} to {high:g}; expected 0 to 1: divide by the "
-            "maximum, or pass uint8"
+            f"the image's floats range from {low:g} to {high:g}; expected 0 to 1, or uint8"
         )
     return np.asarray(np.clip(array, 0, 1), np.float32)
 
@@ -208,10 +207,7 @@ class ImageTextures:
 
 
 def coordinates(field: FlowField, *, even: bool = True) -> tuple[Floats, Floats]:
-    """Return the image coordinate of each line of nodes along i and along j.
-
-    It grows with the mean length of the lines, or with their number where it is not ``even``.
-    """
+    """Return the image coordinates of the lines of nodes, by mean length if ``even``."""
     p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
     lines = []
     for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
@@ -226,10 +222,7 @@ def coordinates(field: FlowField, *, even: bool = True) -> tuple[Floats, Floats]
 def texel_places(
     field: FlowField, lines: tuple[Floats, Floats], size: int
 ) -> tuple[Floats, Floats]:
-    """Return positions in index space and sizes in cells, (H, W, 2), of texels over a surface.
-
-    There are ``size`` along its longer side, and powers of two in about its proportion.
-    """
+    """Return positions in index space and sizes in cells, (H, W, 2), of texels."""
     tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
     lengths = [t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)]
     shares = np.maximum(lengths / np.max(lengths), 1 / 8) * size

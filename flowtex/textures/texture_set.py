@@ -52,10 +52,7 @@ AGREED = 0.99
 
 @dataclass(frozen=True, eq=False)
 class TextureSet:
-    """The data of a flow that a renderer needs, beside the settings.
-
-    Slopes are in image coordinates with an ``image``, and in space otherwise.
-    """
+    """The data of a flow for a renderer; slopes are in image coordinates with an image."""
 
     geometry: SurfaceGeometry | TriangleGeometry
     store: SliceStore
@@ -66,15 +63,11 @@ class TextureSet:
 
     @classmethod
     def build(cls, store: SliceStore, image: Floats32 | None = None) -> TextureSet:
-        """Make the textures, with an image in place of the noise or without.
-
-        Raises a FieldError where slices do not fit.
-        """
+        """Make the textures, maybe with an image; a FieldError where slices do not fit."""
         field = store.field
         if store.unit.shape != field.shape:
             raise FieldError(
-                f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
-                "slices traced in this field"
+                f"the slices have {store.unit.shape} nodes; expected {field.shape} of the field"
             )
         least = UNCERTAIN_LAYER if field.uncertainty else 2
         if not least <= len(store.lags) <= MOST_LAGS:
@@ -184,11 +177,7 @@ class TextureSet:
             self.__dict__.pop(name, None)
 
     def layers(self, step: int = 0, dtype: type = np.float16) -> AnyArray:
-        """Return texels of the slice texture for one destination time, (layers, H, W, 4).
-
-        They are rounded to half precision here: drivers may cut digits off, which would move a
-        critical point.
-        """
+        """Return texels (layers, H, W, 4) of a destination time, rounded here, not by drivers."""
         all_nodes = self.store.at(step)
         slices, tangent = all_nodes.part(*self.geometry.texels), self._tangent(all_nodes)
         result: AnyArray = np.empty((self.count, *self.geometry.size, 4), dtype)
@@ -285,9 +274,8 @@ def check_noise(field: FlowField, noise: str) -> None:
     """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
     if noise != "procedural" and field.triangles is not None:
         raise SettingsError(
-            f"noise is {noise!r}, which needs the rows and columns of a structured surface, but "
-            "this surface consists of triangles; expected noise='procedural', or a structured "
-            "mesh"
+            f"noise is {noise!r}, which needs the rows and columns of a structured surface; "
+            "expected noise='procedural' on triangles"
         )
 
 

@@ -116,10 +116,7 @@ class TriangleGeometry(DrawnSurface):
         return np.repeat(numbers.astype(np.float32), 3, axis=0)
 
     def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
-        """Return the values of a scalar at the drawn nodes, (..., 1, n), or triangles, (..., 1, m).
-
-        They are given at those of the field.
-        """
+        """Return the values of a scalar at the drawn nodes (..., 1, n) or triangles (..., 1, m)."""
         return values[..., self.members if on_cells else self.nodes]
 
     def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:

@@ -97,7 +97,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
 
 
 def test_unserializable_source_raises() -> None:
-    with pytest.raises(PyramidError, match="cannot be sent to the workers"):
+    with pytest.raises(PyramidError, match="cannot be sent to workers"):
         tasks._packed(n for n in range(3))
 
 

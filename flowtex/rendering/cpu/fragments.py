@@ -104,10 +104,7 @@ class Fragments:
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
-    """Return the longest and the shortest side of a pixel's footprint, (N,) each.
-
-    They follow from derivatives, (N, C).
-    """
+    """Return longest and shortest side of a pixel's footprint, (N,), by derivatives (N, C)."""
     aa, bb, ab = (np.einsum("nc,nc->n", p, q) for p, q in ((dx, dx), (dy, dy), (dx, dy)))
     # |dx x dy|^2, whatever the number of channels is.
     square = np.maximum(aa * bb - ab * ab, 0.0)
@@ -118,10 +115,7 @@ def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
 
 
 def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
-    """Return positions with derivatives on the smooth surface instead of its facets.
-
-    Positions and normals have three channels; ``eye`` is ``u_eye``, (4,).
-    """
+    """Return positions with derivatives on the smooth surface; ``eye`` is ``u_eye``, (4,)."""
     ray = _unit(eye[:3] - eye[3] * position.value)
     toward = _unit(normal.value)
     facing = np.einsum("nc,nc->n", toward, ray)

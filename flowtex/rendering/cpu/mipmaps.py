@@ -41,10 +41,7 @@ class Mips:
         return len(self._heights) - 1
 
     def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:
-        """Look up channels, (N, C), at (u, v) from 0 to 1 across the texture, (N, 2).
-
-        Mip levels (N,) are linear between whole ones, and clamped to those that there are.
-        """
+        """Look up channels, (N, C), at (u, v) from 0 to 1, (N, 2), between mip levels (N,)."""
         clamped = np.clip(level, 0, self.levels)
         base = clamped.astype(np.intp)
         late = clamped - base

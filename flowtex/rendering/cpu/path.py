@@ -52,11 +52,7 @@ class TriangleSlices(Slices):
 
 @dataclass(frozen=True, eq=False)
 class AxisSlices(Slices):
-    """The slice texture of a field in which v and -v mean the same, at its finest level.
-
-    Texels around a fragment that point against the others are reversed: their two sides
-    change places, and their slopes the sign.
-    """
+    """The finest slices of a field without sign: texels against the others are reversed."""
 
     size: tuple[float, float] = (1.0, 1.0)
     lags: int = 0

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
-from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
@@ -50,17 +49,13 @@ class Picture:
     def rgb(
         self, colour: ArrayLike = (0.627, 0.627, 0.627), background: ArrayLike = (1.0, 1.0, 1.0)
     ) -> Bytes:
-        """Colour the picture, without lights, which only the other renderers have.
-
-        The colour of the surface is one, (3,), or one for each pixel, (H, W, 3), from 0 to 1.
-        Raises a FieldError when a colour has another shape or lies outside 0 to 1.
-        """
+        """Colour the picture, without lights; the surface by one colour or (H, W, 3), 0 to 1."""
         shape = (*self.covered.shape, 3)
-        below = _colours("colour", colour, shape)[self.covered]
+        below = np.broadcast_to(np.asarray(colour, dtype=float), shape)[self.covered]
         if self.settings.show_level:
             below = level_colour(self.noise_level[self.covered])
         lay = shade if self.value.ndim == 2 else paint
-        result = _colours("background", background, (3,)) * np.ones(shape)
+        result = np.full(shape, background, dtype=float)
         result[self.covered] = lay(below, self.value[self.covered], self.settings)
         return np.rint(result * 255.0).astype(np.uint8)
 
@@ -156,14 +151,3 @@ def _image(data: AnyArray, pixel: Indices, size: tuple[int, int]) -> Floats:
     result = np.full((height * width, *data.shape[1:]), np.nan)
     result[pixel] = data
     return result.reshape(height, width, *data.shape[1:])
-
-
-def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:
-    numbers = np.asarray(value, dtype=float)
-    if numbers.shape not in ((3,), shape) or not ((numbers >= 0) & (numbers <= 1)).all():
-        shapes = " or ".join(map(str, dict.fromkeys([(3,), shape])))
-        wrong = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
-        raise FieldError(
-            f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
-        )
-    return np.broadcast_to(numbers, shape)

@@ -45,10 +45,7 @@ def tone(value: Floats, contrast: float) -> Floats:
 
 
 def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:
-    """Lay a picture over colours as for :func:`shade`, as ``flowtexPaint`` does.
-
-    The picture is red, green and blue times opacity, and opacity, (..., 4).
-    """
+    """Lay a picture, colours times opacity and opacity (..., 4), over colours."""
     strength = (
         const.LEVEL_STRENGTH * settings.strength if settings.show_level else settings.strength
     )

@@ -55,11 +55,7 @@ class Side:
     scale: Floats  #: Nominal length of a unit of lag, (N,).
 
     def step(self, lag: Floats) -> Floats:
-        """Lag to the next sample from lags (N,): equation 3, with the speed at the sample.
-
-        From a point nearly at rest the path does not jump: it is at least as fast as it will soon
-        be.
-        """
+        """Lag to the next sample (equation 3); nearly at rest, as fast as it will soon be."""
         step = self.spacing / self.scale
         least = np.maximum(np.sqrt(self.path.bend * step), const.LEAST_SPEED)
         return np.asarray(step / np.maximum(self.path.speed(lag), least))
@@ -70,10 +66,7 @@ LookupMaker = Callable[[Fragments, Values], Lookup]
 
 
 def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> Floats:
-    """Weights (N,) on a side, -1 behind the particle, at t from 0 there to 1 past the last sample.
-
-    ``parting`` (N,) is how paths part, from 0 to 1 where they begin.
-    """
+    """Weights (N,) on a side, -1 or 1, at t from 0 to 1; ``parting`` (N,) from 0 to 1."""
     none = 0.0 * parting
     if values["u_kernel"] == const.KERNEL_BOX:
         return none + 1.0
@@ -100,20 +93,14 @@ def shared(apart: Floats, near: Floats) -> Floats:
 
 
 class Summing:
-    """The loop over the samples of some fragments; values are the uniforms.
-
-    With ``by_lag``, slopes are in image coordinates per unit of lag, not of length.
-    """
+    """The loop over samples of fragments; ``by_lag`` with slopes in image coordinates."""
 
     def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, by_lag: bool) -> None:
         self._slices, self._values, self._lookup, self._by_lag = slices, values, lookup, by_lag
         self._lags = np.asarray(values["u_lags"])
 
     def texture(self, coordinate: Places, level: Floats, by: Floats) -> Floats:
-        """Texture of the fragments at places in the slices and mip levels (N,).
-
-        ``by`` is the change of their coordinates by a vector, (N, 2, 3).
-        """
+        """Texture at places and mip levels (N,); ``by`` is their change by a vector, (N, 2, 3)."""
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
@@ -158,10 +145,7 @@ class Summing:
         return np.asarray(0.5 * change)
 
     def faded(self, coordinate: Places, level: Floats, certainty: Floats) -> Floats:
-        """Return the factor of the texture, (N,), less than 1 for uncertain or slow flow.
-
-        A particle at rest has no direction, and no texture.
-        """
+        """Return the factor of the texture, (N,), less for uncertain or slow flow, 0 at rest."""
         speed = np.linalg.norm(self._slices.layer(coordinate, 0, level)[:, :3], axis=-1)
         share = (speed >= const.LEAST_SPEED) * (const.FADED + (1 - const.FADED) * certainty)
         if self._values["u_fade"] > 0:

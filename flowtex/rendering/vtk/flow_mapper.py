@@ -96,10 +96,7 @@ class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
 
 
 def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData) -> FlowMapper:
-    """Give an actor a polygon mapper that is coloured by a point array of its mesh by name.
-
-    PyVista's mapper relies on the active array of its own mesh instead.
-    """
+    """Give an actor a mapper that is coloured by a point array of its own mesh, by name."""
     mapper = FlowMapper(mesh)
     mapper.ShallowCopy(actor.mapper)
     mapper.SetInputData(mesh)
@@ -149,10 +146,7 @@ class MappedColours(NamedTuple):
 
     @classmethod
     def of(cls, mapper: vtkMapper, mesh: pv.PolyData, flat: str | None) -> MappedColours | None:
-        """Return the colours of a mapper, or None where its mesh is not coloured by a table.
-
-        ``flat`` is the name of the array whose values belong to cells.
-        """
+        """Return the colours of a mapper, if a table gives them; ``flat`` is the array on cells."""
         name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
         values = mesh.GetPointData().GetArray(name) if name else None
         table = mapper.GetLookupTable()
@@ -182,10 +176,7 @@ class MappedColours(NamedTuple):
         return np.stack([shares, has_value], axis=-1).astype(np.float32)[None]
 
     def colours(self) -> Floats32:
-        """Return texels (1, 1, N + 3, 4): below the range, its N colours, above, without value.
-
-        They are those of :attr:`ColourScale.texels`.
-        """
+        """Return :attr:`ColourScale.texels` (1, 1, N + 3, 4) of the table."""
         if isinstance(self.table, NormTable):
             return self.table.texels[None, None]
         count = max(int(self.table.GetNumberOfAvailableColors()), 1)

@@ -114,10 +114,7 @@ class FlowSurface:
         return self._base.view
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Draw frames with the tiles that are ready, and notify from a thread when more are.
-
-        Otherwise a frame waits for the tiles that it requests, except in an interactive window.
-        """
+        """Draw frames with the tiles that are ready, and notify from a thread when more are."""
         self._notify = notify
 
     @property
@@ -227,10 +224,7 @@ class FlowSurface:
             layer.after_frame()
 
     def _choose(self, view: TileView) -> tuple[dict[TileKey | None, list[TileKey]], bool]:
-        """Return the tiles to draw with the finer ones that cover parts, and request others.
-
-        The second value is whether tiles cover all that is seen of the surface.
-        """
+        """Return the tiles to draw, those that cover parts of them, and whether they cover all."""
         loader = self._loader
         if loader is None:
             return {None: []}, False

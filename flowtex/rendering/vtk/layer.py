@@ -166,11 +166,7 @@ class FlowLayer:
         self._variant = None
 
     def set_moment(self, before: int, after: int, between: float) -> None:
-        """Show the time between two destination times of the slices.
-
-        Once something has been drawn, the slices that come next in the direction in which the
-        time has moved are prepared.
-        """
+        """Show the time between two steps; the next ones in its direction are prepared."""
         old_time = self.view.time
         if between and not self.view.between:
             self._retire("u_slicesNext")  # a placeholder
@@ -393,10 +389,7 @@ class FlowLayer:
             self._write_position()
 
     def choose_levels(self, renderer: Any, view: TileView) -> Ints:
-        """Return the coarsest levels of the mesh that the view allows, (block rows, columns).
-
-        Blocks that are out of view have -1.
-        """
+        """Return the coarsest levels (block rows, columns) that the view allows, -1 out of view."""
         prop = self.actor.prop
         levels = self.mesh_levels.levels(view.eye, view.half_height, renderer.GetSize()[1])
         if prop.show_edges or prop.style != "Surface":
@@ -453,10 +446,7 @@ _last: weakref.WeakKeyDictionary[vtkOpenGLRenderWindow, weakref.ref[FlowLayer]] 
 
 
 def is_deferred(actor: pv.Actor, renderer: Any, textures: TextureSet) -> bool:
-    """Return whether passes before the frame can sum the pixels of an actor.
-
-    What is seen through it has pixels of its own, and passes of the renderer's may have others.
-    """
+    """Return whether passes before the frame can sum the pixels of an actor."""
     return bool(
         textures.image is None
         and actor.prop.opacity == 1

@@ -117,10 +117,7 @@ class DeferredPasses:
         state.Pop()
 
     def places(self, layer: FlowLayer) -> Floats32:
-        """Return places (N, 4) that are seen of a layer by itself, with all of its triangles.
-
-        There are enough pixels to find what covers a few of them.
-        """
+        """Return places (N, 4) of enough pixels that are seen of a layer by itself."""
         renderer = self._renderer()
         assert renderer is not None
         if self._alone is None or self._alone[0]() is not layer:
@@ -169,10 +166,7 @@ class DeferredPasses:
 
 
 def _part_of(window: vtkOpenGLRenderWindow, renderer: pv.Renderer) -> tuple[Ints, Ints]:
-    """Return the corner and the size of a renderer in the pixels that a window draws, (2,) each.
-
-    Of a large picture it draws one part after another.
-    """
+    """Return corner and size of a renderer in the pixels of the window's present part, (2,)."""
     whole, tile = np.array(window.GetSize()), np.reshape(window.GetTileViewport(), (2, 2))
     shown = np.clip(np.reshape(renderer.GetViewport(), (2, 2)), tile[0], tile[1]) - tile[0]
     low, high = np.floor(shown * whole + 0.5).astype(int)

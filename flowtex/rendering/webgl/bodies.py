@@ -49,10 +49,7 @@ class Label:
 
 @dataclass(frozen=True)
 class Light:
-    """A distant light: the unit vector towards it, and red, green and blue.
-
-    One that ``turns`` with the camera lies to its right, upwards, and towards the eye.
-    """
+    """A distant light: unit vector and colour; one that ``turns`` does so with the camera."""
 
     way: tuple[float, ...]
     color: tuple[float, ...]

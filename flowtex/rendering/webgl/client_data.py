@@ -272,10 +272,7 @@ class ClientData:
         return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
     def step(self, step: int) -> Parts:
-        """Return the arrays of one destination time, the smallest first.
-
-        Traces are made if necessary. Raises an IndexError when the step does not exist.
-        """
+        """Return the arrays of one time, the smallest first; an IndexError if there is none."""
         if not 0 <= step < self.steps:
             raise IndexError(f"time step {step} does not exist: expected 0 to {self.steps - 1}")
         parts = self.values(step)
@@ -298,10 +295,7 @@ class ClientData:
         return self.marks.parts(kind, self.source(step), step, self.textures.geometry)
 
     def values(self, step: int, *, shown: bool = False) -> Parts:
-        """Return the values of one destination time, or only those that are shown.
-
-        Those that do not vary are of all times, and called those of the first.
-        """
+        """Return the values of one destination time, or only those that are shown."""
         parts: Parts = {}
         if self.formula is not None:
             return parts
@@ -432,10 +426,7 @@ def single(values: Floats) -> Floats32:
 
 
 def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
-    """Return the arrays of a tile for some times, or of one of which nothing is drawn.
-
-    Its own header is among them, as JSON.
-    """
+    """Return the arrays of a tile for some times, with its header as JSON; None is empty."""
     text = json.dumps(None if tile is None else tile.tile_header)
     parts: Parts = {"header": np.frombuffer(text.encode(), np.uint8)}
     if tile is not None:

@@ -86,10 +86,7 @@ def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts
 
 
 def dates_of(field: FlowField, times: Floats) -> Header:
-    """Return the date at time 0 as ISO text, or those of all times in its own calendar.
-
-    ``step`` is the precision of dates: the shortest time between two of them.
-    """
+    """Return the date at time 0 in ISO 8601, or all in another calendar, and the least step."""
     start = field.start
     if start is None:
         return {"start": None, "dates": [], "step": 0.0}

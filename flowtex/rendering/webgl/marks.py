@@ -36,10 +36,7 @@ SIDE = 1  #: Flag of the second side of a saddle.
 
 
 class KindMark(NamedTuple):
-    """The colour of a kind of critical point, and whether the flow turns there: a ring, not a disc.
-
-    Sources are warm, sinks cold.
-    """
+    """The colour of a kind of critical point, and whether the flow turns there: a ring."""
 
     color: str
     turns: bool = False
@@ -78,10 +75,7 @@ LINE_PX = (3.6, 2.0)  #: Widths in pixels of the rim of a line and of its colour
 def strokes(
     structure: Structure, settings: Settings, step: int, window: Floats | None = None
 ) -> Iterator[tuple[Floats, str, float, int]]:
-    """Yield pieces (N, 2, 3) of lines, and dots whose ends are one, as the settings request them.
-
-    Each has a colour, a width in pixels, and the number of lines that it hides.
-    """
+    """Yield pieces (N, 2, 3) of lines and dots, a colour, a width in pixels, and the order."""
     lines: list[tuple[Floats, str, int]] = []
     if settings.nullclines:
         found = zip(structure.nullclines(step, window), NULLCLINE_COLORS.values(), strict=True)

@@ -69,10 +69,7 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
 
 
 def file_infos(file: bytes) -> tuple[list[Header], int]:
-    """Return the descriptions of the parts of a file, and where its arrays begin.
-
-    Of the file the beginning will do. Raises a ValueError when they are cut short or no JSON.
-    """
+    """Return the descriptions of the parts of a file, and where its arrays begin."""
     start = 4 + int.from_bytes(file[:4], "little")
     return json.loads(file[4:start]), start
 

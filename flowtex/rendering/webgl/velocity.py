@@ -105,10 +105,7 @@ def half(values: AnyArray) -> Halves:
 
 
 def can_trace(textures: TextureSet) -> bool:
-    """Return whether a client can trace a flow: on a structured surface, with signs.
-
-    Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
-    """
+    """Return whether a client can trace a flow: on a structured surface, with signs."""
     field, store = textures.geometry.field, textures.store
     structured = isinstance(textures.geometry, SurfaceGeometry) and textures.image is None
     if not structured or field.sign_free or store.given:
