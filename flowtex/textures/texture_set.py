@@ -67,7 +67,7 @@ class TextureSet:
         field = store.field
         if store.unit.shape != field.shape:
             raise FieldError(
-                f"the slices have {store.unit.shape} nodes; expected {field.shape} of the field"
+                f"the slices have {store.unit.shape} nodes and the field {field.shape}; trace it"
             )
         least = UNCERTAIN_LAYER if field.uncertainty else 2
         if not least <= len(store.lags) <= MOST_LAGS:
@@ -274,8 +274,8 @@ def check_noise(field: FlowField, noise: str) -> None:
     """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
     if noise != "procedural" and field.triangles is not None:
         raise SettingsError(
-            f"noise is {noise!r}, which needs the rows and columns of a structured surface; "
-            "expected noise='procedural' on triangles"
+            f"noise is {noise!r}, which needs rows and columns, but this surface consists of "
+            "triangles; expected noise='procedural'"
         )
 
 
