@@ -273,11 +273,7 @@ def plain_faults() -> Iterator[None]:
 
 @contextmanager
 def building(place: str) -> Iterator[None]:
-    """Mark a store as being built; a PyramidError when another build has marked it.
-
-    The mark is an object of the store with the name of its process. A process of this machine that
-    has ended has left it behind, so it is removed.
-    """
+    """Mark a store as being built; a PyramidError when another build that runs has marked it."""
     from zarr.core.buffer import default_buffer_prototype
 
     store, kind = store_at(place, read_only=False), default_buffer_prototype()

@@ -46,13 +46,12 @@ MOST_SAMPLES = 1 << 20
 
 
 class FieldSource:
-    """A field in the memory of the process that builds.
+    """A field in the memory of the process that builds, with nodes (J, I) of a ``shape``.
 
-    It has nodes (J, I) of a ``shape``, and the time steps of ``scalars``. ``flat`` is whether nodes
-    and velocities lie in a plane of even height, ``rectilinear`` whether two lines of coordinates
-    give all positions, ``late`` whether steps are read when they are needed, and ``travels``
-    whether a remote worker can read it. ``has_position`` marks the nodes with a known position;
-    ``None`` means all.
+    ``scalars`` are numbers of steps. ``flat`` is whether it lies in a plane of even height,
+    ``rectilinear`` whether two lines give all positions, ``late`` whether steps are read when they
+    are needed, ``travels`` whether a remote worker can read it, ``has_position`` ``None`` if all
+    have.
     """
 
     travels = False

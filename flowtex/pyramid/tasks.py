@@ -427,11 +427,7 @@ def _run_task(task: tuple[Any, ...], *, function: Callable[..., None], inputs: l
 
 @cache
 def _set_allocator() -> None:
-    """Let a worker return freed memory.
-
-    Otherwise half of it stays with the allocator, and Dask pauses the worker for good. The setting
-    of Dask's nannies returns everything, but tasks take half as long again.
-    """
+    """Let a worker return freed memory, or Dask pauses it; its own setting is slower."""
     with suppress(OSError, AttributeError):  # of another C library
         libc = ctypes.CDLL("libc.so.6")
         for parameter, value in (TRIM, MMAP):

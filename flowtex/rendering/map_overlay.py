@@ -41,11 +41,7 @@ def map_box(field: FlowField) -> Floats:
 
 
 def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
-    """Return the coasts and the graticule of a field that has a projection, by their options.
-
-    They end where its cells and land do. Where there is a globe below the field, coasts and wide
-    meshes of the graticule are on all of it.
-    """
+    """Return coasts and graticule by their options; they end where cells and land do."""
     projection, box = field.projection, map_box(field)
     if projection is None:
         return {}

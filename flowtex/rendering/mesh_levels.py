@@ -65,9 +65,8 @@ class MeshLevels:
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0 has every node.
 
-        The eye is (3,), in the coordinates of the points, or ``None`` where all rays are parallel;
-        half the height of what is seen is a length then, and else for a distance of one. The
-        picture is so many ``pixels`` high.
+        The eye is (3,), or ``None`` where all rays are parallel; half the height of what is seen is
+        a length then, and else for a distance of one. The picture is so many ``pixels`` high.
         """
         radius, cell_size = self.blocks[..., 3], self.blocks[..., 4]
         distance = np.ones(radius.shape)
@@ -88,9 +87,9 @@ class MeshLevels:
     def triangles(self, levels: Ints, joins: Ints | None = None) -> Indices:
         """Return the nodes of the triangles, (N, 3), numbered row by row.
 
-        Levels are those of :meth:`levels`; -1 leaves a block out. Joins are the levels of the
-        borders below, above, left and right of each block, (4, block rows, block columns), no finer
-        than its own; by default the coarser one of both its sides.
+        A level of -1 leaves a block out. Joins are the levels of the borders below, above, left and
+        right of each block, (4, block rows, block columns); by default the coarser one of both
+        sides.
         """
         if joins is None:
             whole = Region(0, 0, 0, levels)
@@ -298,11 +297,7 @@ def _snapped(places: Ints, level: Ints) -> Ints:
 
 
 class TriangleBlocks:
-    """The triangles of a surface that has no rows and columns, by the blocks that they lie in.
-
-    Its levels of detail are other surfaces, so all of a block is drawn or nothing. A triangle may
-    lie in several blocks, and is drawn where one of them is.
-    """
+    """The triangles of a surface without rows and columns, drawn by blocks as a whole."""
 
     def __init__(self, geometry: TriangleGeometry) -> None:
         #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).

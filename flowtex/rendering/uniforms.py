@@ -220,11 +220,7 @@ def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
 
 
 def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values:
-    """Return the motion of grains: by the time of a field that varies, or by the clock.
-
-    Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
-    follow a streak before it has changed.
-    """
+    """Return the motion of grains: by the time of a field that varies, or by the clock."""
     store = textures.store
     if store.steps > 1:
         # About the time in which the flow crosses the surface, a whole share of the series, so that

@@ -31,11 +31,7 @@ FARTHER = 3.0  #: How many times as far as on a straight surface a displacement 
 
 
 class NodeDisplacements:
-    """Map from displacements in index space to those in space, for some nodes of a surface.
-
-    The rows of ``frame`` (C, 3) take a vector to the frame of the results; ``nodes`` are rows and
-    columns of the surface.
-    """
+    """Map from displacements in index space to those in a frame (C, 3), for some nodes."""
 
     def __init__(
         self,
@@ -61,11 +57,7 @@ class NodeDisplacements:
         self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
-        """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
-
-        Terms of the cubics may be left out up to ``error``. Beyond nodes without a position, as
-        between the parts of a map, the surface continues straight.
-        """
+        """Return displacements (C, J, I) of those (J, I, 2) in cells, up to an error."""
         rows, columns = self._shape
         along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
         if self._linear:
@@ -181,11 +173,7 @@ class Padding:
 
 
 class DrawnSurface:
-    """Base of surfaces of both kinds: the frame in which they are drawn.
-
-    ``whole`` is the surface of which the drawn part of ``field`` is a part, ``points`` are the
-    nodes that are drawn, (J, I, 3).
-    """
+    """Base of surfaces of both kinds: the frame of the ``whole`` in which they are drawn."""
 
     field: FlowField
     whole: Surface

@@ -47,14 +47,11 @@ class ImageError(SettingsError):
 
 
 def as_picture(image: Any) -> Floats32:
-    """Check an image and return its texels.
+    """Check an image and return its texels, (h, w, 4): colours times opacity, and opacity.
 
-    It is grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4), row 0 at the top: whole
-    numbers without sign from 0 to their greatest, floats from 0 to 1, or booleans. Raises an
-    ImageError for another array, an empty one, NaN, and values out of range.
-
-    Texels are (h, w, 4) in single precision: red, green and blue times opacity, and opacity, from 0
-    to 1. Row 0 is the bottom, as j grows upward. There are no more than :data:`LARGEST` on a side.
+    The image is grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4), row 0 at the top:
+    whole numbers without sign, floats from 0 to 1, or booleans. Raises an ImageError for another
+    one. Row 0 of the texels is the bottom. There are no more than :data:`LARGEST` on a side.
     """
     try:
         array = np.asarray(image)

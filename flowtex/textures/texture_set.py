@@ -280,11 +280,7 @@ def check_noise(field: FlowField, noise: str) -> None:
 
 
 class LayerPrefetch:
-    """Layers of a texture set by destination time, one of them computed before it is needed.
-
-    That takes longer than a frame. A thread computes those of the first picture while its mesh and
-    shaders are made, and then those of the next step in the direction of time.
-    """
+    """Layers of a texture set by time, one of them computed by a thread before it is needed."""
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures

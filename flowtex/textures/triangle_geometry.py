@@ -21,9 +21,9 @@ from flowtex.textures.geometry import DrawnSurface
 class TriangleGeometry(DrawnSurface):
     """Triangles ready to be drawn.
 
-    Nodes fill the texels of a texture row by row, in any order: a fragment looks up the three of
-    its triangle by their numbers. So each triangle has three vertices to itself, each with the
-    numbers of the three nodes and the shares of the second and the third.
+    Nodes fill the texels of a texture row by row. A fragment looks up the three of its triangle, so
+    each has three vertices with the numbers of its nodes and the shares of the second and the
+    third.
     """
 
     field: FlowField  #: The flow, with nodes (1, N).
@@ -60,11 +60,7 @@ class TriangleGeometry(DrawnSurface):
         whole: Surface,
         blocks: tuple[NDArray[np.uint16], Floats] | None = None,
     ) -> TriangleGeometry:
-        """Lay out some nodes (n,) and triangles (m, 3) of a field, as a part of a larger surface.
-
-        ``members`` (m,) are the triangles' numbers. The triangles have numbers of the field's
-        nodes, and are drawn as one block unless there are ``blocks`` with their places.
-        """
+        """Lay out nodes (n,) and triangles (m, 3), ``members``, as part of a larger surface."""
         number = np.zeros(field.shape[1], dtype=np.intp)
         number[nodes] = np.arange(len(nodes))
         blocks = blocks or _one_block(field.surface.points[0], triangles)

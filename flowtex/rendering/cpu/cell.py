@@ -13,11 +13,7 @@ from flowtex.rendering.uniforms import Values
 
 
 class CellPath:
-    """Paths of N fragments that follow the velocity of the nodes around each.
-
-    Places are texture coordinates (N, 2), or places in triangles; ``reach`` is the length of a side
-    of the paths, (N,), and ``values`` are the uniforms.
-    """
+    """Paths (N,) that follow the velocity of the nodes around; ``reach`` is a side's length."""
 
     def __init__(self, slices: Slices, coordinate: Places, reach: Floats, values: Values) -> None:
         if isinstance(coordinate, TrianglePlaces):

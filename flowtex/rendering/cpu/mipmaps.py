@@ -11,10 +11,8 @@ class Mips:
     """A texture array, or an image as an array of one layer, with its mip levels.
 
     The texels are (layers, H, W, C). A coarser level is the finer one, filtered linearly down to
-    half its size: the mean of blocks of two by two texels where sizes are even. Every level is
-    rounded to half precision, as a graphics card stores it. There are ``levels`` besides the
-    finest, by default all. The texture is periodic along (v, u) where ``repeat`` is true, and
-    otherwise clamped at its edges.
+    half its size, in half precision. There are ``levels`` besides the finest, by default all. The
+    texture is periodic along (v, u) where ``repeat`` is true, and otherwise clamped at its edges.
     """
 
     def __init__(

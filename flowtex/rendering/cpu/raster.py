@@ -53,11 +53,7 @@ class Coverage:
 
 
 def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
-    """Find the visible cells of a surface in a picture of some width and height in pixels.
-
-    Quads are cut along the diagonal from their first corner; cells with a node that is not valid
-    are left out. The corners count the nodes row by row: j times the number of columns, plus i.
-    """
+    """Find the visible cells of a surface in a picture of some width and height in pixels."""
     points = (surface.points - surface.center).reshape(-1, 3)
     matrix = camera.matrix(size[0] / size[1], surface.center)
     clip = points @ matrix[:, :3].T + matrix[:, 3]

@@ -72,12 +72,9 @@ def render(
 ) -> Picture:
     """Draw a flow texture with NumPy: slowly, in double precision, for any camera.
 
-    It is the same formula as the shaders in ``shaders/common``, with the same uniforms and the same
-    half-precision textures, so a picture of another renderer can be judged by it. The size is in
-    pixels, and the digits of the noise count from the camera's focal point.
-
-    The time lies between two destination times of the slices, ``steps``, as far as ``view.between``
-    tells; focus and eye of the view are those of the camera. A look-up is summed along the paths in
+    The formula, uniforms and half-precision textures are those of the shaders, so a picture of
+    another renderer can be judged by it. The size is in pixels. The time lies between two
+    destination ``steps`` as far as ``view.between`` tells. A look-up is summed along the paths in
     place of the noise.
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))

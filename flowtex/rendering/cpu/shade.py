@@ -25,11 +25,7 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
 
 
 def mean_colours(table: Bytes, settings: Settings) -> Bytes:
-    """Colours that a picture has on average where a map has those of a table, (N, 4), for a legend.
-
-    They are the mean over the values of a texture: chroma shrinks where it is dark and where it is
-    light. An image on the surface has its own colours.
-    """
+    """Colours that a picture has on average where a map has those of a table, (N, 4)."""
     if settings.noise == "image":
         return table
     shaded = table.copy()

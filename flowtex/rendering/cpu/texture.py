@@ -78,11 +78,7 @@ def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> F
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
-    """Variance of a sum over that of independent samples, (N,).
-
-    Two samples are this many grains ``apart``; ``near`` is the correlation of the weights with
-    those of the next sample. Both are (N,).
-    """
+    """Variance of a sum over that of independent samples, ``apart`` grains, weights ``near``."""
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
     for m in range(1, const.SHARED_TERMS + 1):
         d = m * m * np.square(apart)

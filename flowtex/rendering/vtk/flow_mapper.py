@@ -82,11 +82,7 @@ class Ends(NamedTuple):
 
 
 class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
-    """PyVista's mapper properties on ``vtkPolyDataMapper``.
-
-    PyVista's own mapper hides the polygon mapper inside ``vtkDataSetMapper``, where neither
-    vertex attributes nor the event before a draw can be reached.
-    """
+    """``vtkPolyDataMapper``, whose attributes and events PyVista's mapper hides."""
 
     ends = Ends()
 
@@ -131,11 +127,7 @@ def lookup_table(scale: ColourScale) -> pv.LookupTable:
 
 
 class MappedColours(NamedTuple):
-    """The colour map of a point array of a mesh, and textures in which fragments look values up.
-
-    Triangles would have to be as small as cells where colours are interpolated across them, and
-    triangles of a few pixels are shaded several times over.
-    """
+    """The colour map of a point array, and textures in which fragments look values up."""
 
     values: vtkDataArray  #: A value for each node.
     table: pv.LookupTable  #: The colour map.
@@ -160,11 +152,7 @@ class MappedColours(NamedTuple):
         return cls(values, table, low, high, name == flat, state)
 
     def shares(self, geometry: SurfaceGeometry | TriangleGeometry) -> Floats32:
-        """Return texels (1, J, I, 2): shares of the range, and 1; both 0 where there is no value.
-
-        Those of the nodes of triangles lie as in the slices. So interpolated, the first over the
-        second is the mean of those that are known.
-        """
+        """Return texels (1, J, I, 2): shares of the range, and 1; both 0 without a value."""
         nodal = vtk_to_numpy(self.values).astype(float)
         values = geometry.as_image(nodal, on_cells=self.on_cells)
         with np.errstate(all="ignore"):

@@ -74,11 +74,7 @@ class Scalars(NamedTuple):
 
 
 class FlowSurface:
-    """Draws a flow by an actor whose mesh comes from :func:`surface_mesh`, and by tiles.
-
-    Of a large surface, the textures are those of the root of its pyramid. Settings are read before
-    each frame.
-    """
+    """Draws a flow by an actor with a :func:`surface_mesh` and by tiles, as settings say."""
 
     def __init__(
         self,
@@ -378,11 +374,7 @@ class FlowSurface:
 
 
 class SurfaceArrows:
-    """The arrows of one surface, in its renderer while the settings ask for them.
-
-    Seeds are those of the whole surface, or of the coarsest level. Where a tile is drawn it draws
-    the arrows there, along its own paths.
-    """
+    """The arrows of one surface: those of the root, drawn by the finest tile there."""
 
     def __init__(self, renderer: pv.Renderer, settings: Settings) -> None:
         self._renderer, self._settings = weakref.ref(renderer), settings

@@ -64,10 +64,8 @@ def send_texture(
 ) -> vtkTextureObject:
     """Send a texture array with its mip levels to a window; an image is an array of one layer.
 
-    ``vtkTexture`` has neither arrays nor half precision, and of VTK's textures from memory the
-    arrays alone get mip levels. The texels (layers, H, W, channels), with 1, 2 or 4 channels, are
-    stored in half precision; 2 to 4 may be in ``single``. There are ``levels`` mip levels besides
-    the finest, by default all; ``repeat`` says whether the texture is periodic along (v, u).
+    The texels (layers, H, W, 1, 2 or 4) are stored in half precision, which ``vtkTexture`` has not;
+    2 to 4 may be in ``single``. There are ``levels`` mip levels besides the finest, by default all.
     """
     with np.errstate(over="ignore"):
         texels = np.ascontiguousarray(texels, np.float32 if single else np.float16)
@@ -105,9 +103,8 @@ STAGES = [(s, p) for s in ("vertex", "geometry", "fragment") for p in ("dec", "i
 class FlowLayer:
     """Draws a texture set on an actor whose mesh comes from :func:`surface_mesh`.
 
-    The actor's mapper draws polygons, and the camera of the renderer decides where precision is
-    needed. Settings are read before each frame. ``layers`` returns the layers of a destination time
-    in place of the texture set; levels of the mesh are made unless they are given.
+    Settings are read before each frame. ``layers`` returns the layers of a destination time in
+    place of the texture set; levels of the mesh are made unless they are given.
     """
 
     def __init__(
@@ -281,9 +278,8 @@ class FlowLayer:
     def rays(self, matrix: Floats, size: Ints) -> tuple[Floats, Floats, Floats]:
         """Return the corner of the picture, and its change by a pixel to the right and upwards.
 
-        They lie on the plane through the focus that is parallel to the picture, (3,) each, as
-        positions are given to shaders. The matrix (4, 4) leads from the world to the picture, whose
-        size is in pixels.
+        They lie on the plane through the focus, (3,) each, as positions are given to shaders. The
+        matrix (4, 4) leads from the world to the picture, whose size is in pixels.
         """
         geometry = self.textures.geometry
         place = np.eye(4)

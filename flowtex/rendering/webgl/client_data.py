@@ -179,11 +179,7 @@ class ClientData:
         time: float | None = None,
         clock: float = 0.0,
     ) -> Header:
-        """Return all that is not an array; plain Python, for JSON.
-
-        The camera is as :meth:`Camera.to_dict` has it, by default of the whole surface; the time
-        is in the field's own unit, by default the first; the clock of the streaming in seconds.
-        """
+        """Return all that is not an array, for JSON; by default of the whole and the first time."""
         return {
             **self.constants(),
             "settings": dict(settings) | self._parameters,

@@ -53,11 +53,10 @@ def part_buffer(array: AnyArray) -> memoryview:
 
 
 def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
-    """Return parts as one file.
+    """Return parts as one file; as ``planes``, except for texts, if gzip follows.
 
     It is the length of the descriptions as four bytes, the descriptions in JSON with the number of
-    bytes of each part, and the arrays one after the other; as ``planes`` if gzip follows, except
-    for texts.
+    bytes of each part, and the arrays one after the other.
     """
     infos, buffers = [], []
     for name, array in parts.items():

@@ -199,11 +199,7 @@ def _middle(textures: TextureSet, unit: float) -> Floats:
 
 
 def surface_parts(textures: TextureSet, depth: int) -> Parts:
-    """Return the arrays of the nodes that are the same at all times.
-
-    ``depth`` is the level of the root. Positions are multiples of a power of two, which are packed
-    well, and that of a node is the same at all levels unless single precision is coarser.
-    """
+    """Return the arrays of the nodes at all times, multiples of powers of two, by the depth."""
     geometry = textures.grid
     surface, unit = geometry.surface, _position_unit(textures, depth)
     parts: Parts = {"unit": half(_sizes(textures) / _size(textures))}
@@ -227,12 +223,10 @@ def _is_blanked(valid: Bools) -> bool:
 
 
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
-    """Return the velocity of one time, (J, I, 3 or 5).
+    """Return the velocity of one time, (J, I, 3 or 5), rounded as paths and colours allow.
 
-    The channels are the rate along i and j, in cells per length of a cell; the speed along the
-    surface, in multiples of the typical speed; and, if the field has an uncertainty of the
-    direction, the speed once more and that. All are rounded to the precision that paths and colours
-    need.
+    The channels are the rate along i and j, in cells per length of a cell; the speed, in multiples
+    of the typical speed; and, of an uncertain field, the speed once more and the uncertainty.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
@@ -257,11 +251,8 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
 def client_formula(textures: TextureSet) -> Formula | None:
     """Return the formula from which a client computes a flow itself, if it can.
 
-    It computes the rates at the nodes that it draws, and those of any level below: there is no
-    finest one. ``client/src/formula.ts`` is the other side.
-
     That is one in the plane, of texts alone, that has a value everywhere; and the field still has
-    the nodes and velocities that it was made with.
+    the nodes and velocities that it was made with. ``client/src/formula.ts`` is the other side.
     """
     field = textures.geometry.field
     formula = field.formula
