@@ -46,15 +46,13 @@ if TYPE_CHECKING:
     from zarr.abc.store import Store
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
-#: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
-SHARD_CHUNKS = (2, 4)
+SHARD_CHUNKS = (2, 4)  #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities.
 FILE_BYTES = 1 << 28  #: Most bytes of a file of parts.
 FILE_CHUNK = 1 << 20  #: Bytes of a chunk of such a file.
 MOST_HELD = 8  #: Time steps of a series up to which a reader holds all of them.
 GZIP_LEVEL = 4  #: Level of gzip; a higher one takes longer and gains little.
 ZSTD_LEVEL = 3  #: The same of Zstandard.
-#: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
-VELOCITY_BITS = 11
+VELOCITY_BITS = 11  #: Bits of velocities: the error is 2^-12 of themselves, as in halves.
 FLOW = "flow"  #: Array of the files with the flow of tiles.
 VALUES = "values"  #: Array of the files with the values that colour tiles.
 SURFACE = "surface"  #: Array of the files with the surface of tiles.

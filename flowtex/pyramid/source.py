@@ -41,8 +41,7 @@ from flowtex.textures.tiles.shared import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
 
 WHOLE_NODES = 2_000_000  #: Nodes up to which a dataset is opened as a whole.
-#: Nodes of a sample of one time, from which the ranges of colours are found.
-MOST_SAMPLES = 1 << 20
+MOST_SAMPLES = 1 << 20  #: Nodes of a sample of one time for ranges of colours.
 
 
 class FieldSource:

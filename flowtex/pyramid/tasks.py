@@ -61,17 +61,13 @@ from flowtex.trace.store import SliceStore
 #: Entries of the slices that are the same in all tiles, and in the header of the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 VALUE_SHARE = 2.0**-17  #: Error of a value as a share of the range that most of them have.
-#: Most memory of a task that makes a part of a level, as ``benchmarks/pyramid.py`` measures.
-PART_BYTES = 500_000_000
+PART_BYTES = 500_000_000  #: Most memory of a task that makes a part of a level.
 TILE_BYTES = 1_500_000_000  #: Most memory of a task that traces a tile or the root.
 OWN_BYTES = 500_000_000  #: Memory of a process for its imports.
 MOST_TRIALS = 3  #: Times that a task is tried.
-#: Parameter of glibc's ``mallopt`` for the free heap that it keeps, and its value in bytes.
-TRIM = (-1, 64 << 20)
-#: Parameter for the size from which an array has pages of its own, and its value in bytes.
-MMAP = (-3, 1 << 20)
-#: Most bytes sent to the workers of a cluster; a larger source contains its data.
-MOST_SENT = 64_000_000
+TRIM = (-1, 64 << 20)  #: Parameter of ``mallopt`` for the free heap that it keeps, in bytes.
+MMAP = (-3, 1 << 20)  #: The same for the size of arrays with pages of their own.
+MOST_SENT = 64_000_000  #: Most bytes sent to workers; a larger source contains its data.
 
 
 class TileTask(NamedTuple):

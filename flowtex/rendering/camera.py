@@ -26,19 +26,16 @@ from flowtex.field import Surface
 from flowtex.field.earth import EARTH_RADIUS
 
 Point = tuple[float, float, float]
-#: Attributes of a camera by name, for JSON: lists of numbers, numbers, and a bool.
-CameraValues: TypeAlias = dict[str, Any]
+CameraValues: TypeAlias = dict[str, Any]  #: Attributes of a camera by name, for JSON.
 
 ASIDE = (1.0, 1.0, 1.0)  #: Direction from a curved surface to the camera.
 UP = (0.0, 0.0, 1.0)  #: The direction up.
 #: The same for all of a globe: above longitude 0 and 20 degrees north.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
-#: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
-LEAST_ASIDE = 0.2
+LEAST_ASIDE = 0.2  #: Share of the radius from which a direction counts.
 MOST_LARGER = 4.0  #: Greatest ratio of the extents of two surfaces that share a camera.
 MOST_APART = 0.5  #: Greatest distance of their centres over the larger extent.
-#: Farthest that a camera may be, in extents of the surface: beyond, numbers end.
-FARTHEST_REACH = 1e9
+FARTHEST_REACH = 1e9  #: Farthest that a camera may be, in extents: beyond, numbers end.
 NEAREST_REACH = 1e-9  #: Nearest that a camera may be, in extents of the surface.
 
 
@@ -49,15 +46,11 @@ class CameraLimits:
     #: Greatest and least zoom relative to the whole surface; single precision ends beyond.
     deepest_zoom: float = 1e6
     farthest_zoom: float = 0.25
-    #: How many times closer a perspective camera comes than the distance that shows the whole
-    #: surface; beyond, its view angle narrows, so that nothing near is cut off.
-    closest: float = 16.0
-    #: View angle in perspective while the camera is farther than that, in degrees.
-    view_angle: float = 30.0
+    closest: float = 16.0  #: Times that a camera comes closer before its view angle narrows.
+    view_angle: float = 30.0  #: View angle in perspective while the camera is farther than that.
     margin: float = 0.04  #: Share of the picture that is left empty at each side of a flat surface.
     wheel_zoom: float = 1.25  #: Zoom by one notch of the wheel.
-    #: Degrees that a drag over half the height of the view turns a curved surface.
-    turn: float = 90.0
+    turn: float = 90.0  #: Degrees that a drag over half the height turns a curved surface.
     widest_turn: float = 2.0  #: Aspect beyond which a drag to the side turns no farther.
 
 

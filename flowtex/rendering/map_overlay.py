@@ -28,8 +28,7 @@ WIDTH_RANGE = (0.6, 2.0)  #: Range of the factor by which the width changes with
 SPACINGS = (200e3, 80e3, 20e3, 0.0)  #: Distances of the points of lines in metres.
 SPACING_PX = 2.0  #: Most pixels between two points of a line.
 WIDER = 1e-3  #: Share of the extent by which the box of a map is wider than its surface.
-#: Distance of the globe below the surface, in radii, in addition to the sagitta of its cells.
-LOWER = 1e-5
+LOWER = 1e-5  #: Distance of the globe below the surface and the sagitta of its cells, in radii.
 
 
 def map_box(field: FlowField) -> Floats:

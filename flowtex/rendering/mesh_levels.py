@@ -22,14 +22,10 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 
 MAX_ERROR_PIXELS = 0.05  #: Distance on the screen between a node and the triangle that replaces it.
 OUTLINE_SHARE = 0.2  #: Weight of an error of the outline: a quarter of a pixel across it.
-#: Weight of an error along the surface: four pixels, because all nodes place the pixels.
-PLACED_SHARE = 0.0125
-#: Weight of an error across the surface: half a pixel, seen at the outline of a curved one.
-HEIGHT_SHARE = 0.1
-#: Longest side of a triangle, in heights of the view: single precision interpolates across it.
-MAX_SIDE_HEIGHTS = 2.0
-#: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.
-LEAST_DISTANCE = 1e-3
+PLACED_SHARE = 0.0125  #: Weight of an error along the surface: four pixels.
+HEIGHT_SHARE = 0.1  #: Weight of an error across the surface: half a pixel.
+MAX_SIDE_HEIGHTS = 2.0  #: Longest side of a triangle, in heights of the view.
+LEAST_DISTANCE = 1e-3  #: Nearest that a block is taken to be, as a share of its radius.
 
 
 class MeshLevels:

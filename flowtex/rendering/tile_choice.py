@@ -23,16 +23,12 @@ CELL_PIXELS = 4.0  #: Pixels of the longer side of a cell above which the next l
 class TileView:
     """The numbers of a view by which tiles are chosen."""
 
-    #: Where the camera is, (3,), in the coordinates of the mesh; ``None`` where rays are parallel.
-    eye: Floats | None
-    #: Half the height of what is seen: a length where rays are parallel, else for a distance of 1.
-    half_height: float
+    eye: Floats | None  #: Position of the camera, (3,); ``None`` where rays are parallel.
+    half_height: float  #: Half the height of what is seen: a length, or for a distance of 1.
     pixels: float  #: Height of the picture in pixels, as the settings count them.
-    #: Planes around what is seen, (N, 4): a point is inside where p . (x, y, z, 1) >= 0.
-    planes: Floats
+    planes: Floats  #: Planes around what is seen, (N, 4): inside p . (x, y, z, 1) >= 0.
     cell_pixels: float = CELL_PIXELS  #: Pixels of a cell above which the next level is drawn.
-    #: Blocks of level 0 that nothing hides, (rows, columns); ``None`` where that is not known.
-    visible: Bools | None = None
+    visible: Bools | None = None  #: Blocks of level 0 that nothing hides, if known.
 
     def sees(self, points: Floats, reach: Floats) -> Bools:
         """Return which balls around points (..., 3) of a mesh, with radii (...), may be in view."""

@@ -23,20 +23,16 @@ from flowtex.textures.texture_set import TextureSet
 Values: TypeAlias = Mapping[str, Any]
 
 NOISE_DOUBLINGS = 30  #: Doublings from the finest cell of the noise to the extent of the surface.
-#: Finest doublings at which the origin of the noise is zero, so that single precision holds it.
-CLEAR_DOUBLINGS = 9
-#: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
-WAVE_PIXELS = 96.0
-#: Step of the coarse part of the clock in base periods: times a power of two it stays exact.
-CLOCK_STEP = 2.0**-12
+CLEAR_DOUBLINGS = 9  #: Finest doublings at which the origin of the noise is zero.
+WAVE_PIXELS = 96.0  #: Pixels of flow in one turn of a grain, up to twice as many.
+CLOCK_STEP = 2.0**-12  #: Step of the coarse part of the clock, exact times a power of two.
 MOST_TURNS = 2.0**12  #: End of the clock in base periods.
 
 ARROW_PIECES = 12  #: Pieces of an arrow.
 ARROW_LEAST = 0.85  #: Least distance of two arrows over the mean one.
 ARROW_MOST_DENSE = 8.0  #: Least distance of two arrows in pixels.
 
-#: Heights of the view within which positions may be counted from another point than its middle.
-ANCHOR_RANGE = 8.0
+ANCHOR_RANGE = 8.0  #: Heights of the view from the anchor of positions, at most.
 
 
 @dataclass
@@ -50,18 +46,12 @@ class ViewState:
     #: The eye in the mesh's own coordinates and 1, or the direction to it and 0 where all rays
     #: are parallel, (4,).
     eye: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
-    #: How far the time has come from one destination time of the slices to the next, 0 to 1.
-    between: float = 0.0
+    between: float = 0.0  #: Share of the way to the next destination time, 0 to 1.
     time: float = 0.0  #: Time that is shown of a field that varies, in its own unit.
-    #: Whether it is a picture of one moment: the grains of a field that varies stand still, and
-    #: arrows do not fade in.
-    still: bool = False
+    still: bool = False  #: Whether grains of a field that varies stand still.
     clock: float = 0.0  #: Clock of the streaming of a steady flow, in seconds.
-    #: Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
-    #: density has grains of twice as many pixels, and shows the same.
-    density: float = 1.0
-    #: Length that a pixel drawn covers at the focus; 0 means as near as possible.
-    pixel: float = 0.0
+    density: float = 1.0  #: Pixels drawn, along a side, for one that the settings speak of.
+    pixel: float = 0.0  #: Length of a pixel at the focus; 0 is as near as possible.
 
 
 def variants(

@@ -165,8 +165,7 @@ class ImageTextures:
     """An image over the parameters of a surface, and the step size with it."""
 
     texels: Floats32  #: Texels as from :func:`as_picture`, (H, W, 4); row 0 is at j = 0.
-    #: Lag in which the flow crosses a texel of this texture, in multiples of the unit of lag.
-    step: Floats32
+    step: Floats32  #: Lag in which the flow crosses a texel of this texture, in units.
     along_i: Floats  #: Image coordinates of the lines of nodes, (I,) and (J,), from 0 to 1.
     along_j: Floats
     repeat: tuple[bool, bool]  #: Whether the surface goes around along (v, u).

@@ -36,8 +36,7 @@ class Motion:
 
     clock: Floats  #: The moment in turns, (N, 2).
     turns: Floats  #: Turns by length of path, (N, 2).
-    #: Turns per value of a grain at rest, which set the phase of a grain in motion, (N, 2).
-    phases: Floats
+    phases: Floats  #: Turns per value of a grain at rest, (N, 2).
     shares: Floats  #: Of the two rates in a grain, (N, 2).
 
     def after(self, length: Floats) -> Motion:

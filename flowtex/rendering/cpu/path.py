@@ -142,12 +142,9 @@ class Path:
 class TrianglePlaces:
     """Places of N fragments in their triangles."""
 
-    #: Shares of the corners, and numbers of the nodes there in the texture, (N, 3) each.
-    shares: Floats
+    shares: Floats  #: Shares of the corners, (N, 3).
     nodes: Indices
-    #: Change of the shares of the second and the third corner by a vector in the surface's frame,
-    #: (N, 2, 3).
-    by: Floats
+    by: Floats  #: Change of the last two shares by a vector, (N, 2, 3).
 
     def __getitem__(self, selection: slice | Indices) -> TrianglePlaces:
         """Return a part of the fragments."""

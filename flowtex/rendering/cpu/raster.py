@@ -20,8 +20,7 @@ from flowtex.rendering.camera import Camera
 
 CHUNK = 1 << 20  #: Pixels, or rows of pixels, that are tested together.
 ROUNDING = 1e-6  #: Pixels by which the rows and columns of a triangle may be off from rounding.
-#: Rounding of a term of the numbers that decide on which side of an edge a pixel is.
-EPSILON = 8 * float(np.finfo(float).eps)
+EPSILON = 8 * float(np.finfo(float).eps)  #: Rounding of a term of the edges' values.
 
 
 @dataclass(frozen=True, eq=False)

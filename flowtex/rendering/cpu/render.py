@@ -36,11 +36,8 @@ class Picture:
     #: Texture coordinates (u, v) in the slices, (H, W, 2); of triangles the shares of the second
     #: and the third corner.
     coordinate: Floats
-    #: Number of the node that has the greatest share, (H, W): j times the number of columns plus i;
-    #: 0 where there is no surface.
-    nearest: Indices
-    #: Place of the cell in scalars that belong to cells, (H, W): its first node, or the triangle.
-    cell: Indices
+    nearest: Indices  #: Number of the node that has the greatest share, (H, W).
+    cell: Indices  #: Place of the cell in scalars of cells, (H, W).
     position: Floats  #: Points of the mesh, in its own coordinates, (H, W, 3).
     slice_level: Floats  #: Mip level of the slices, and level of detail of the noise, (H, W).
     noise_level: Floats

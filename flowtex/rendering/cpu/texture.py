@@ -28,9 +28,7 @@ class Sums:
 class Lookup(Protocol):
     """Values that are summed along the paths of N fragments, and how sums become the texture."""
 
-    #: Distance between two samples of each fragment, (N,), as a length; with an image in
-    #: units of lag at unit speed.
-    spacing: Floats
+    spacing: Floats  #: Distance between two samples, (N,), as a length, or a lag in an image.
     level: Floats  #: Level of detail of the values, (N,), to be shown.
 
     def move(self, slope: Floats, speed: Floats) -> None:

@@ -23,9 +23,7 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
-#: Extents from the origin from which on VTK draws points relative to another one; nearer by it
-#: takes them to single precision as they are.
-FAR_EXTENTS = 1e3
+FAR_EXTENTS = 1e3  #: Extents from the origin from which on points count from another one.
 POSITION = "flowtex position"  #: Point array of positions in the frame of the surface.
 COORDINATE = "flowtex coordinate"  #: Point array of coordinates in the slices.
 IMAGE = "flowtex image"  #: Point array of coordinates in an image.

@@ -27,8 +27,7 @@ class Body:
     points: Floats  #: Vertices in the mesh's own coordinates, (N, 3).
     colours: Bytes  #: Red, green, blue and opacity of each, (N, 4) uint8.
     faces: Indices  #: Corners of triangles, (M, 3).
-    #: Ends of pieces of lines, (L, 2); both are the same vertex where it is a point.
-    pieces: Indices
+    pieces: Indices  #: Ends of pieces of lines, (L, 2); twice the same vertex is a point.
     #: Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
     normals: Floats | None = None
     width: float = 1.0  #: Width of lines and points in pixels.

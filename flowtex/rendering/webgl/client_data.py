@@ -56,8 +56,7 @@ SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe")
 SHADER_PAIRS = ("line", "ground", "body", "arrow")  #: Pairs of a vertex and a fragment shader.
 TRACE_SHADERS = ("trace", "layers")  #: Shaders of a client that traces.
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
-#: Width over height of the picture that a first camera is made for; clients widen it for others.
-FIRST_ASPECT = 1.5
+FIRST_ASPECT = 1.5  #: Width over height of the picture that a first camera is made for.
 NORMAL_MAX = 32767  #: Greatest value of a component of a normal in sixteen bits.
 SINGLE_MAX = float(np.finfo(np.float32).max)  #: Greatest number in single precision.
 
@@ -104,13 +103,11 @@ class ClientData:
 
     textures: TextureSet
     colours: Colours = data_field(default_factory=Colours)
-    #: Numbers of the destination times that are sent, increasing; empty for all.
-    chosen: tuple[int, ...] = ()
+    chosen: tuple[int, ...] = ()  #: Numbers of the times that are sent, increasing; empty for all.
     pyramid: Pyramid | None = None  #: Tiles of a large flow, of which this is the root.
     finest: int = 0  #: Finest level of those that are sent.
     depth: int = 0  #: Level of the root, of which this is a tile.
-    #: Whether the client receives the velocity instead of slices, where it can trace them.
-    traces: bool = False
+    traces: bool = False  #: Whether the client receives the velocity, where it can trace it.
     bodies: Bodies | None = None  #: Other meshes.
     marks: Marks | None = None  #: Its structure.
 

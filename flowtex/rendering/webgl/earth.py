@@ -27,10 +27,8 @@ from flowtex.rendering.map_overlay import (
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 
-#: Greatest number of a place on a line, of those that a side of the lines' box is divided into.
-LINE_STEPS = 65535
-#: Most places along the longer side of a map at which longitude and latitude are sent.
-LONLAT_PLACES = 65
+LINE_STEPS = 65535  #: Steps that a side of the lines' box is divided into.
+LONLAT_PLACES = 65  #: Most places with longitude and latitude along a side of a map.
 NEAREST_PLACES_M = 5e4  #: Least distance of these places in metres.
 FEWEST_PLACES = 4  #: Fewest places along a side: a cubic goes through so many.
 ONWARD = (4.0, -6.0, 4.0, -1.0)  #: Weights by which four places in a row continue to the next.

@@ -67,8 +67,7 @@ RIM_COLOR = "#101418"
 RIM_OPACITY = 0.85  #: Opacity around dots and lines.
 #: Colour in the middle of rings.
 MIDDLE_COLOR = "#ffffff"
-#: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring.
-DOT_PX = (12.0, 9.0, 4.0)
+DOT_PX = (12.0, 9.0, 4.0)  #: Diameters of the rim of a dot, its colour, and the middle of a ring.
 LINE_PX = (3.6, 2.0)  #: Widths in pixels of the rim of a line and of its colour.
 
 

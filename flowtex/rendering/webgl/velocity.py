@@ -34,8 +34,7 @@ SMALL_CELLS = 1.0  #: Percentile of small cells.
 RATE_UNIT = 2.0**-9  #: Steps of a rate as a share of that along wide cells.
 WIDE_CELLS = 95  #: Percentile of wide cells.
 SPEED_UNIT = 2.0**-12  #: Least step of the speed in typical speeds: the error is half of it.
-#: Least steps of a speed in its own unit: the error is at most 2^-10 of the speed.
-SPEED_STEPS = 2**9
+SPEED_STEPS = 2**9  #: Least steps of a speed in its own unit: an error of 2^-10 at most.
 NODE_BYTES = 4  #: Bytes of a node at one time, about.
 MOST_STEPS = 64  #: Steps whose flow a client holds to follow the paths to one of them, at most.
 HALF_MAX = 65504.0  #: Greatest number in half precision.
