@@ -288,21 +288,6 @@ def test_axes_tell_coordinates_or_a_length_beside_the_picture(client: ClientPage
     assert page.locator(".axes > *").count() == 0
 
 
-def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
-    for field in (gyre, torus):
-        given = scene(field, None)
-        settings = Settings(**QUICK)
-        given["header"]["camera"] = ClientData(made(field, settings)).first_camera(1.6).to_dict()
-        for camera in (given["header"]["camera"], None):
-            given["header"]["camera"] = camera
-            picture = client.picture(client.mount(given, (120, 180), **PLAIN))
-            drawn = (picture != [255, 0, 0]).any(axis=-1)
-            rim = [drawn[0], drawn[-1], drawn[:, 0], drawn[:, -1]]
-            assert not any(line.any() for line in rim)
-            assert drawn.any(axis=0).mean() > 0.6
-            client.clear()
-
-
 def test_finer_pixels_show_the_same_grains(browser: Browser, client: ClientPage) -> None:
     client.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
     coarse = client.picture().astype(float)

@@ -26,8 +26,7 @@ from flowtex.settings import Settings
 pytestmark = pytest.mark.browser
 
 PLAIN = {"samples": 11, "strength": 0.0, "arrows": 24}
-#: As large as the orbit of a planet in metres.
-LARGE = 2.0**40
+LARGE = 2.0**40  #: As large as the orbit of a planet in metres.
 LARGE_VIEW = Camera(
     (0.9 * LARGE, 0.5 * LARGE, 3 * LARGE),
     (0.9 * LARGE, 0.5 * LARGE, 0.0),

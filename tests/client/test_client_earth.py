@@ -22,8 +22,7 @@ pytestmark = pytest.mark.browser
 Pixels = NDArray[np.uint8]
 
 SIZE = (360, 240)
-#: There is room for ticks.
-WITH_AXES = (450, 300)
+WITH_AXES = (450, 300)  #: There is room for ticks.
 #: A plain surface, so that what is dark is a line.
 PLAIN: dict[str, Any] = {
     "scalars": False,

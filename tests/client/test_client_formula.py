@@ -154,38 +154,3 @@ def test_typical_and_greatest_speed_and_the_colour_bar_follow_the_slider(
             assert most == pytest.approx(np.max(field.speed), rel=1e-4)
             # The colours keep their range, and the bar says where values lie beyond it.
             assert end == high and is_above == (most > 1.001 * high)
-
-
-#: Parts that lie over the flow, parts beyond the view, all that are seen, and the flow's height.
-COVERING = """() => {
-  const { root, stage } = document.querySelector("flowtex-view").first;
-  const box = (element) => element.getBoundingClientRect();
-  const seen = ["head", "kinds", "legend", "bar", "handle"]
-    .map((name) => root.shadowRoot.querySelector(`.${name}`))
-    .filter((element) => box(element).width && getComputedStyle(element).visibility !== "hidden");
-  const [flow, all] = [box(stage), box(root)];
-  const over = seen.filter((element) => {
-    const { top, bottom } = box(element);
-    return bottom > flow.top + 1 && top < flow.bottom - 1;
-  });
-  const beyond = seen.filter((element) => box(element).right > all.right + 1);
-  const names = (elements) => elements.map(({ className }) => className.split(" ")[0]);
-  return [names(over), names(beyond), names(seen), flow.height / all.height];
-}"""
-
-
-@pytest.mark.parametrize("size", [(120, 90), (200, 260), (400, 270)])
-@pytest.mark.parametrize("name", ["series", "formula"])
-def test_nothing_covers_the_flow_of_a_small_page(
-    browser: Browser, tmp_path: Path, size: tuple[int, int], name: str
-) -> None:
-    field = pendulum(b=(0.2, 0, 1), resolution=33)
-    if name == "series":
-        field = flowtex.examples.double_gyre_field(shape=(21, 41), time_varying=True)
-    path = flowtex.export(field, tmp_path / "page.html", samples=5, critical_points=4).path
-    with opened_page(browser, *size) as page:
-        opened(page, path)
-        over, beyond, seen, share = page.evaluate(COVERING)
-    assert (over, beyond) == ([], [])
-    assert share > 0.35
-    assert "legend" in seen or (size[0] <= 220 and name == "formula")

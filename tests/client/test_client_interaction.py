@@ -136,18 +136,6 @@ def test_a_page_is_scrolled_past_a_view_until_it_is_clicked(scrolled: ClientPage
     scrolled.sharp()
 
 
-def test_a_finger_scrolls_the_page_until_the_view_is_tapped(scrolled: ClientPage) -> None:
-    style = "getComputedStyle(viewers[0].canvas).touchAction"
-    assert number(scrolled, style) == "pan-y pinch-zoom"
-    x, y = middle(scrolled)
-    with fingers(scrolled) as session:
-        touch(session, "touchStart", (x, y))
-        touch(session, "touchEnd")
-        scrolled.page.wait_for_function(f"() => {style} === 'none'")
-    scrolled.page.mouse.click(x, 500)
-    assert number(scrolled, style) == "pan-y pinch-zoom"
-
-
 # --- buttons ----------------------------------------------------------------------------------
 
 

@@ -100,19 +100,6 @@ def test_fixed_points_of_a_formula_follow_its_parameters(
         assert "centre" in page.locator(".card dd").all_inner_texts()
 
 
-def test_a_page_has_the_marks_that_it_was_exported_with(
-    browser: Browser, tmp_path: Path, quick_export: None
-) -> None:
-    flowtex.export(gyre(), path := tmp_path / "page.html", samples=5, critical_points=3)
-    with opened_page(browser, 640, 400) as page:
-        page.goto(path.as_uri())
-        page.wait_for_selector(COMPLETE)
-        rows = page.locator("[data-setting]")
-        names = rows.evaluate_all("(a) => a.map((e) => e.dataset.setting)")
-        assert "critical_points" in names and "separatrices" not in names
-        assert page.locator(".kinds span").count() == 1
-
-
 #: Kinds, and x where the first component of a saddle-node is zero, by its parameter.
 SADDLE_NODE: dict[float, tuple[list[str], list[float]]] = {
     -1.0: (["saddle", "sink"], [-1.0, 1.0]),

@@ -43,8 +43,7 @@ class Case:
     flow: Callable[[], Any]
     limits: tuple[float, float]
     title: str
-    #: The values along x, from 0 to 1.
-    values: Callable[[Any], Any]
+    values: Callable[[Any], Any]  #: The values along x, from 0 to 1.
     options: dict[str, Any] = field(default_factory=dict)
     #: Colour of the left quarter, where it is not that of the values.
     left: tuple[int, int, int] | None = None

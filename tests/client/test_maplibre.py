@@ -35,11 +35,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("small_tiles")]
 
 ROOT = Path(__file__).parents[2]
 MAPLIBRE = ROOT / "client" / "node_modules" / "maplibre-gl" / "dist"
-#: Bytes that a page may load beside MapLibre.
-MOST_BYTES = 60_000
+MOST_BYTES = 60_000  #: Bytes that a page may load beside MapLibre.
 WIDTH, HEIGHT = 300, 200
-#: Pixels between those whose places are asked for.
-GRID = 8
+GRID = 8  #: Pixels between those whose places are asked for.
 GROUND = (255, 0, 255)
 STYLE: dict[str, Any] = {
     "version": 8,

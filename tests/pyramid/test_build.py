@@ -264,15 +264,6 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert None in tiles
 
 
-def test_a_small_field_is_all_root(tmp_path: Path) -> None:
-    field = steady(6, 9)
-    assert made(tmp_path / "a.zarr", field).depth == 0
-    root = open_store(tmp_path / "a.zarr")
-    np.testing.assert_allclose(root.velocity, field.velocity, rtol=2**-11)
-    slices = shared_store(root, "arclength", "pathlines")
-    assert stored(tmp_path / "a.zarr").root_textures(slices).layers().shape[0] > 4
-
-
 def test_places_that_hold_something_else(tmp_path: Path, stores: Stores) -> None:
     with pytest.raises(PyramidError, match="contains no readable pyramid"):
         open_store(tmp_path / "none.zarr")

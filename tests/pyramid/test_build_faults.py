@@ -18,8 +18,6 @@ from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
 from flowtex.pyramid.build import MOST_FAILURES
-from flowtex.pyramid.levels import Levels
-from flowtex.textures.tiles.pyramid import TileKey
 
 zarr = pytest.importorskip("zarr")
 
@@ -134,13 +132,6 @@ def test_scalars_whose_names_are_none_of_arrays(tmp_path: Path) -> None:
             replace(field, scalars={"a/b": field.scalars["heat"]}), tmp_path / "d", progress=False
         )
     assert not (tmp_path / "d").exists()
-
-
-def test_long_and_narrow_roots_are_read_as_they_were_built(tmp_path: Path) -> None:
-    y, x = np.mgrid[0:5, 0:12_000] / 100
-    field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([1 + y, x], axis=-1))
-    build(field, tmp_path / "a.zarr", progress=False)
-    Levels(tmp_path / "a.zarr").check_tile(TileKey(0, 0, 0), 0)
 
 
 def test_build_stops_after_many_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

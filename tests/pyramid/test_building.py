@@ -47,11 +47,3 @@ def test_mark_of_ended_process_is_removed(tmp_path: Path) -> None:
     mark(tmp_path, ended.pid, "elsewhere")
     with pytest.raises(PyramidError, match="on elsewhere"), building(str(tmp_path)):
         pass
-
-
-@pytest.mark.parametrize("text", ["", "{", "[]", "1"])
-def test_unreadable_mark_is_removed(tmp_path: Path, text: str) -> None:
-    (tmp_path / BUILDING).write_text(text)
-    with building(str(tmp_path)):
-        pass
-    assert not (tmp_path / BUILDING).exists()

@@ -21,8 +21,7 @@ distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")
 pytest.importorskip("zarr")
 
-#: Nodes of the coarsest level, here and on the workers.
-ROOT_NODES = 2_500
+ROOT_NODES = 2_500  #: Nodes of the coarsest level, here and on the workers.
 
 
 @pytest.fixture

@@ -120,20 +120,6 @@ def test_the_shell_builds_tells_and_draws(
     assert "plane applies to the source of a pyramid" in capsys.readouterr().err
 
 
-def test_the_shell_says_what_the_disk_refuses(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    async def full(*_: Any) -> None:
-        raise OSError(28, "No space left on device")
-
-    flowtex.examples.double_gyre().save(tmp_path / "flow.vts")
-    monkeypatch.setattr(zarr.storage.LocalStore, "set", full)
-    command = ["pyramid", str(tmp_path / "flow.vts"), "-o", str(tmp_path / "flow.zarr")]
-    assert main(command) == 2
-    told = capsys.readouterr().err
-    assert "flow.zarr: cannot be written (No space left on device)" in told.replace("\n", " ")
-
-
 def test_the_shell_shows_a_store_on_a_page(
     opengl: Any, store: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -137,17 +137,6 @@ def test_a_store_of_an_ensemble_has_its_mean_and_spread(tmp_path: Path) -> None:
     np.testing.assert_allclose(opened.scalars[opened.uncertainty][0][opened.valid], 0.2, atol=1e-3)
 
 
-def test_a_series_of_a_file_is_that_of_the_field(tmp_path: Path) -> None:
-    around(2).isel(lon=slice(0, 40)).to_netcdf(tmp_path / "flow.nc")
-    assert isinstance(source_of(tmp_path / "flow.nc"), RegionSource)
-    build(tmp_path / "flow.nc", tmp_path / "a.zarr", progress=False)
-    field = FlowField.from_file(tmp_path / "flow.nc")
-    build(field, tmp_path / "b.zarr", progress=False)
-    assert_same(tmp_path / "a.zarr", tmp_path / "b.zarr")
-    root = open_store(tmp_path / "a.zarr")
-    assert (root.name, root.start, len(root.times)) == ("flow", field.start, 2)
-
-
 def test_several_files_of_a_series_are_read_by_regions(tmp_path: Path) -> None:
     pytest.importorskip("dask")
     data = around(2)

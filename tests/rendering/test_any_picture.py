@@ -24,8 +24,7 @@ from flowtex.settings import Settings
 from flowtex.textures.tiles.structure import STRUCTURE
 
 SIZE = (15, 10)
-#: Greatest number in half precision.
-HALF_MAX = 65504
+HALF_MAX = 65504  #: Greatest number in half precision.
 
 
 def numbers(value: Any) -> list[float]:

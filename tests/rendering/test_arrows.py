@@ -25,10 +25,8 @@ from flowtex.trace.trace import paths
 from paper.quality import spacing
 
 SIZE = (600, 400)
-#: Pixels from an arrow to the next.
-SPACING = 40
-#: Deviation of the distance from an arrow to the next one, over the mean.
-MOST_UNEVEN = 0.25
+SPACING = 40  #: Pixels from an arrow to the next.
+MOST_UNEVEN = 0.25  #: Deviation of the distance from an arrow to the next one, over the mean.
 #: Nothing but the arrows.
 PLAIN: dict[str, Any] = {
     "scalars": False,

@@ -52,8 +52,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
 
 #: Parts of the header that the client's uniforms come from.
 NEEDED = ("variant", "geometry", "slices", "image", "constants", "settings")
-#: What only Python knows of a view.
-PYTHONS = ("lags", "levels", "still")
+PYTHONS = ("lags", "levels", "still")  #: What only Python knows of a view.
 
 
 @cache
@@ -401,8 +400,7 @@ def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
     check("tiles.json", expected)
 
 
-#: Pixels of a picture in which samples are looked for.
-PICTURE_SIZE = (300, 200)
+PICTURE_SIZE = (300, 200)  #: Pixels of a picture in which samples are looked for.
 #: Place (j, i), camera and settings.
 SAMPLED: dict[str, tuple[tuple[float, float], Camera, dict[str, Any]]] = {
     "whole": ((2.3, 5.6), WHOLE, {"samples": 9}),

@@ -68,17 +68,6 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
     assert found.remedy.endswith("or unset VTK_DEFAULT_OPENGL_WINDOW")
 
 
-def test_root_needs_no_sudo_and_other_systems_get_the_names(machine: pytest.MonkeyPatch) -> None:
-    machine.setattr(os, "geteuid", lambda: 0, raising=False)
-    assert diagnostics.install_command("libegl1") == (
-        "apt-get update && apt-get install --no-install-recommends libegl1"
-    )
-    machine.setattr("shutil.which", lambda _: None)
-    assert diagnostics.install_command("libegl1") == (
-        "install Mesa's OpenGL (on Debian and Ubuntu: libegl1)"
-    )
-
-
 def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     broken = diagnostics.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
     monkeypatch.setattr(diagnostics, "opengl_report", lambda: broken)

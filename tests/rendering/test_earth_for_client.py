@@ -67,13 +67,6 @@ def test_lines_are_handed_over_to_a_step_of_their_box(name: str) -> None:
         np.testing.assert_array_equal(starts, lines.starts[:-1])
 
 
-def test_a_flow_elsewhere_has_nothing_of_the_earth() -> None:
-    points = np.stack(np.meshgrid(np.arange(9.0), np.arange(7.0)), axis=-1)
-    _, data = view_of(FlowField.from_arrays(points, np.ones((7, 9, 2))))
-    assert data.constants()["earth"] is None
-    assert not {"coastlines", "graticule", "land", "lonlat"} & set(data.surface())
-
-
 def test_land_is_where_there_are_no_data() -> None:
     _, data = view_of(earth("platecarree", hole=True))
     parts = data.surface()

@@ -95,13 +95,6 @@ def test_levels_follow_the_error_on_the_screen() -> None:
     assert counts[0] < counts[1] < counts[2] == 2 * 256**2
 
 
-def test_what_is_near_the_eye_is_finer() -> None:
-    shape = (513, 65)
-    mesh = MeshLevels(grid(shape, height=0.3), whole(shape))
-    levels = mesh.levels(np.array([32.0, -5.0, 8.0]), 0.5, 600)[:, 0]
-    assert (np.diff(levels) >= 0).all() and levels[0] < levels[-1]
-
-
 def test_no_triangle_covers_what_is_blanked() -> None:
     shape = (200, 300)
     points, cells = grid(shape), whole(shape)

@@ -14,15 +14,13 @@ from flowtex._util.array_types import Floats
 from flowtex.field.locate import locator
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
-from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from paper import quality
 
 SIZE = (120, 80)
-#: Pixels along the border that are not judged.
-BORDER = quality.SENSE_WINDOW // 2
+BORDER = quality.SENSE_WINDOW // 2  #: Pixels along the border that are not judged.
 
 
 @cache
@@ -101,17 +99,6 @@ def test_streaklets_are_sparse_and_bright() -> None:
     assert np.median(value) < -0.3
     assert np.percentile(value, 99) > 3.0
     assert not is_sparse(dense.textures, dense.settings)
-
-
-def test_the_numbers_of_sparse_grains_keep_mean_and_variance() -> None:
-    p, high, low = const.SPARSE_SHARE, const.SPARSE_HIGH, const.SPARSE_LOW
-    assert p * high - (1 - p) * low == pytest.approx(0.0, abs=1e-6)
-    assert p * high**2 + (1 - p) * low**2 == pytest.approx(1 / 3, abs=1e-6)
-    late = (np.arange(10_000) + 0.5) / 10_000 / const.DASH_SHARE
-    bright = np.maximum(1 - late, 0) * const.DASH_HIGH - const.DASH_LOW
-    assert p * bright.mean() - (1 - p) * const.DASH_LOW == pytest.approx(0.0, abs=1e-6)
-    square = p * (bright**2).mean() + (1 - p) * const.DASH_LOW**2
-    assert square == pytest.approx(1 / 3, abs=1e-6)
 
 
 def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:

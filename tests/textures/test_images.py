@@ -14,10 +14,6 @@ from scipy.ndimage import map_coordinates, uniform_filter
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
-from flowtex.cli import main
-from flowtex.scene.options import Appearance
-from flowtex.scene.scene import Scene
-from flowtex.settings import Settings
 from flowtex.textures.images import LARGEST, ImageError, as_picture, load_image
 
 SIZE = (240, 140)
@@ -281,31 +277,3 @@ def test_an_image_can_come_later_and_go_again(plotter: Any, rng: np.random.Gener
     assert np.abs(plotter.screenshot(return_img=True).astype(float) - second).mean() > 5
     handle.settings.noise = "procedural"
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
-
-
-def test_a_change_of_tiles_makes_no_textures() -> None:
-    view = Scene(uniform(), Settings(noise="image"), Appearance(image=np.ones((2, 2))))
-    before, heard = view.textures, list[str]()
-    view.observe(heard.append)
-    view.settings.tiles = 32
-    assert heard == ["uniform"] and view.textures is before
-
-
-def test_an_image_is_a_flag_of_the_command_line(
-    tmp_path: Path, opengl: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    mesh, picture, out = (str(tmp_path / n) for n in ("wind.vts", "red.png", "out.png"))
-    flowtex.examples.double_gyre(2.5).save(mesh)
-    Image.fromarray(np.full((4, 4, 3), [200, 0, 0], np.uint8)).save(picture)
-    words = ["render", mesh, "-o", out, "--size", "60x40"]
-    assert main([*words, "--image", picture]) == 0
-    with Image.open(out) as drawn:
-        assert drawn.getpixel((30, 20)) == (200, 0, 0)
-    for more, told in (
-        (["--image", str(tmp_path / "no.png")], "no.png: the file does not exist"),
-        (["--noise", "image"], "no image is given; add --image FILE"),
-        (["--noise", "procedural", "--image", picture], "omit one of them"),
-    ):
-        capsys.readouterr()
-        assert main([*words, *more]) == 2
-        assert told in " ".join(capsys.readouterr().err.split())

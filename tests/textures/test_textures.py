@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import threading
-from typing import Any
-
 import numpy as np
 import pytest
 
 from flowtex import FlowField
-from flowtex._util.array_types import AnyArray, Floats32
+from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.textures.geometry import NodeDisplacements
 from flowtex.textures.images import ImageTextures
-from flowtex.textures.texture_set import LayerPrefetch, TextureSet
+from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
@@ -193,40 +190,6 @@ def test_layers_for_an_image_hold_ways_across_it() -> None:
     expected = (made.image.coordinate - there) / slices.lags[2]
     np.testing.assert_allclose(nodal(made, layers[3])[inner][..., :2], expected[inner], atol=1e-6)
     assert not layers[..., 2].any()
-
-
-@pytest.mark.threads
-def test_prepared_layers_are_made_once_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
-    field, made_by = cylinder_field(), []
-    made, layers = textures(field), TextureSet.layers
-
-    def noted(self: TextureSet, step: int = 0) -> AnyArray:
-        made_by.append((step, threading.current_thread().name.rpartition("_")[0]))
-        return layers(self, step)
-
-    monkeypatch.setattr(TextureSet, "layers", noted)
-    prefetch = LayerPrefetch(made)
-    for step in (-1, len(field.times), 2, 2):
-        prefetch.prepare(step)
-    np.testing.assert_array_equal(prefetch.take(2), layers(made, 2))
-    assert made_by == [(2, "flowtex-prefetch")]
-    prefetch.close()
-
-
-@pytest.mark.parametrize(("at", "later", "prepared"), [(1.5, 1.6, 3), (1.5, 1.4, 0), (1.0, 2.0, 3)])
-def test_playing_prepares_the_next_step(
-    plotter: Any, at: float, later: float, prepared: int
-) -> None:
-    points = np.stack(np.meshgrid(np.arange(9.0), np.arange(7.0)), axis=-1)
-    velocity = np.stack([points + k for k in range(4)])
-    field = FlowField.from_arrays(points, velocity, times=np.arange(4.0))
-    handle = plotter.flowtex.add(field, scalars=False)
-    handle.time = at
-    plotter.screenshot()
-    asked: list[int] = []
-    handle._surface._base._prefetch.prepare = asked.append
-    handle.time = later
-    assert asked == [prepared]
 
 
 def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
