@@ -82,7 +82,8 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     """Return what the client draws of a WebView: flat, steady, coloured, without perspective."""
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
-    from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS
+    from flowtex.textures.tiles.blocks import BLOCK_CELLS
+    from flowtex.textures.tiles.pyramid import TILE_BLOCKS
 
     whole, settings = replace(view.data(), traces=True), view.scene.settings
     header, pyramid = whole.header(settings), whole.pyramid

@@ -16,7 +16,7 @@ BLOCK_CELLS, TILE_CELLS = 16, 64
 def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
     """Make small tiles, in all modules that know their size."""
     from flowtex.pyramid import build, stored
-    from flowtex.textures.tiles.pyramid import block_places
+    from flowtex.textures.tiles.blocks import block_places
 
     with suppress(ModuleNotFoundError):  # without VTK nothing is drawn by it
         from flowtex.rendering.vtk import flow_surface as flow_surface

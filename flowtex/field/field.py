@@ -460,6 +460,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
         frame = self.surface.frame
+        if isinstance(self.surface, TriangleSurface) and self.surface.is_large:
+            return self.surface.normal_share(self.velocity[0])
         if frame is None or isinstance(self.velocity, LazySteps):
             return self.index_velocity.normal_share
         flow = np.asarray(self.velocity[:, self.valid])

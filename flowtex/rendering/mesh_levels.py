@@ -17,7 +17,7 @@ import scipy
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices, Ints
 from flowtex._util.arrays import dot, norm
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import BLOCK_CELLS, block_places
+from flowtex.textures.tiles.blocks import BLOCK_CELLS, block_places
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 MAX_ERROR_PIXELS = 0.05  #: Distance on the screen between a node and the triangle that replaces it.

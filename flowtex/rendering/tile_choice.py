@@ -86,6 +86,9 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
                 visible = np.logical_or.reduceat(visible, np.arange(0, count, 1 << level), axis)
             seen &= visible[rows, columns]
         coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
+        if coarse.any():
+            pixels = view.cell_sizes(pyramid.smooth_places(level)[rows, columns])
+            coarse &= pixels > view.cell_pixels
         shown = seen & ~coarse
         children = pyramid.children(key) if coarse.any() else []
         finer = [child for child in children if coarse[finer_part(pyramid, child, key)].any()]

@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
@@ -284,14 +284,16 @@ def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
     whole, before = settled(page, before), count(page)
     page.keyboard.press("+")
     assert difference(settled(page, before), whole) > 3 and zoom_of(page) > 1.2
-    for shown in ("visible", "detached"):
+    toggled: tuple[Literal["visible", "detached"], ...] = ("visible", "detached")
+    for shown in toggled:
         before = count(page)
         page.keyboard.press("t")
         page.locator(".flowtex-light").wait_for(state=shown)
         settled(page, before)
-    for key, shown in (("?", "visible"), ("Escape", "hidden")):
-        page.keyboard.press(key)
-        page.locator(".flowtex-help").wait_for(state=shown)
+    page.keyboard.press("?")
+    page.locator(".flowtex-help").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".flowtex-help").wait_for(state="hidden")
 
 
 def test_two_files_are_shown_side_by_side(page: Page) -> None:

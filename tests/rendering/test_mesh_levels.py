@@ -11,7 +11,8 @@ import pytest
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, MeshLevels, Region, join
-from flowtex.textures.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.blocks import BLOCK_CELLS
+from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
 
 SHAPES = [(2, 2), (65, 65), (66, 130), (64, 200), (3, 300), (100, 2)]
 

@@ -194,7 +194,7 @@ def test_what_is_in_view_is_covered_once_and_as_fine_as_pixels(_tiled: None) -> 
 def check_cover(pyramid: Pyramid, seen: TileView, rng: np.random.Generator) -> None:
     choices = choose_tiles(pyramid, seen)
     for wanted in wanted_tiles(choices):
-        places = pyramid.places(wanted.level)[pyramid.blocks_of(wanted)]
+        places = pyramid.smooth_places(wanted.level)[pyramid.blocks_of(wanted)]
         sizes = seen.cell_sizes(places)[seen.sees(places[..., :3], places[..., 3])]
         assert wanted.level == 0 or sizes.min() <= seen.cell_pixels
     ready = {key for key in choices if rng.random() < 0.6}

@@ -308,8 +308,8 @@ def connected_parts(beside: Indices) -> Indices:
     size = (len(beside), len(beside))
     ends = rows, beside[rows, corners]
     graph = scipy.sparse.coo_array((np.ones(len(rows)), ends), shape=size)
-    part: Indices = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-    return part
+    parts = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    return np.asarray(parts, np.intp)
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:

@@ -30,6 +30,9 @@ from flowtex.field.triangles.triangle_nodes import (
 MOST_SHARE = 1 - 1e-7
 LEAST_BESIDE = 0.2  #: Least size of cells at a node over that at the nodes beside it.
 
+#: Most triangles at which the part of the flow out of the surface is measured.
+MOST_MEASURED = 50_000
+
 
 class TriangleSurface(NodeSurface):
     """Nodes of a surface of triangles, (1, N, 3), in the mesh's own units.
@@ -224,6 +227,19 @@ class TriangleSurface(NodeSurface):
             speed[step, 0, edge_nodes] *= share
             components[step, 0, edge_nodes] *= share[:, None]
         return replace(flow, components=components, speed=speed)
+
+    @property
+    def is_large(self) -> bool:
+        """Whether :meth:`normal_share` represents all of the surface well."""
+        return len(self.triangles) > MOST_MEASURED
+
+    def normal_share(self, velocity: Floats) -> float:
+        """Return how much of a velocity (1, N, 3) is normal to some of the triangles."""
+        corners = self.triangles[self.cells]
+        corners = corners[:: -(-len(corners) // MOST_MEASURED)]
+        normal, flow = triangle_normals(self.points[0], corners), velocity[0, corners].mean(axis=1)
+        out, total = dot(flow, normal) / norm(normal), np.vdot(flow, flow)
+        return float(np.sqrt(min(np.vdot(out, out) / total, 1.0))) if total > 0 else 0.0
 
     @cached_property
     def sharp(self) -> Bools:

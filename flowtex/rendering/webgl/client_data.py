@@ -42,13 +42,8 @@ from flowtex.rendering.webgl.velocity import (
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures.images import ImageTextures
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import (
-    BLOCK_CELLS,
-    PATH_CELLS,
-    Pyramid,
-    TileKey,
-    block_places,
-)
+from flowtex.textures.tiles.blocks import BLOCK_CELLS, block_places
+from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client.
@@ -250,7 +245,7 @@ class ClientData:
         if not (geometry.planar or (self.traced and self.textures.grid.is_smooth)):
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
         if self.pyramid is not None:
-            places = [self.pyramid.places(level) for level in range(self.pyramid.depth + 1)]
+            places = [self.pyramid.smooth_places(level) for level in range(self.pyramid.depth + 1)]
             parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
         parts["mesh"] = self._mesh
         if self.traced:

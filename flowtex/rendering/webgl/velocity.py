@@ -23,7 +23,8 @@ from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
-from flowtex.textures.tiles.pyramid import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
+from flowtex.textures.tiles.blocks import BLOCK_CELLS
+from flowtex.textures.tiles.pyramid import PATH_CELLS, TILE_BLOCKS
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
 from flowtex.trace.slices import drawn_lags
 from flowtex.trace.structure.formula_lines import formula_rates

@@ -34,6 +34,8 @@ from flowtex.sources.meshes.vectors import (
 )
 from flowtex.sources.notices import Record
 
+#: Start of the names by which VTK's filters number the nodes and cells of their input.
+NUMBERS = "vtkOriginal"
 #: Greatest ratio of the variances across and along a flat mesh.
 FLAT = 1e-10
 
@@ -163,6 +165,8 @@ def _scalars(
         sheet.arrays, key=lambda a: (a.components > 1, not a.where.startswith(preference))
     )
     for array in order:
+        if array.name.startswith(NUMBERS):
+            continue
         is_other = array.name != velocity.name and not NO_VELOCITY.fullmatch(array.name)
         names = [array.name] if array.components == 1 else []
         if array.components in (2, 3) and array.real and is_other:

@@ -51,7 +51,7 @@ class Clusters:
     #: Sides of the bins of the next level, a power of two times the first, (n,).
     sides: Floats
     border: Bools  #: Nodes on the border of the drawn triangles, (n,).
-    normals: Floats  #: Unit normals, or sums of them, (n, 3).
+    normals: Floats  #: Normals, (n, 3).
     part: Indices  #: Connected part of each node, (n,), numbered in the order of their extents.
 
     @classmethod
@@ -80,11 +80,8 @@ class Clusters:
             triangles[surface.flipped] = triangles[surface.flipped, ::-1]
         if not surface.cells.all():
             triangles, crosses = triangles[surface.cells], crosses[surface.cells]
-        if surface.frame is None:
-            normals = surface.normals[0]
-        else:
-            normal = crosses.sum(axis=0)
-            normals = np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
+        around = np.repeat(np.arange(len(triangles)), 3)
+        normals = sums_at(triangles.ravel(), crosses, field.shape[1], around)
         return cls(
             field,
             field,

@@ -32,6 +32,13 @@ from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.blocks import (
+    BLOCK_CELLS,
+    block_places,
+    block_roughness,
+    enlarging,
+    has_roughness,
+)
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.slices import FIRST_CELLS, small_cell, typical_speed
 from flowtex.trace.store import SliceStore
@@ -39,8 +46,10 @@ from flowtex.trace.trace import paths
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 100_000
-#: Cells along a side of a block, the smallest part of a tile that is drawn by itself.
-BLOCK_CELLS = 64
+#: Fewest nodes of the root of a smooth field.
+SMOOTH_NODES = 5_000
+#: Share of the blocks of a level whose cells may be twice as large in a smooth field.
+SMOOTH_SHARE = 0.75
 #: Blocks along a side of a tile.
 TILE_BLOCKS = 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
@@ -119,9 +128,14 @@ class Pyramid:
         self.depth = root_level(self.nodes) if depth is None else depth
         self._lock = threading.Lock()
         self._places: dict[int, Floats] = {}
-        self._levels: list[_Level] = [
-            _Level(np.arange(field.shape[0]), np.arange(field.shape[1]), field.velocity)
-        ]
+        rows, columns = map(np.arange, field.shape)
+        self._levels = [_Level(rows, columns, field.velocity)]
+        self._roughness: dict[int, Floats] = {}
+        self._has_roughness = depth is None and has_roughness(field)
+        while self._has_roughness and math.prod(self.shape(self.depth + 1)) >= SMOOTH_NODES:
+            if np.mean(self.enlarged(self.depth + 1) >= 2) < SMOOTH_SHARE:
+                break
+            self.depth += 1
 
     @cached_property
     def root(self) -> FlowField:
@@ -179,6 +193,28 @@ class Pyramid:
             places[..., 4] /= 1 << finer
             self._places[level] = places
         return self._places[level]
+
+    def smooth_places(self, level: int) -> Floats:
+        """Return :meth:`places` with cells as many times smaller as they may be larger."""
+        places = self.places(level).copy()
+        places[..., 4] /= self.enlarged(level)
+        return places
+
+    def enlarged(self, level: int) -> Floats:
+        """Return how many times larger cells of blocks may be, where two levels show the same."""
+        if not (level and self._has_roughness):
+            return np.ones(self.places(level).shape[:2])
+        greatest = np.zeros(())
+        for coarser in range(max(level - 1, 1), level + 1):
+            if coarser not in self._roughness:
+                nodes = self._nodes(coarser - 1, *map(np.arange, self.shape(coarser - 1)))
+                self._roughness[coarser] = block_roughness(nodes, BLOCK_CELLS)
+            errors = self._roughness[coarser]
+            if coarser < level:
+                for axis, count in enumerate(errors.shape):
+                    errors = np.maximum.reduceat(errors, np.arange(0, count, 2), axis)
+            greatest = np.maximum(greatest, errors)
+        return enlarging(greatest)
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
@@ -270,9 +306,9 @@ class Pyramid:
     def _cell(self) -> float:
         return small_cell(self.root)
 
-    def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
+    def textures(self, key: TileKey) -> TextureSet | None:
         """Return the textures of a tile, as :meth:`region` does."""
-        return self.region([key], widening)[key]
+        return self.region([key])[key]
 
     def region(
         self, keys: Sequence[TileKey], widening: int = 1
@@ -472,36 +508,6 @@ def is_cut(textures: TextureSet, step: int) -> bool:
         if (outside & (followed.reach < needed)).sum() > MOST_CUT_SHARE * len(start):
             return True
     return False
-
-
-def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
-    """Return centre, radius, and longest side of a cell of blocks, (rows, columns, 5)."""
-    firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
-    lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
-    center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
-    for rows in (firsts[0], lasts[0]):
-        for columns in (firsts[1], lasts[1]):
-            center += 0.25 * points[np.ix_(rows, columns)]
-    side = np.zeros(points.shape[:2])
-    side[:-1] = norm(np.diff(points, axis=0))
-    across = norm(np.diff(points, axis=1))
-    side[:, :-1] = np.maximum(side[:, :-1], across)
-    size = _greatest(side, firsts, lasts)
-    blocks = [
-        np.minimum(np.arange(n) // cells, len(f) - 1)
-        for f, n in zip(firsts, points.shape[:2], strict=True)
-    ]
-    distances = norm(points - center[np.ix_(*blocks)])
-    radius = _greatest(distances, firsts, lasts) + size
-    return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
-
-
-def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Floats:
-    """Return the greatest value (J, I) in each block; a border counts for both sides."""
-    for axis in (0, 1):
-        inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
-        values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
-    return values
 
 
 def root_level(nodes: tuple[int, int]) -> int:

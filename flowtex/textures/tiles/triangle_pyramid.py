@@ -23,6 +23,7 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.blocks import enlarging, has_roughness, triangle_roughness
 from flowtex.textures.tiles.clusters import Clusters, levels_of, part_extents
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -39,6 +40,8 @@ MOST_LAGS = 24
 #: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
 #: are drawn no sooner, for a triangle costs as much as the pixels beside it.
 BIN_SHARE = 1 / 3
+#: Greatest factor by which cells, which are large already, may be larger where a level is smooth.
+SMOOTH_CELLS = 2.0
 #: Share of the triangles of a block whose size counts as that of all.
 MOST_SHARE = 0.95
 #: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
@@ -91,6 +94,19 @@ class TrianglePyramid(Pyramid):
         places = np.empty((2**steps, 2**steps, 5))
         places[self._boxes.places(steps)] = np.column_stack([center, radius, size])
         return places
+
+    def enlarged(self, level: int) -> Floats:
+        """Return factors of the size of cells, as for structured surfaces."""
+        factors = np.ones((2 ** self._steps(level),) * 2)
+        if level and has_roughness(self.field):
+            if level not in self._roughness:
+                clusters = self._clusters[level - 1]
+                parts = self._members(level - 1)
+                errors = triangle_roughness(clusters.field, clusters.triangles, parts)
+                self._roughness[level] = errors.reshape(-1, 4).max(axis=1)
+            places = self._boxes.places(self._steps(level))
+            factors[places] = enlarging(self._roughness[level], SMOOTH_CELLS)
+        return factors
 
     def visible_blocks(self, places: Floats32) -> Bools:
         """Return which blocks of level 0 have some of the places, as of structured surfaces."""

@@ -183,7 +183,7 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
     for s in (1.0, speed):
         pyramid = Pyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
         for widening in (1, 8):
-            tile = pyramid.textures(TileKey(0, 0, 1), widening)
+            tile = pyramid.region([TileKey(0, 0, 1)], widening)[TileKey(0, 0, 1)]
             assert tile is not None
             cut.append(is_cut(tile, 0))
             product = tile.store.lags[:, None, None] * tile.store.unit * tile.pace

@@ -1,0 +1,194 @@
+"""Blocks of a level: where they lie, and how much a picture loses where the level is drawn.
+
+Every other line of nodes is left out at the next level. Where these agree with the nodes beside
+them, cells may be larger on the screen than elsewhere, and fewer nodes are traced.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.arrays import dot, norm
+from flowtex.field.triangles.triangle_nodes import neighbours, triangle_normals
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
+    from flowtex.field.steps import Nodes
+
+#: Cells along a side of a block, the smallest part of a tile that is drawn by itself.
+BLOCK_CELLS = 64
+#: Greatest factor by which cells may be larger on the screen where a level is smooth.
+SMOOTH_CELLS = 4.0
+#: Error of an interpolated velocity that is not seen, as a share of the speed; of a scalar, as a
+#: share of its range.
+VALUE_ERROR = 0.01
+#: Distance of a node from the line between those beside it that is not seen, as a share of this.
+PLACE_ERROR = 0.03
+#: Share of the greatest speed around a node that counts as its own where the flow almost rests.
+REST_SPEED = 0.25
+#: Lines of the square of nodes around a node.
+AROUND = 16
+#: Range of a scalar that is constant up to rounding, as a share of its greatest value.
+SAME = 1e-6
+#: Percentile of the errors, or speeds, of triangles that counts as the greatest.
+MOST_SHARE = 98
+
+
+def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
+    """Return centre, radius, and longest side of a cell of blocks, (rows, columns, 5)."""
+    firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
+    lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
+    center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
+    for rows in (firsts[0], lasts[0]):
+        for columns in (firsts[1], lasts[1]):
+            center += 0.25 * points[np.ix_(rows, columns)]
+    side = np.zeros(points.shape[:2])
+    side[:-1] = norm(np.diff(points, axis=0))
+    across = norm(np.diff(points, axis=1))
+    side[:, :-1] = np.maximum(side[:, :-1], across)
+    size = _greatest(side, firsts, lasts)
+    blocks = [
+        np.minimum(np.arange(n) // cells, len(f) - 1)
+        for f, n in zip(firsts, points.shape[:2], strict=True)
+    ]
+    distances = norm(points - center[np.ix_(*blocks)])
+    radius = _greatest(distances, firsts, lasts) + size
+    return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
+
+
+def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Floats:
+    """Return the greatest value (J, I) in each block; a border counts for both sides."""
+    for axis in (0, 1):
+        inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
+        values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
+    return values
+
+
+def has_roughness(field: FlowField) -> bool:
+    """Return whether the roughness of a field is known: its only step is in memory."""
+    arrays = (field.velocity, *field.scalars.values())
+    return (
+        len(field.times) == 1
+        and all(isinstance(values, np.ndarray) for values in arrays)
+        and not field.on_cells
+    )
+
+
+def enlarging(errors: Floats, most: float = SMOOTH_CELLS) -> Floats:
+    """Return by which factors cells may be larger for errors in multiples of what is not seen."""
+    return most / np.clip(errors, 1.0, most)
+
+
+def _extent(values: Floats) -> float:
+    """Return the range of a scalar, more than rounding."""
+    return max(float(np.ptp(values)), SAME * float(np.abs(values).max()))
+
+
+def block_roughness(nodes: Nodes, cells: int) -> Floats:
+    """Return the greatest error in each block of ``cells`` cells of the next level.
+
+    The errors, (rows, columns), are those of the first step, in multiples of what is not seen in
+    the largest cell of the block.
+    """
+    speed = around = np.where(nodes.valid, norm(nodes.velocity[0]), 0.0)
+    for axis, count in enumerate(speed.shape):
+        squares = np.maximum.reduceat(around, np.arange(0, count, AROUND), axis)
+        around = np.repeat(squares, AROUND, axis)[(slice(None),) * axis + (slice(count),)]
+    values = [(nodes.velocity[0], np.maximum(speed, REST_SPEED * around))]
+    for steps in nodes.scalars.values():
+        extent = _extent(steps[0][nodes.valid])
+        values.append((steps[0][..., None], np.full(speed.shape, extent)))
+    shape = [max(-(-(n // 2) // cells), 1) for n in speed.shape]
+    greatest, longest = np.zeros(shape), np.full(shape, np.finfo(float).tiny)
+    for axis, count in enumerate(speed.shape):
+        if count < 3:
+            continue
+        for part, most in zip(_errors(axis, nodes, values), (greatest, longest), strict=True):
+            for along in (0, 1):
+                starts = np.arange(shape[along]) * (cells if along == axis else 2 * cells)
+                part = np.maximum.reduceat(part, np.minimum(starts, part.shape[along] - 1), along)
+            np.maximum(most, part, out=most)
+    return greatest / longest
+
+
+def _errors(axis: int, nodes: Nodes, values: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return errors at the nodes of the lines to leave out along an axis, and lengths of cells.
+
+    Each of ``values`` has a number of components, (J, I, C), and a size to compare with, (J, I).
+    Errors are multiplied by the length of the cell, because small cells are hardly seen.
+    """
+
+    def lines(array: AnyArray) -> list[AnyArray]:
+        array = np.moveaxis(array, axis, 0)
+        count = (len(array) - 1) // 2
+        return [array[k : k + 2 * count : 2] for k in (0, 1, 2)]
+
+    before, middle, after = lines(nodes.points)
+    one, other = norm(middle - before), norm(after - middle)
+    share = np.divide(one, one + other, where=one + other > 0, out=np.full_like(one, 0.5))
+    length, errors = norm(after - before), np.zeros(share.shape)
+    # A scalar that is NaN at some nodes, or a size of zero, gives NaN or infinity.
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for array, size in [(nodes.points, None), *values]:
+            before, middle, after = lines(array)
+            error = norm(middle - before - share[..., None] * (after - before))
+            limit = (
+                PLACE_ERROR * length if size is None else VALUE_ERROR * np.max(lines(size), axis=0)
+            )
+            errors = np.maximum(errors, np.where(error > 0, error / limit, error))
+    valid = np.sum(lines(nodes.valid), axis=0)
+    errors *= length
+    errors[np.isnan(errors) | (valid < 3)] = np.inf
+    errors[valid == 0] = length[valid == 0] = 0.0
+    return np.moveaxis(errors, 0, axis), np.moveaxis(length, 0, axis)
+
+
+def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices]) -> Floats:
+    """Return errors at the next level of a field on triangles, as :func:`block_roughness` does.
+
+    In two triangles with a common edge a linear function at one end follows from the three nodes
+    of the other one. ``parts`` are the numbers of the triangles of each block.
+    """
+    points, velocity = field.points[0], field.velocity[0, 0]
+    beside = neighbours(points, triangles)
+    here, corner = np.nonzero(beside > np.arange(len(triangles))[:, None])
+    there = beside[here, corner]
+    # The nodes at the corner, at both ends of the edge, and across.
+    inner = [triangles[here, (corner + k) % 3] for k in range(3)]
+    nodes = np.stack([*inner, triangles[there].sum(axis=1) - inner[1] - inner[2]], axis=-1)
+    a, b, c, d = points[nodes.T]
+    normal = triangle_normals(points, triangles)[here]
+    area = np.maximum(dot(normal, normal), np.finfo(float).tiny)
+    second, third = (
+        dot(np.cross(*sides), normal) / area for sides in ((d - a, c - a), (b - a, d - a))
+    )
+    weights = np.stack([second + third - 1, -second, -third, np.ones_like(second)], axis=-1)
+    speed, length = norm(velocity), norm(c - b)
+    rest = REST_SPEED * float(np.percentile(speed[field.valid[0]], MOST_SHARE))
+    values = [(velocity, np.maximum(speed[nodes].max(axis=1), rest))]
+    for steps in field.scalars.values():
+        extent = _extent(steps[0, 0, field.valid[0]])
+        values.append((steps[0, 0, :, None], np.full(len(here), extent)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        errors = np.abs(dot(d - a, normal)) / np.sqrt(area) / (4 * PLACE_ERROR)
+        for nodal, size in values:
+            # Twice as far apart, nodes differ by four times as much from a line.
+            error = norm(np.einsum("nk,nkc->nc", weights, nodal[nodes])) / 2
+            error = np.where(error > 0, error / (VALUE_ERROR * size), error)
+            errors = np.maximum(errors, error * length)
+    errors[np.isnan(errors)] = np.inf
+    begins = np.flatnonzero(np.diff(here, prepend=-1))
+    greatest, longest = np.zeros((2, len(triangles)))
+    for most, found in ((greatest, errors), (longest, length)):
+        most[here[begins]] = np.maximum.reduceat(found, begins)
+    return np.array(
+        [
+            np.percentile(greatest[part], MOST_SHARE, method="lower") / longest[part].max()
+            if len(part)
+            else 0.0
+            for part in parts
+        ]
+    )
