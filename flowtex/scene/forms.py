@@ -11,6 +11,7 @@ from flowtex._util.written import (
     PLAIN,
     SWITCH,
     Form,
+    UnreadableError,
     named_texts,
     number_or_text,
     numbers,
@@ -23,7 +24,12 @@ from flowtex.settings import setting
 
 
 def _read_ends(text: str) -> str | tuple[float, ...]:
-    return ROBUST if text == ROBUST else numbers(2, expected="two numbers, such as 1.5,3")(text)
+    if text == ROBUST:
+        return ROBUST
+    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
+    if not low < high:
+        raise UnreadableError("two numbers, the lower one first")
+    return low, high
 
 
 def _read_differences(words: Sequence[str]) -> dict[str, Any]:
