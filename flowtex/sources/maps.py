@@ -179,7 +179,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
         choices, periodic = [lines.chosen], lines.periodic
     else:
         columns = np.arange(places.a.shape[1])
-        if is_flat and find_closure(np.swapaxes(places.positions, 0, 1)).line is not None:
+        if is_flat and find_closure(np.swapaxes(places.positions, 0, 1))[1] is not None:
             columns = np.append(columns, 0)
         choices = [Chosen(slice(None), columns)]
         # A node on the edge of a map lies on its western side.

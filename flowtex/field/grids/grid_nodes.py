@@ -8,7 +8,6 @@ with their neighbours except along a cut, and the corners of each cell are given
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar, cast
 
@@ -47,14 +46,6 @@ TURN_COST = 10.0
 REST_SHARE = 1e-7  #: A vector shorter than this share of the longest has no direction.
 
 
-@dataclass(frozen=True)
-class Closure:
-    """Whether one axis closes, and the line to append, or ``None``."""
-
-    periodic: bool
-    line: Floats | None = None
-
-
 def close_axes(
     points: Floats, velocity: Floats, valid: Bools, scalars: dict[str, Floats], periodic: str | None
 ) -> tuple[Floats, Floats, Bools, dict[str, Floats], tuple[bool, bool]]:
@@ -67,52 +58,52 @@ def close_axes(
         lines = np.swapaxes(points, 0, axis)
         if periodic is None:
             known = np.swapaxes(valid, 0, axis)[..., None]
-            closure = find_closure(lines if known.all() else np.where(known, lines, np.nan))
+            close, line = find_closure(lines if known.all() else np.where(known, lines, np.nan))
         elif letter in periodic:
-            closure = _requested_closure(lines, np.swapaxes(velocity, 1, axis + 1))
+            close, line = _requested_closure(lines, np.swapaxes(velocity, 1, axis + 1))
         else:
-            closure = Closure(periodic=False)
-        closed[axis] = closure.periodic
-        if closure.line is not None:
-            points = np.swapaxes(np.concatenate([lines, closure.line]), 0, axis)
+            close, line = False, None
+        closed[axis] = close
+        if line is not None:
+            points = np.swapaxes(np.concatenate([lines, line]), 0, axis)
             velocity, valid = _repeat_first(velocity, axis + 1), _repeat_first(valid, axis)
             scalars = {k: _repeat_first(s, axis + 1) for k, s in scalars.items()}
-        elif closure.periodic:
+        elif close:
             _join_ends(velocity, valid, axis)
     return points, velocity, valid, scalars, (closed[0], closed[1])
 
 
-def find_closure(points: Floats) -> Closure:
-    """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
+def find_closure(points: Floats) -> tuple[bool, Floats | None]:
+    """Return whether the first axis of (N, M, 3) nodes closes, and the line to append, if any."""
     # Values that cannot be lengths are missing data.
     if largest(points) > LENGTHS[1]:
         points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
     finite = finite_nodes(points)
     if not finite.any() or len(points) < 3:
-        return Closure(periodic=False)
+        return False, None
     low, high = bounds(points if finite.all() else points[finite])
     extent = float(np.linalg.norm(high - low))
     if extent == 0.0:
-        return Closure(periodic=False)
+        return False, None
     if _coincide(points, extent):
-        return Closure(periodic=True)
+        return True, None
     if len(points) >= MIN_RING_LINES and _one_cell_short(points):
-        return Closure(periodic=True, line=points[:1])
-    return Closure(periodic=False)
+        return True, points[:1]
+    return False, None
 
 
-def _requested_closure(points: Floats, velocity: Floats) -> Closure:
+def _requested_closure(points: Floats, velocity: Floats) -> tuple[bool, Floats | None]:
     """Close the first axis on request, by a line unless the last one has the first's values."""
-    closure = find_closure(points)
-    if closure.periodic:
-        return closure
+    found = find_closure(points)
+    if found[0]:
+        return found
     fastest = float(np.nanmax(np.abs(velocity), initial=0.0))
     repeats = np.allclose(
         velocity[:, 0], velocity[:, -1], rtol=0, atol=1e-6 * fastest, equal_nan=True
     )
     if repeats and fastest > 0:
-        return Closure(periodic=True)
-    return Closure(periodic=True, line=2 * points[-1:] - points[-2:-1])
+        return True, None
+    return True, 2 * points[-1:] - points[-2:-1]
 
 
 def _coincide(points: Floats, extent: float) -> bool:

@@ -251,7 +251,7 @@ def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
     """Return whether the last line along (j, i) repeats the first one, so that cells go round."""
     ends = find_closure(points), find_closure(np.swapaxes(points, 0, 1))
     allowed = [periodic is None or letter in periodic for letter in "ji"]
-    j, i = (end.periodic and end.line is None for end in ends)
+    j, i = (closes and line is None for closes, line in ends)
     return j and allowed[0], i and allowed[1]
 
 
