@@ -393,12 +393,7 @@ delta_wing: Callable[[], pv.StructuredGrid] = _made(delta_wing_field, to_grid)
 
 
 def double_gyre_velocity(
-    points: ArrayLike,
-    time: float = 0.0,
-    *,
-    amplitude: float = AMPLITUDE,
-    epsilon: float = EPSILON,
-    period: float = PERIOD,
+    points: ArrayLike, time: float = 0.0, *, epsilon: float = EPSILON
 ) -> Floats:
     """Return the exact velocity of the double gyre at any points and time.
 
@@ -408,12 +403,8 @@ def double_gyre_velocity(
         Positions in [0, 2] x [0, 1]; a third coordinate is not used.
     time : float, default: 0.0
         Time of the velocity.
-    amplitude : float, default: 0.1
-        A, the strength of the two cells.
     epsilon : float, default: 0.25
         Amplitude of the oscillation of the border between the cells; 0 makes the flow steady.
-    period : float, default: 10.0
-        Period of the oscillation.
 
     Returns
     -------
@@ -437,17 +428,17 @@ def double_gyre_velocity(
             f"points has shape {positions.shape}, expected (..., 2) or (..., 3); stack x and y "
             "with np.stack([x, y], axis=-1)"
         )
-    f, slope, _ = _border(positions[..., 0], time, epsilon, period)
+    f, slope, _ = _border(positions[..., 0], time, epsilon)
     y = np.pi * positions[..., 1]
     velocity = np.zeros_like(positions)
-    velocity[..., 0] = -np.pi * amplitude * np.sin(np.pi * f) * np.cos(y)
-    velocity[..., 1] = np.pi * amplitude * np.cos(np.pi * f) * np.sin(y) * slope
+    velocity[..., 0] = -np.pi * AMPLITUDE * np.sin(np.pi * f) * np.cos(y)
+    velocity[..., 1] = np.pi * AMPLITUDE * np.cos(np.pi * f) * np.sin(y) * slope
     return velocity
 
 
 def gyre_vorticity(points: Floats, time: float, epsilon: float = EPSILON) -> Floats:
-    """Return exact vorticity (...,) at points (..., 2), with the usual amplitude and period."""
-    f, slope, bend = _border(points[..., 0], time, epsilon, PERIOD)
+    """Return exact vorticity (...,) at points (..., 2)."""
+    f, slope, bend = _border(points[..., 0], time, epsilon)
     sine, cosine = np.sin(np.pi * f), np.cos(np.pi * f)
     across = np.pi * AMPLITUDE * np.sin(np.pi * points[..., 1])
     return np.asarray(across * (cosine * bend - np.pi * sine * (slope**2 + 1.0)))
@@ -460,9 +451,9 @@ def gyre_nodes(shape: tuple[int, int]) -> Floats:
     return np.stack([x, y], axis=-1)
 
 
-def _border(x: Floats, time: float, epsilon: float, period: float) -> tuple[Floats, Floats, Floats]:
+def _border(x: Floats, time: float, epsilon: float) -> tuple[Floats, Floats, Floats]:
     """Return the function f, and its first and second derivative by x."""
-    a = epsilon * np.sin(2.0 * np.pi * time / period)
+    a = epsilon * np.sin(2.0 * np.pi * time / PERIOD)
     return a * x**2 + (1.0 - 2.0 * a) * x, 2.0 * a * x + 1.0 - 2.0 * a, np.full_like(x, 2.0 * a)
 
 

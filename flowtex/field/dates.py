@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 DAY_S = 86_400.0  #: Seconds in a day.
 MOST_DECIMALS = 6  #: Most decimals of a time without an exponent.
 LONGEST_TIME = 1e9  #: Time from which on an exponent is used.
-UNIT_LENGTH = 8  #: Greatest length of a time unit to show.
+UNIT_LENGTH = 8  #: Greatest length of a time unit to show; longer ones are omitted.
 #: Text of a date of any precision.
 _DATE = re.compile(
     r"(\d{1,4})(?:-(\d\d?)(?:-(\d\d?)(?:[T ](\d\d)(?::(\d\d)(?::(\d\d)(?:\.(\d+))?)?)?)?)?)?Z?"
@@ -68,11 +68,8 @@ def date_text(start: Any, time: float, step: float) -> str:
     return str((start + timedelta(seconds=time)).strftime(form))
 
 
-def time_text(field: Any, time: float, longest_unit: int = UNIT_LENGTH) -> str:
-    """Return a time of a field: its date, or a number that distinguishes its steps.
-
-    Longer units are omitted.
-    """
+def time_text(field: Any, time: float) -> str:
+    """Return a time of a field: its date, or a number that distinguishes its steps."""
     alone = DAY_S if field.start is not None else abs(time) or 1.0
     step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone
     if field.start is not None:
@@ -81,7 +78,7 @@ def time_text(field: Any, time: float, longest_unit: int = UNIT_LENGTH) -> str:
     decimals = max(2 - power, 0) if power >= 0 else 1 - power
     short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
     number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
-    unit = field.time_unit if len(field.time_unit) <= longest_unit else ""
+    unit = field.time_unit if len(field.time_unit) <= UNIT_LENGTH else ""
     return f"t = {number} {unit}".strip()
 
 

@@ -69,12 +69,6 @@ FEWEST_PIECES = 8  #: Least pieces of a line between two that cross it.
 LOOKS = {True: 25, False: 65}
 
 
-def place_text(lon: float, lat: float, decimals: int = 2) -> str:
-    """Return a position as text, such as ``"12.35° E, 45.20° N"``."""
-    parts = ((lon, "E", "W"), (lat, "N", "S"))
-    return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
-
-
 @dataclass(frozen=True)
 class Projection:
     """A projection of the Earth, in metres.
@@ -321,14 +315,12 @@ def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
     return _mapped(projection, lonlat, joined, box)
 
 
-def graticule(
-    projection: Projection, box: Floats | None = None, step: float | None = None
-) -> MapLines:
-    """Return meridians and parallels in a box; the ``step`` is by default a round number."""
+def graticule(projection: Projection, box: Floats | None = None) -> MapLines:
+    """Return meridians and parallels in a box, at round numbers of degrees."""
     lon, lat = _places(projection, box)
     if not len(lon):
         return MapLines(np.zeros((0, 3)), np.zeros(1, dtype=np.intp))
-    steps = (step, step) if step else _steps(lon, lat)
+    steps = _steps(lon, lat)
     meridians, parallels = (_grid_lines(lon, lat, steps, kind) for kind in (0, 1))
     lonlat = np.concatenate([meridians[0], parallels[0]])
     joined = np.concatenate([meridians[1], parallels[1]])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from strategies import property_test
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS, Projection, place_text
+from flowtex.field.earth import EARTH_RADIUS, Projection
 
 CENTER = (10.0, 50.0)
 #: Latitudes that each projection shows without going to infinity.
@@ -103,8 +103,3 @@ def test_the_scale_is_that_of_the_map() -> None:
     for lat in (0.0, 30.0, 60.0):
         place = mercator.positions(np.array(10.0), np.array(lat))
         assert mercator.scale(place) == pytest.approx(1 / np.cos(np.radians(lat)), rel=1e-5)
-
-
-def test_a_place_in_words() -> None:
-    assert place_text(12.348, 45.2) == "12.35° E, 45.20° N"
-    assert place_text(-70, -0.5, 1) == "70.0° W, 0.5° S"
