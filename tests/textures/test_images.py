@@ -255,10 +255,10 @@ def test_another_image_is_shown_at_once_and_paths_are_not_sent_again(
     assert (handle.settings.noise, handle.settings.strength) == ("image", 1.0)
     assert len(plotter.scalar_bars) == 0
     first = plotter.screenshot(return_img=True)
-    paths = handle._surface._base._gpu["u_slices"]
+    paths = handle.surface._base._gpu["u_slices"]
     handle.set_image(255 - image)
     second = plotter.screenshot(return_img=True)
-    assert handle._surface._base._gpu["u_slices"] is paths
+    assert handle.surface._base._gpu["u_slices"] is paths
     inside = (first != 255).any(axis=-1) & (second != 255).any(axis=-1)
     assert inside.mean() > 0.4
     assert np.abs(first.astype(float) + second - 255)[inside].max() < 4
