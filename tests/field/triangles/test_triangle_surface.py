@@ -36,6 +36,18 @@ def test_a_sphere_is_known(rng: np.random.Generator) -> None:
         assert field.shape == (1, len(sphere(4)[0]))
 
 
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5])
+def test_flow_out_of_a_large_surface_is_estimated(
+    monkeypatch: pytest.MonkeyPatch, share: float
+) -> None:
+    monkeypatch.setattr("flowtex.field.triangles.triangle_surface.MOST_MEASURED", 3000)
+    points, triangles = sphere(5)
+    along = np.cross([0.0, 0.0, 1.0], points) * np.sqrt(1.5)
+    velocity = np.sqrt(1 - share**2) * along + share * points
+    field = FlowField.from_triangles(points, triangles, velocity)
+    assert field.normal_share == pytest.approx(share, abs=2e-3)
+
+
 def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
     points, triangles = random_plane(rng, 200, grading=1000)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))

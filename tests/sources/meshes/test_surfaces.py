@@ -126,6 +126,15 @@ def test_the_flow_of_a_surface_is_that_of_its_points(kind: str) -> None:
     assert mesh == before
 
 
+def test_numbers_that_filters_add_are_no_scalars() -> None:
+    grid = pv.ImageData(dimensions=(5, 4, 1))
+    grid["v"], grid["height"] = np.ones((20, 3)) * [1, 1, 0], np.arange(20.0)
+    surface = grid.extract_surface(algorithm="dataset_surface").triangulate()
+    assert "vtkOriginalCellIds" in surface.cell_data
+    field = FlowField.from_pyvista(surface)
+    assert [*field.scalars] == ["height"] and not field.on_cells
+
+
 def test_lines_and_vertices_beside_a_surface_are_left_out() -> None:
     mesh = pv.Plane(i_resolution=3, j_resolution=3)
     mesh.lines = [2, 0, 5]
