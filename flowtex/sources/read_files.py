@@ -234,8 +234,7 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     raise FieldError(
         f"{', '.join(missing)}: no such file; check the path and the working directory"
         if missing
-        else f"{len(path)} files are given, but several are read only as datasets; for the steps "
-        "of a mesh give a .pvd file, or in Python a list of meshes"
+        else f"{len(path)} files are given, but several are read only as datasets; give a .pvd file"
     )
 
 

@@ -152,8 +152,7 @@ def check_memory(nbytes: int, what: str) -> None:
     if nbytes > budget:
         raise FieldError(
             f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
-            "available for data; write a part or a coarser version to a separate file, or read "
-            "it on a machine with more memory"
+            "available for data; write a part or a coarser version to a separate file"
         )
 
 

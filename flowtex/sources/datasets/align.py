@@ -65,16 +65,13 @@ def align(
                 wanted = np.array([float(target)]) if is_number(target) else kept
                 one = any(len(labels.match(wanted, line).one) for line in (lines[0], lines[1]))
                 if one and not len(labels.match(wanted, kept).one):
-                    raise FieldError(
-                        f"only one of the components has the {name} {target}; both have "
-                        f"{labels.text(kept)}"
-                    )
+                    text = f"only one of the components has the {name} {target}; both have "
+                    raise FieldError(text + labels.text(kept))
             u, v = u.isel({dim: as_slice(found.one)}), v.isel({other: as_slice(found.other)})
         elif u.sizes[dim] != v.sizes[other]:
             raise FieldError(
-                f"{u.name} has {u.sizes[dim]} values along {dim} and {v.name} has "
-                f"{v.sizes[other]} along {other}, without coordinates to align them by; add these, "
-                f"as in ds.assign_coords({dim}=...)"
+                f"{u.name} has {u.sizes[dim]} values along {dim} and {v.name} {v.sizes[other]}; "
+                f"add coordinates to align them by, as in ds.assign_coords({dim}=...)"
             )
         v = renamed(v, {other: dim}, u)
     return u, v
@@ -88,17 +85,12 @@ def common(
     if not len(found.one):
         raise FieldError(
             f"{u.name} and {v.name} have no {dim} in common: {u.name} has {labels.text(one)}, and "
-            f"{v.name} {labels.text(other)}. Give both at the same {dim}, as "
-            "xarray's interp does"
+            f"{v.name} {labels.text(other)}. Give both at the same {dim}"
         )
     for array, line in ((u, one), (v, other)):
         if len(found.one) < len(np.unique(line[line == line])):
-            record(
-                "align",
-                f"{dim}: {len(line) - len(found.one)} of {len(line)} of {array.name} are left out, "
-                "as only one component has them",
-                notable=True,
-            )
+            text = f"{dim}: {len(line) - len(found.one)} of {len(line)} of {array.name} are left "
+            record("align", text + "out, as only one component has them", notable=True)
     if len(found.other) > 1 and (np.diff(found.other) < 0).all():
         record("align", f"{v.name}: {dim} reversed to match {u.name}")
     return found

@@ -377,8 +377,8 @@ def _drawn(
         return list(range(count))
     if kind == TIME and line is not None and count > 1:
         raise FieldError(
-            f"{dim} has the texts {labels.text(line)}, which are not dates; expected dates such as "
-            f"2024-01-31T06:00, or numbers. Set them, as in ds.assign_coords({dim}=...)"
+            f"{dim} has the texts {labels.text(line)}; expected dates such as 2024-01-31T06:00, or "
+            f"numbers. Set them, as in ds.assign_coords({dim}=...)"
         )
     if count == 1:
         return 0
@@ -392,11 +392,8 @@ def _drawn(
         description = _value_text(line[number], array, dim)
         text = f"{line[other]:g}" if line.dtype.kind in "fiu" else repr(str(line[other]))
         example = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
-    record(
-        "select",
-        f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}",
-        notable=True,
-    )
+    text = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
+    record("select", text, notable=True)
     return number
 
 

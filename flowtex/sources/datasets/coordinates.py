@@ -119,19 +119,18 @@ def find_places(
     for lon, lat in _pairs(array, dims, datasets, {"longitude": LONGITUDE, "latitude": LATITUDE}):
         if found is not None and lon.ndim > 1:
             continue
-        a, b = _at_nodes(lon, lat, dims, shape, drawn)
-        if a is None or b is None or (degrees := _in_degrees(a, b, lon, lat)) is None:
+        at = _at_nodes(lon, lat, dims, shape, drawn)
+        if at is None or (degrees := _in_degrees(*at, lon, lat)) is None:
             continue
-        turned = ", converted from radians" if degrees[0] is not a else ""
+        turned = ", converted from radians" if degrees[0] is not at[0] else ""
         a, b = degrees
         unset = (a == 0) & (b == 0) if min(a.shape) > 1 else np.False_
         if unset.sum() > 1:  # where a model leaves out land
             a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
         is_line = lon.ndim == 1
         a, b = np.broadcast_arrays(np.unwrap(a, period=360.0) if is_line else a, b)
-        places = Places(
-            a, b, is_earth=True, is_line=is_line, why=f"{lon.name} and {lat.name}{turned}"
-        )
+        why = f"{lon.name} and {lat.name}{turned}"
+        places = Places(a, b, is_earth=True, is_line=is_line, why=why)
         if found is None:
             found = places
             if is_line:
@@ -141,18 +140,16 @@ def find_places(
     if found is not None:
         return found
     for x, y in _pairs(array, dims, datasets, {"X": ACROSS, "Y": UPWARD}):
-        a, b = _at_nodes(x, y, dims, shape, drawn)
-        if a is not None and b is not None:
-            return _plane(x, y, a, b, _mapping(array, datasets))
+        if (at := _at_nodes(x, y, dims, shape, drawn)) is not None:
+            return _plane(x, y, *at, _mapping(array, datasets))
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     raise FieldError(
         f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
-        f"are {', '.join(names) or 'none'}. Add lines, as in ds.assign_coords({dims[0]}=..., "
-        f"{dims[1]}=...), or positions along both dimensions, or open the file that has them "
-        "together with this one"
+        f"are {', '.join(names) or 'none'}. Open the file that has them together with this one, "
+        f"or add them, as in ds.assign_coords({dims[0]}=..., {dims[1]}=...)"
     )
 
 
@@ -183,9 +180,8 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
         order = np.argsort(keys, kind="stable")
         if (np.diff(keys[order]) <= 0).any():
             raise FieldError(
-                f"{dim} increases and decreases along its axis and repeats values "
-                f"({labels.text(line.values)}); expected each value once, as after "
-                f"ds.drop_duplicates({dim!r})"
+                f"{dim} increases and decreases and repeats values ({labels.text(line.values)}); "
+                f"expected each value once, as after ds.drop_duplicates({dim!r})"
             )
         record(step, f"{array.name}: sorted by {dim}", notable=step == "coordinates")
         array = array.isel({dim: order})
@@ -208,10 +204,7 @@ def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
     for ds in datasets:
         if dim in ds.sizes:
             return int(ds.sizes[dim])
-    raise FieldError(
-        f"{array.name!r} has the dimensions {', '.join(map(str, array.dims))}; expected {dim!r} "
-        "among them, as in the velocity; open only files of one model"
-    )
+    raise FieldError(f"{array.name!r} has the dimensions {array.dims}; expected {dim!r} among them")
 
 
 def _pairs(
@@ -253,27 +246,18 @@ def _pairs(
 
 def _at_nodes(
     a: xr.DataArray, b: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...], drawn: Drawn
-) -> tuple[Floats | None, Floats | None]:
+) -> tuple[Floats, Floats] | None:
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
-        if a.dims != (dims[1],) or b.dims != (dims[0],):
-            return None, None
-        return _numbers(a)[None], _numbers(b)[:, None]
-    flat = []
-    for c in (a, b):
-        at = _drawn_positions(c, dims, drawn)
-        if at is None or at.ndim != 2:
-            return None, None
-        if set(at.dims) == set(dims):
-            at = at.transpose(*dims)
-        if at.shape != shape:
-            return None, None
-        flat.append(_numbers(at))
-    return flat[0], flat[1]
+        is_line = a.dims == (dims[1],) and b.dims == (dims[0],)
+        return (_numbers(a)[None], _numbers(b)[:, None]) if is_line else None
+    at = [_drawn_positions(c, dims, drawn) for c in (a, b)]
+    at = [c.transpose(*dims) if {*c.dims} == {*dims} else c for c in at]
+    return (_numbers(at[0]), _numbers(at[1])) if at[0].shape == at[1].shape == shape else None
 
 
-def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr.DataArray | None:
-    """Return a coordinate of what is drawn; ``None`` with other axes; an error if it moves."""
+def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr.DataArray:
+    """Return a coordinate of what is drawn along its further axes; an error if it moves."""
     for dim in [str(d) for d in c.dims if d not in dims]:
         kind = axis_kind(c, dim)
         axis = next((axis for axis in drawn.axes if dim == axis.dim or kind == axis.kind), None)
@@ -300,11 +284,9 @@ def _check_rest(c: xr.DataArray, dim: str) -> None:
         moved = float(np.nanmax(np.abs(lines - first), initial=0.0))
         size = float(np.nanmax(first, initial=-np.inf) - np.nanmin(first, initial=np.inf))
     if moved > AT_REST * size / max(c.shape):
-        unit = str(c.attrs.get("units", ""))
         raise FieldError(
-            f"positions vary in time: {c.name} changes by up to {moved:.4g} {unit}".rstrip()
-            + f" along {dim}. Series on moving surfaces are not supported; draw one step, as in "
-            f"isel={{{dim!r}: 0}}"
+            f"positions vary in time: {c.name} changes by up to {moved:.4g} along {dim}; draw one "
+            f"step, as in isel={{{dim!r}: 0}}"
         )
 
 
@@ -349,10 +331,8 @@ def _in_degrees(
         wide = np.nanmax(np.abs(a), initial=0.0)
     if far > 90.001 or wide > 720:
         if all(units.parsed(unit) is not None for unit in given):
-            raise FieldError(
-                f"{lat.name} reaches {far:g} and {lon.name} reaches {wide:g} in magnitude; "
-                "expected degrees, up to 90 and 360"
-            )
+            text = f"{lat.name} reaches {far:g} and {lon.name} {wide:g}"
+            raise FieldError(f"{text} in magnitude; expected degrees, up to 90 and 360")
         return None
     return a, b
 

@@ -103,10 +103,8 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
         return one or other, (1.0, 1.0)
     factor = units.factor(other, one)
     if factor is None:
-        raise FieldError(
-            f"the units of {pair.u.name!r} and {pair.v.name!r} are {one!r} and {other!r}, of which "
-            "neither can be converted to the other"
-        )
+        text = f"the units of {pair.u.name!r} and {pair.v.name!r} are {one!r} and {other!r}, which"
+        raise FieldError(f"{text} cannot be converted to each other")
     if factor != 1.0:
         record("units", f"{pair.v.name} converted from {other} to {one}")
     return one, (1.0, factor)
@@ -121,10 +119,8 @@ def orientation(flow: Flow, wanted: str | None) -> Orientation:
     if not flow.places.is_earth and found.along == "earth":
         found = Orientation("plane", "positions in a plane")
     if flow.places.is_earth and found.along == "plane":
-        raise FieldError(
-            "components is 'plane', but the positions are longitude and latitude; expected 'earth' "
-            "or 'grid'"
-        )
+        text = "components is 'plane', but the positions are longitude and latitude"
+        raise FieldError(f"{text}; expected 'earth' or 'grid'")
     flow.record("components", str(found))
     return found
 

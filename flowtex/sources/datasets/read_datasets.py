@@ -157,12 +157,8 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
     if first:
         times = np.asarray(flow.drawn.times)[first : first + 1]
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
-        flow.record(
-            "select",
-            f"the velocity is zero everywhere in the first step; step {first} ({time}) is the "
-            "first that is not",
-            notable=True,
-        )
+        text = f"the velocity is zero everywhere in the first step; step {first} ({time}) is the "
+        flow.record("select", f"{text}first that is not", notable=True)
 
 
 def _averaged(
@@ -197,7 +193,7 @@ def _averaged(
     others = [
         ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
     ]
-    kept = Datasets(others, datasets.closers)
+    kept = Datasets(others, datasets.closers, recognised=True)
     changes: dict[str, Any] = {
         "mean": sums.map(itemgetter(slice(2))).step,
         "drawn": drawn,
@@ -217,12 +213,8 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
         return PlaneNodes(mesh.positions), {"triangles": mesh.triangles[0], **_units(flow)}
     nodes = mesh_on_map(mesh, places, projection)
     if nodes.lost:
-        flow.record(
-            "surface",
-            f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
-            "draw a globe to see all of them: globe=True",
-            notable=True,
-        )
+        text = f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
+        flow.record("surface", f"{text}draw a globe to see all: globe=True", notable=True)
     return nodes, {"triangles": nodes.triangles, **_units(flow)}
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,8 @@ from flowtex.sources.datasets.masks import LAND, SEA
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Names of a variable, the most reliable first.
+NAMES = ("standard_name", "long_name", "name")
 #: Words for the first component, and those for the second one.
 PARTNERS = {"eastward": "northward", "zonal": "meridional", "east": "north", "x": "y", "u": "v"}
 FIRST_OF = {second: first for first, second in PARTNERS.items()}
@@ -100,12 +103,9 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         # components along the axes of space besides those along the Earth.
         likely = [pair for pair in likely if _preference(pair) == _preference(likely[0])]
     if len(likely) > 1:
-        listed = "; ".join(map(str, pairs))
+        text = f"several pairs of variables may be the velocity: {'; '.join(map(str, pairs))}. Name"
         first = likely[0]
-        raise FieldError(
-            f"several pairs of variables may be the velocity: {listed}. Name one of them, as in "
-            f'u="{first.u.name}", v="{first.v.name}"'
-        )
+        raise FieldError(f'{text} one of them, as in u="{first.u.name}", v="{first.v.name}"')
     return likely[0]
 
 
@@ -134,33 +134,27 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
 
 def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> list[Pair]:
     pairs: dict[tuple[Any, Any], Pair] = {}
-    for u in arrays:
-        for source in ("standard_name", "long_name", "name"):
-            for word, rest, partner in _partners(_text(u, source), source, partners):
-                for v in arrays:
-                    key = (u.name, v.name)
-                    if _text(v, source) != partner or key in pairs or not _match(u, v):
-                        continue
-                    rank = _rank(u, source, rest)
-                    if rank is not None:
-                        why = f"{source.replace('_', ' ')} with {word!r} and {partners[word]!r}"
-                        pairs[key] = Pair(u, v, _directions(u), why, rank)
+    for u, source in product(arrays, NAMES):
+        for word, rest, partner in _partners(_text(u, source), source, partners):
+            why = f"{source.replace('_', ' ')} with {word!r} and {partners[word]!r}"
+            rank = _rank(u, source, rest)
+            for v in arrays if rank is not None else ():
+                if _text(v, source) == partner and _match(u, v):
+                    pairs.setdefault((u.name, v.name), Pair(u, v, _directions(u), why, rank or 0))
     return list(pairs.values())
 
 
 def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
     for speed in arrays:
         standard = str(speed.attrs.get("standard_name", speed.name))
-        if not SPEEDS.search(standard) or _is_velocity(speed) is False:
-            continue
-        first = re.sub(r"_?speed$", "", standard)
-        for turn in arrays:
+        is_speed = SPEEDS.search(standard) and _is_velocity(speed) is not False
+        first = re.sub(r"_?speed$", "", standard) if "standard_name" in speed.attrs else ""
+        for turn in arrays if is_speed else ():
             named = str(turn.attrs.get("standard_name", turn.name))
             unit = str(turn.attrs.get("units", ""))
             is_angle = units.is_angle(unit) or units.parsed(unit) is None
-            if not TURNS.search(named) or not is_angle or turn.ndim != speed.ndim:
-                continue
-            if "standard_name" in speed.attrs and not named.startswith(first):
+            is_turn = TURNS.search(named) and is_angle and turn.ndim == speed.ndim
+            if not is_turn or not named.startswith(first):
                 continue
             wind = re.search(r"wind|^w", f"{standard} {named}") is not None
             towards = "_to_" in named or ("_from_" not in named and not wind)
@@ -169,10 +163,9 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
 
 
 def _polar(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
-    for u in arrays:
-        for v in arrays:
-            if RADIAL.match(str(u.name)) and AROUND.match(str(v.name)) and _match(u, v):
-                yield Pair(u, v, "plane", "components along a radius and an angle", 5, POLAR)
+    for u, v in product(arrays, arrays):
+        if RADIAL.match(str(u.name)) and AROUND.match(str(v.name)) and _match(u, v):
+            yield Pair(u, v, "plane", "components along a radius and an angle", 5, POLAR)
 
 
 def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:
@@ -216,7 +209,7 @@ def _is_velocity(array: xr.DataArray) -> bool | None:
 def _may_be_component(array: xr.DataArray) -> bool:
     fewest = 1 if _on_mesh(array) else 2
     named = f"{array.name} {array.attrs.get('standard_name', '')}"
-    other = "bounds" in named or "_bnds" in named or MODIFIERS.search(named)
+    other = "bounds" in named or "_bnd" in named or MODIFIERS.search(named)
     other = other or SEA.match(str(array.name)) or LAND.match(str(array.name))
     return array.ndim >= fewest and array.dtype.kind in "fiu" and not other
 
@@ -272,7 +265,7 @@ def _directions(u: xr.DataArray) -> str:
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"
-    for source in ("standard_name", "long_name", "name"):
+    for source in NAMES:
         words = _text(u, source).split("_")
         if "grid" in words or ("x" in words and source != "name"):
             return "grid"
@@ -294,16 +287,15 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
 
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
-    for u in arrays:
-        for source in ("standard_name", "long_name", "name"):
-            text = _text(u, source)
-            for _, rest, wanted in (*_partners(text, source), *_partners(text, source, FIRST_OF)):
-                if _rank(u, source, rest) not in (None, 5, 6):
-                    return (
-                        f"the data have one component of a velocity, {u.name!r}, but not the other "
-                        f"one, whose {source.replace('_', ' ')} would be {wanted!r}; open the file "
-                        "that has it together with this one, or name both, as in u=..., v=..."
-                    )
+    for u, source in product(arrays, NAMES):
+        text = _text(u, source)
+        for _, rest, wanted in (*_partners(text, source), *_partners(text, source, FIRST_OF)):
+            if _rank(u, source, rest) not in (None, 5, 6):
+                return (
+                    f"the data have one component of a velocity, {u.name!r}, but not the other "
+                    f"one, whose {source.replace('_', ' ')} would be {wanted!r}; open the file "
+                    "that has it together with this one, or name both, as in u=..., v=..."
+                )
     listed = ", ".join(f"{a.name} ({a.attrs.get('units', 'no unit')})" for a in arrays)
     if not listed:
         return (

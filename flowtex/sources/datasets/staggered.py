@@ -133,10 +133,8 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
     (row_u, column_u), (_, column_v) = dims
     if dims[0] == dims[1]:
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
-            raise FieldError(
-                f"{u.name} and {v.name} differ in size, {dict(u.sizes)} and {dict(v.sizes)}; "
-                "expected components of one grid"
-            )
+            sizes = f"{dict(u.sizes)} and {dict(v.sizes)}"
+            raise FieldError(f"{u.name} and {v.name} differ in size, {sizes}; expected one grid")
         around = beside._replace(datasets=[*own[:1], *datasets])
         places = find_places(u, dims[0], around)
         return Grid(u, v, places, None, None, "both components at the same position")
@@ -224,12 +222,9 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
         for n, (one, other) in enumerate(((b_u, b_v), (a_u, a_v))):
             kept = matches[n]
             if len(kept.one) < max(len(one), len(other)):
-                record(
-                    "align",
-                    f"{dims[0][n]}: {len(kept.one)} positions that {u.name} "
-                    f"({labels.text(one)}) and {v.name} ({labels.text(other)}) have in common",
-                    notable=True,
-                )
+                text = f"{dims[0][n]}: {len(kept.one)} positions that {u.name} ({labels.text(one)})"
+                text += f" and {v.name} ({labels.text(other)}) have in common"
+                record("align", text, notable=True)
             elif period and n and np.abs(a_u - a_v[kept.other]).max() > period / 2:
                 text = f"{v.name}: {dims[1][n]} counted from the meridian of {u.name}"
                 record("align", text)

@@ -102,12 +102,9 @@ def checked_component(
         flat = flat[~outside]
     fill = None if wanted is False else undeclared_fill(flat)
     if fill is not None:
-        record(
-            "mask",
-            f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from all "
-            "other values, is taken as missing; mask=False draws it",
-            notable=True,
-        )
+        text = f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from "
+        text += "all other values, is taken as missing; mask=False draws it"
+        record("mask", text, notable=True)
     return replace(part, fill=fill)
 
 

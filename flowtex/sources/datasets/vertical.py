@@ -133,10 +133,8 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
     preferred = LATITUDE if northward else LONGITUDE
     others.sort(key=lambda dim: bool(preferred.match(dim)))
     if not levels or not others:
-        raise FieldError(
-            f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more for a "
-            "vertical section"
-        )
+        text = f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more"
+        raise FieldError(f"{text} for a vertical section")
     return levels[0], others[-1]
 
 
@@ -156,17 +154,13 @@ def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, floa
     if LONGITUDE.match(name):
         latitudes = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
         if not latitudes:
-            raise FieldError(
-                f"the latitude of a section along {across.name} is not known; add it, as in "
-                "ds.assign_coords(lat=45.0)"
-            )
+            text = f"the latitude of a section along {across.name} is not known; add it"
+            raise FieldError(f"{text}, as in ds.assign_coords(lat=45.0)")
         return values, 1 / (DEGREE * math.cos(math.radians(float(latitudes[0])))), "longitude (°)"
     length = units.factor(unit, "m")
     if length is None:
-        raise FieldError(
-            f"the unit of {across.name} is {unit!r}; expected degrees, or one of length such as m "
-            "or km: set its units"
-        )
+        text = "expected degrees, or one of length such as m or km"
+        raise FieldError(f"the unit of {across.name} is {unit!r}; {text}")
     return values, 1 / length, f"{across.name} ({unit})"
 
 
@@ -180,10 +174,8 @@ def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
         return numbers_in(up), -factor if downward else factor, text
     if factor is not None and units.measures(unit, units.PRESSURES):
         return numbers_in(up), factor, text
-    raise FieldError(
-        f"{up.name} is in {unit!r} and {w.name} in {str(w.attrs.get('units', ''))!r}; expected m "
-        "and m/s, or hPa and Pa/s"
-    )
+    text = f"{up.name} is in {unit!r} and {w.name} in {moves!r}"
+    raise FieldError(f"{text}; expected m and m/s, or hPa and Pa/s")
 
 
 def _is_downward(up: xr.DataArray) -> bool:

@@ -42,8 +42,7 @@ def check_variables(count: int) -> None:
     if count > MOST_VARIABLES:
         raise FieldError(
             f"the file has {count:,} variables, dimensions or attributes; expected at most "
-            f"{MOST_VARIABLES:,}. Write those that are drawn to another file, as in "
-            "ds[['u', 'v']].to_netcdf(...)"
+            f"{MOST_VARIABLES:,}. Write those that are drawn to another file"
         )
 
 
@@ -126,10 +125,8 @@ class _Header:
         try:
             value: int = struct.unpack_from(form, self._data, self._at)[0]
         except (struct.error, OverflowError) as error:
-            raise FieldError(
-                f"the file is truncated or damaged: its header needs more than {len(self._data):,} "
-                "bytes; write or copy it again"
-            ) from error
+            text = f"its header needs more than {len(self._data):,} bytes"
+            raise FieldError(f"the file is truncated or damaged: {text}") from error
         self._at += struct.calcsize(form)
         return value
 

@@ -245,12 +245,9 @@ class _Legacy:
 
 
 def _refuse(word: bytes, expected: str) -> NoReturn:
-    text = word[:40].decode(errors="replace")
-    fault = f"has {text!r}" if word else "ends"
-    raise FieldError(
-        f"the file is truncated or damaged: it {fault} where {expected} was expected; write or "
-        "copy it again"
-    )
+    fault = f"has {word[:40].decode(errors='replace')!r}" if word else "ends"
+    text = "the file is truncated or damaged"
+    raise FieldError(f"{text}: it {fault} where {expected} was expected; write or copy it again")
 
 
 #: Endings of files of one mesh, of its pieces, of blocks and of series.
@@ -275,13 +272,11 @@ def check_vtk_xml(path: Path, data: Data) -> list[Path]:
     """Return the files that a file names, if its arrays fit into it and into memory."""
     if b"\0" in data[:4]:
         raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
-    document = _Document()
-    document.parse(data)
-    contents, times = _Contents(data, document), Counter[str]()
+    document, times = _Document(data), Counter[str]()
     # VTK makes the whole of a structured grid, of which the file may have a part.
     copies = max(1, -(-document.whole // max(document.points, 1)))
     for array in document.arrays:
-        contents.check(array)
+        document.check(array)
         nbytes = (array.values or 0) * array.bits // 8 * copies
         times[array.attributes.get("TimeStep", "")] += nbytes
     check_memory(max(times.values(), default=0), "the file")
@@ -305,30 +300,29 @@ class _Array:
 
 
 class _Document:
-    """The declarations of a file's elements, up to the appended data."""
+    """The declarations of a file's elements, up to the appended data, and their content."""
 
-    def __init__(self) -> None:
+    def __init__(self, data: Data) -> None:
+        self._data = data
         self.arrays: list[_Array] = []
         self.members: list[str] = []
         self.header, self.compressed = 4, ""
         self.order: Literal["little", "big"] = "little"
         #: Begin of the appended data, and whether they are in base64.
-        self.appended: int | None = None
-        self.encoded = False
+        self._base, self._encoded = len(data), False
+        #: Numbers of values of the connectivity of cells, and of those that their offsets need.
+        self._joined: dict[tuple[int, str], dict[str, int]] = {}
         #: Bytes of the arrays that VTK makes for the pieces of other files.
         self.parallel = 0
         self._path: list[str] = []
         self._piece: dict[str, str] = {}
-        self._axis = 0
-        self._pieces = 0
+        self._axis = self._pieces = 0
         #: Points of all pieces, and of the whole grid where it is structured.
         self.points = self.whole = 0
         self._parser = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.EntityDeclHandler = _refuse_entity
-
-    def parse(self, data: Data) -> None:
         try:
             # After the elements expat would read the rest of a part as well.
             for at in range(0, len(data), CHUNK_BYTES):
@@ -351,8 +345,10 @@ class _Document:
             self.header = 8 if attributes.get("header_type") == "UInt64" else 4
             self.compressed = attributes.get("compressor", "")
         elif tag == "AppendedData":
-            self.appended = self._parser.CurrentByteIndex
-            self.encoded = attributes.get("encoding", "base64") == "base64"
+            after = self._after_tag(self._parser.CurrentByteIndex)
+            # An underscore stands before the data.
+            self._base = max(self._data.find(b"_", after) + 1, after)
+            self._encoded = attributes.get("encoding", "base64") == "base64"
             raise _Appended
         elif tag == "DataSet" or (tag == "Piece" and "Source" in attributes):
             self.members += filter(None, (attributes.get("file"), attributes.get("Source")))
@@ -391,19 +387,14 @@ class _Document:
         else:
             sides, points = (), count.get("NumberOfPoints", 0)
             cells = sum(count.get(f"NumberOf{tag}", 0) for tag in CELL_TAGS)
-        match section:
-            case "PointData" | "Points":
-                return points
-            case "CellData":
-                return cells
-            case "RowData":
-                return count.get("NumberOfRows", 0)
-            case "Coordinates" if sides:
-                self._axis += 1
-                return sides[min(self._axis, 3) - 1]
-            case _ if section in CELL_TAGS and name in ("offsets", "types"):
-                return count.get(f"NumberOf{section}", 0)
-        return None
+        if section == "Coordinates" and sides:
+            self._axis += 1
+            return sides[min(self._axis, 3) - 1]
+        if section in CELL_TAGS and name in ("offsets", "types"):
+            return count.get(f"NumberOf{section}", 0)
+        rows = count.get("NumberOfRows", 0)
+        known = {"PointData": points, "Points": points, "CellData": cells, "RowData": rows}
+        return known.get(section)
 
     def _end(self, _: str) -> None:
         self._stop()
@@ -412,22 +403,6 @@ class _Document:
     def _stop(self) -> None:
         if self.arrays and not self.arrays[-1].end:
             self.arrays[-1].end = self._parser.CurrentByteIndex
-
-
-class _Appended(Exception):
-    """The elements have ended, and data follow."""
-
-
-class _Contents:
-    def __init__(self, data: Data, document: _Document) -> None:
-        self._data, self._document = data, document
-        self._base = len(data)
-        #: Numbers of values of the connectivity of cells, and of those that their offsets need.
-        self._joined: dict[tuple[int, str], dict[str, int]] = {}
-        if document.appended is not None:
-            tag = self._after_tag(document.appended)
-            # An underscore stands before the data.
-            self._base = max(data.find(b"_", tag) + 1, tag)
 
     def check(self, array: _Array) -> None:
         """Raise a FieldError if the file has less of an array than declared."""
@@ -444,8 +419,8 @@ class _Contents:
             place = begin, array.end, True
             if form == "appended":
                 offset = self._base + _whole(array.attributes.get("offset", "0"))
-                place = offset, len(self._data), self._document.encoded
-            block = _Block(self._data, self._document, place, label)
+                place = offset, len(self._data), self._encoded
+            block = _Block(self._data, self, place, label)
             values = block.nbytes * 8 // array.bits
             last = block.last(array.bits // 8) if is_topology else None
         if array.values is not None:
@@ -459,6 +434,10 @@ class _Contents:
     def _after_tag(self, begin: int) -> int:
         match = _TAG.match(self._data, begin)
         return match.end() if match else begin
+
+
+class _Appended(Exception):
+    """The elements have ended, and data follow."""
 
 
 class _Block:

@@ -96,9 +96,8 @@ def slice_of(raw: Any) -> Slice:
     direction, middle = _vector(normal), None if point is None else _vector(point)
     if direction is None or not any(direction) or (point is not None and middle is None):
         raise FieldError(
-            f'slice is {brief(raw)}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
-            'with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three '
-            "numbers each"
+            f'slice is {brief(raw)}; expected a text such as "x=0.5", "1,1,0" or "1,1,0 through '
+            '0.5,0.5,0.2", or a pair (normal, point) of three numbers each'
         )
     return Slice(direction, middle, repr(raw))
 

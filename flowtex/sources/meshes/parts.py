@@ -238,8 +238,7 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
         return source if isinstance(source, pv.DataObject) else pv.wrap(source)
     raise FieldError(
         f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
-        "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
-        "FlowField.from_triangles(points, triangles, velocity), for datasets FlowField.from_xarray"
+        "of them, or a reader; for others use FlowField.from_arrays, from_triangles or from_xarray"
     )
 
 
@@ -258,10 +257,8 @@ def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
     """Raise a FieldError for a step of another kind than the first, or without its vectors."""
     sizes = [part_size(grid) for grid in (step.grid, first.grid)]
     if is_structured(first.grid) and sizes[0] != sizes[1]:
-        raise FieldError(
-            f"{step.label} has {sizes[0]} and the first step has {sizes[1]}; expected the same "
-            f"nodes in every step. {PARTS}"
-        )
+        text = f"{step.label} has {sizes[0]} and the first step has {sizes[1]}"
+        raise FieldError(f"{text}; expected the same nodes in every step. {PARTS}")
     needed = [f"{part} ({velocity.where}, 1)" for part in velocity.parts] or [str(velocity)]
     arrays = list(map(str, catalogue(step.grid)))
     if missing := [array for array in needed if array not in arrays]:
@@ -329,16 +326,14 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
         raise FieldError(
             f"{label} has a surface of {len(after):,} nodes and the first step has one of "
             f"{len(before):,}, or other triangles; expected the same nodes and cells in every "
-            "step: sample all steps onto one mesh with mesh.sample(step), or draw one of the "
-            f"times. {PARTS}"
+            f"step: sample all steps onto one mesh with mesh.sample(step). {PARTS}"
         )
     compared: Bools = first.shown & sheet.shown & np.isfinite(before + after).all(-1)
     moved = float(np.max(np.abs(after[compared] - before[compared]), initial=0.0))
     if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[compared], axis=0).max()):
         raise FieldError(
-            f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
-            f"meshes are not supported: sample all steps onto one mesh with mesh.sample(step). "
-            f"{PARTS}"
+            f"the nodes of {label} are up to {moved:.3g} away from those of the first step; sample "
+            f"all steps onto one mesh with mesh.sample(step). {PARTS}"
         )
 
 

@@ -151,9 +151,8 @@ def _check_solution(layout: Layout, solution: Path) -> None:
         other = replace(layout, dimensions=sizes or layout.dimensions)
         if other != layout and other.length(solution=True) == size:
             raise FieldError(
-                f"{solution.name} has grids of {sizes[:3]} nodes, but the grid file has "
-                f"{layout.dimensions[:3]}; the grid file is truncated, or the solution belongs to "
-                "another grid"
+                f"{solution.name} has {sizes[:3]} nodes, and {layout.dimensions[:3]} are expected; "
+                "the grid file is truncated, or the solution belongs to another grid"
             )
     check_count(size, layout.length(solution=True), solution.name)
 

@@ -58,9 +58,8 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if not on_grid and (given := [f"{k}={value!r}" for k, value in refused.items() if value]):
         raise FieldError(
-            f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, cut a "
-            'volume as in slice="x=0.5", or sample the mesh onto a structured one, as in '
-            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
+            f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
+            'cut a volume as in slice="x=0.5"'
         )
     velocity, chosen = choose(first.grid, options.vectors, plane, cut, record)
 

@@ -199,9 +199,8 @@ def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
     preferred = marked or (named if len(named) == 1 else arrays)
     if not preferred:
         raise FieldError(
-            "the mesh has no vectors that could be the velocity; expected a point or cell array "
-            f"of real numbers with 2 or 3 components. Its arrays, {known}. To use single "
-            'components, separate their names by commas, as in vectors="u,v,w"'
+            "the mesh has no vectors that could be the velocity; expected an array of real numbers "
+            f'with 2 or 3 components, or single ones, as in vectors="u,v,w". Arrays, {known}'
         )
     if len(preferred) > 1:
         raise FieldError(

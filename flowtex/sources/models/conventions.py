@@ -76,8 +76,7 @@ def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         if missing or len(names) != 2:
             raise FieldError(
                 f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
-                "data do not contain; expected two coordinates of the nodes and the nodes of "
-                "each face. Open the file that has them together with this one"
+                "data do not contain; open the file that has them together with this one"
             )
         corners = variables[attrs["face_node_connectivity"]]
         x, y = (variables[name] for name in names)
@@ -137,23 +136,16 @@ def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     mesh = find_mesh(datasets)
     if mesh is None:
         return with_points(datasets)
-    sizes = dict(zip((NODES, FACES), _sizes(mesh), strict=True))
-    named = dict(zip((NODES, FACES), mesh.dims, strict=True))
-    return [_levels(_renamed(ds, named, sizes), mesh) for ds in datasets]
+    return [_levels(_renamed(ds, mesh), mesh) for ds in datasets]
 
 
-def _sizes(mesh: Mesh) -> tuple[int, int]:
-    nodes, faces = mesh.dims
-    of_faces = mesh.x if mesh.corners is None else mesh.corners
-    return (mesh.x.sizes[nodes] if nodes else -1), of_faces.sizes[faces]
-
-
-def _renamed(ds: xr.Dataset, named: dict[str, str], sizes: dict[str, int]) -> xr.Dataset:
+def _renamed(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
     """Rename dimensions by their names, or by their sizes in a file without the mesh."""
-    for ours, theirs in named.items():
-        if ours in ds.dims:
+    sizes = {**mesh.x.sizes, **({} if mesh.corners is None else mesh.corners.sizes)}
+    for ours, theirs in zip((NODES, FACES), mesh.dims, strict=True):
+        if ours in ds.dims or not theirs:
             continue
-        alike = [d for d in ds.dims if ds.sizes[d] == sizes[ours] and d not in (NODES, FACES)]
+        alike = [d for d in ds.dims if ds.sizes[d] == sizes[theirs] and d not in (NODES, FACES)]
         dim = theirs if theirs in ds.dims else alike[0] if len(alike) == 1 else None
         if dim is not None:
             ds = ds.rename_dims({dim: ours})
@@ -208,9 +200,8 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         if (times and len(values) > 1) or kind.lower() in PATHS:
             why = f"along {times[0]}" if times else f"of the type {kind!r}"
             raise FieldError(
-                f"{x.name} and {y.name} are positions {why}: a trajectory, or points that move. "
-                "Flowtex draws the flow on a surface; interpolate the values to a grid, or select "
-                "one time, as in ds.isel(time=0)"
+                f"{x.name} and {y.name} are positions {why}: a trajectory, or points that move; "
+                "interpolate the values to a grid, or select one time, as in ds.isel(time=0)"
             )
         if x.ndim == 1:
             return [ds.rename_dims({dim: NODES}) if dim in ds.dims else ds for ds in datasets]

@@ -228,10 +228,8 @@ def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
     values = values - first
     present &= (values >= 0) & (values < count)
     if not present.any():
-        raise FieldError(
-            f"{corners.name!r} has no node numbers from {first} to {first + count - 1}; expected "
-            "numbers of nodes"
-        )
+        numbers = f"{first} to {first + count - 1}"
+        raise FieldError(f"{corners.name!r} has no numbers of nodes; expected {numbers}")
     if mesh.kind == "MPAS" and values.shape[1] == 3:
         present &= present.all(axis=1, keepdims=True)  # at the border of a region
     return _corners_first(np.where(present, values, -1))
@@ -300,8 +298,7 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
                 return used[triangles]
     raise FieldError(
         f"the {len(p):,} points lie along lines, or in groups far from each other, so no triangles "
-        "between neighbours make a surface. Flowtex draws surfaces, not trajectories or "
-        "stations; interpolate the values to a grid"
+        "between neighbours make a surface; interpolate the values to a grid"
     )
 
 

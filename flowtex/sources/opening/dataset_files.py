@@ -40,18 +40,17 @@ TABLES = {".csv": tables.read_csv, ".vec": tables.read_vec}
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 
 
-class Opened(list["xr.Dataset"]):
-    """Datasets of files that flowtex has opened, and functions that close these."""
+class Datasets(list["xr.Dataset"]):
+    """Datasets, and functions that close their files.
+
+    In ``recognised`` ones cf_xarray recognises the axes, and times are dates.
+    """
 
     def __init__(
-        self, items: Iterable[xr.Dataset] = (), closers: Iterable[Callable[[], None]] = ()
+        self, items: Iterable[xr.Dataset], closers: Iterable[Any] = (), *, recognised: bool = False
     ) -> None:
         super().__init__(items)
-        self.closers = tuple(closers)
-
-
-class Datasets(Opened):
-    """Datasets whose axes cf_xarray recognises, with times as dates."""
+        self.closers, self.recognised = tuple(closers), recognised
 
     def close(self) -> None:
         """Close the files; a later read opens them again."""
@@ -61,7 +60,7 @@ class Datasets(Opened):
 
 def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     """Return datasets with recognised axes: series and regions joined, and of a tree one group."""
-    if isinstance(data, Datasets):
+    if isinstance(data, Datasets) and data.recognised:
         return data
     xarray, record = import_extra("xarray", "xarray"), record or Record()
     result = []
@@ -77,8 +76,8 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
-    closers = data.closers if isinstance(data, Opened) else ()
-    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers)
+    closers = data.closers if isinstance(data, Datasets) else ()
+    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
 
 
 def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
@@ -308,14 +307,14 @@ def belong_together(paths: Sequence[Path]) -> bool:
     return series or not all(find_pairs(parts) for parts in opened)
 
 
-def open_datasets(paths: Sequence[Path]) -> Opened:
+def open_datasets(paths: Sequence[Path]) -> Datasets:
     """Open files that belong together: parts of one model's output, or steps of a series."""
     opened = [open_files(path) for path in paths]
     parts = (ds for datasets in opened for ds in datasets)
-    return Opened(parts, [close for datasets in opened for close in datasets.closers])
+    return Datasets(parts, [close for datasets in opened for close in datasets.closers])
 
 
-def open_files(path: Path) -> Opened:
+def open_files(path: Path) -> Datasets:
     """Open one file; GRIB has a dataset for each group of messages with common axes."""
     xarray = import_extra("xarray", "xarray")
     # Its library must be loaded before those of other readers, which contain another PROJ.
@@ -326,12 +325,12 @@ def open_files(path: Path) -> Opened:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:
-            return Opened([tables.read_winds(path)])
+            return Datasets([tables.read_winds(path)])
         if suffix in TABLES:
-            return Opened([TABLES[suffix](path)])
+            return Datasets([TABLES[suffix](path)])
         if suffix in GRIB:
             parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
-            return Opened(parts, _closers(parts))
+            return Datasets(parts, _closers(parts))
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
@@ -342,13 +341,13 @@ def open_files(path: Path) -> Opened:
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
-            return Opened([ds], _closers([ds]))
+            return Datasets([ds], _closers([ds]))
         tree = xarray.open_datatree(path, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")
         part = of_tree(tree[group] if group else tree, path)
-        return Opened([part], _closers([ds, *tree.subtree]))
+        return Datasets([part], _closers([ds, *tree.subtree]))
 
 
 def _closers(parts: Iterable[Any]) -> list[Callable[[], None]]:
@@ -365,7 +364,7 @@ def import_cfgrib() -> Any:
         return import_extra("cfgrib", "grib")
     except RuntimeError as error:
         raise ModuleNotFoundError(
-            f"reading GRIB needs the library ecCodes, which is missing ({error}): its wheels "
-            "support not every Python; install cfgrib from conda-forge, which includes it",
+            f"reading GRIB needs the library ecCodes, which is missing ({error}); install cfgrib "
+            "from conda-forge, which includes it",
             name="cfgrib",
         ) from error

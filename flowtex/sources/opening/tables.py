@@ -10,7 +10,6 @@ of records, each with ``header`` (``nx``, ``ny``, ``lo1``, ``la1``, ``dx``, ``dy
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from contextlib import suppress
@@ -169,8 +168,7 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
     if not axes and time is not None and frame[time].nunique() > max(len(frame) / 2, 1):
         raise FieldError(
             f"nearly each of {len(frame):,} rows has its own {time} and position: a trajectory, or "
-            "points that move. Flowtex draws the flow on a surface; interpolate the values to "
-            "a grid, or drop the column"
+            "points that move; interpolate the values to a grid, or drop the column"
         )
     return frame, [str(axis) for axis in axes]
 
@@ -222,12 +220,10 @@ def read_csv(path: Path) -> xr.Dataset:
         header = next((line for line in file if line.strip() and not line.startswith("#")), "")
     separator = max(",;\t", key=header.count)
     options = {"sep": separator if separator in header else r"\s+", "comment": "#"}
-    names = next(csv.reader([header.strip()], delimiter=separator), [])
-    if not names or any(re.fullmatch(r"[-+.\deE]+", name.strip()) for name in names):
-        raise FieldError(
-            f"its first line is {header.strip()[:60]!r}; expected the names of columns"
-        )
-    return of_table(pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options))
+    frame = pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options)
+    if any(re.fullmatch(r"[-+.\deE]+", str(name).strip()) for name in frame.columns):
+        raise FieldError(f"its first line is {header.strip()[:60]!r}; expected names of columns")
+    return of_table(frame)
 
 
 def read_vec(path: Path) -> xr.Dataset:
@@ -261,10 +257,7 @@ def read_winds(path: Path) -> xr.Dataset:
     if isinstance(records, dict) and records.get("type") == "FeatureCollection":
         return of_features(records)
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
-        raise FieldError(
-            "it is not a list of records with header and data, as used by leaflet-velocity and "
-            "earth"
-        )
+        raise FieldError("it is not a list of records with header and data, as of leaflet-velocity")
     components: dict[str, Any] = {}
     for number, name in ((2, "eastward"), (3, "northward")):
         headers = [r.get("header", {}) for r in records]
@@ -313,16 +306,14 @@ def _component(header: dict[str, Any], data: Any, name: str) -> xr.DataArray:
 def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:
     """Return the dataset of the components of an array; one of several may be a component."""
     dim = _axis(array)
-    if dim is None:
-        if not several or array.name is None:
-            dims = ", ".join(f"{name}: {size}" for name, size in array.sizes.items())
-            raise FieldError(
-                f"data is the DataArray {array.name!r} ({dims}) of one scalar; expected an axis of "
-                "two or three components, such as 'component', or a Dataset with both components"
-            )
-        return array.to_dataset()
-    named = array.rename("flow").to_dataset()
-    return _split(named, "flow", dim, prefix="")
+    if dim is not None:
+        return _split(array.rename("flow").to_dataset(), "flow", dim, prefix="")
+    if not several or array.name is None:
+        raise FieldError(
+            f"data is the DataArray {array.name!r} ({dict(array.sizes)}) of one scalar; expected "
+            "an axis of two or three components, such as 'component', or a Dataset with both"
+        )
+    return array.to_dataset()
 
 
 def split_components(ds: xr.Dataset) -> xr.Dataset:
@@ -340,9 +331,7 @@ def _axis(array: xr.DataArray) -> str | None:
     for dim in (str(d) for d in array.dims if array.sizes[d] in (2, 3)):
         labels = array.coords.get(dim)
         texts = [] if labels is None or labels.dtype.kind not in "UO" else labels.values.tolist()
-        if texts and all(LABELS.match(str(text)) for text in texts):
-            return dim
-        if not texts and AXES.match(dim):
+        if all(LABELS.match(str(text)) for text in texts) if texts else AXES.match(dim):
             return dim
     return None
 
@@ -353,7 +342,7 @@ def _split(ds: xr.Dataset, name: str, dim: str, prefix: str) -> xr.Dataset:
     labels = [str(v) for v in array.coords[dim].values] if dim in array.coords else []
     matches = [LABELS.match(label) for label in labels]
     numbers = [m.lastindex or 0 for m in matches if m]
-    places = [number - 1 for number in numbers] if len(numbers) == count else list(range(count))
+    places = [number - 1 for number in numbers] if len(numbers) == count else [*range(count)]
     plane = _plane(array, dim)
     are_axes = all(label[-1:].lower() in "xyz" for label in labels)
     drawn = plane if plane and (count == 3 or are_axes or set(places) != {0, 1}) else [0, 1]
@@ -361,10 +350,8 @@ def _split(ds: xr.Dataset, name: str, dim: str, prefix: str) -> xr.Dataset:
         places = drawn
     if not set(drawn) <= set(places):
         axes = " and ".join("xyz"[n] for n in drawn)
-        raise FieldError(
-            f"{name!r} has the components {', '.join(labels)} along {dim!r} on the axes {axes}; "
-            "expected components along these axes"
-        )
+        text = f"{name!r} has the components {', '.join(labels)} along {dim!r} on the axes {axes}"
+        raise FieldError(f"{text}; expected components along these axes")
     words = EARTHWARD if all(map(EARTH.search, labels[:2])) and labels else "uvw"
     order = [*drawn, *(n for n in range(3) if n in places and n not in drawn)]
     parts: dict[str, Any] = {}
@@ -386,8 +373,8 @@ def _plane(array: xr.DataArray, dim: str) -> list[int]:
 def _upright(ds: xr.Dataset, array: xr.DataArray, plane: list[int]) -> xr.Dataset:
     """Return a dataset in the plane x, y instead of x, z or y, z."""
     names = {str(d).lower(): str(d) for d in array.dims}
-    changes = {names["xyz"[n]]: letter for n, letter in zip(plane, "xy", strict=True)}
-    free = {old: new for old, new in changes.items() if old != new}
+    changes = ((names["xyz"[n]], letter) for n, letter in zip(plane, "xy", strict=True))
+    free = {old: new for old, new in changes if old != new}
     ds = ds.drop_vars([n for n in free.values() if n in ds.variables and n not in free])
     ds = ds.squeeze([n for n in free.values() if n in ds.dims and n not in free], drop=True)
     return ds.rename(free)

@@ -37,7 +37,7 @@ REFUSED = {
     "ds_FES_tides": "one component of a velocity, 'Ua'",
     "ds_hycom_espc": "one component of a velocity, 'water_u'.*'northward_sea_water_velocity'",
     # Its coordinates are metres that are said to be degrees.
-    "ds_MITgcm_mds": "YC reaches 5000 and XC reaches 5000 in magnitude; expected degrees",
+    "ds_MITgcm_mds": "YC reaches 5000 and XC 5000 in magnitude; expected degrees",
 }
 
 

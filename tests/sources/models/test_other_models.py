@@ -10,7 +10,6 @@ import pytest
 import xarray as xr
 
 from flowtex import FlowField
-from flowtex.errors import FieldError
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -88,9 +87,3 @@ def test_telemac_uses_its_triangles() -> None:
     assert field.triangles is not None
     assert {*map(frozenset, field.triangles.tolist())} == {*map(frozenset, (faces - 1).tolist())}
     assert np.allclose(field.velocity[0][0, :, :2], np.stack([x, y], -1))
-
-
-@needs_data
-def test_classes_of_directions_raise() -> None:
-    with pytest.raises(FieldError, match="store classes of the speed and the direction"):
-        FlowField.from_file(FORMS / "speed_from_direction.nc")

@@ -127,7 +127,7 @@ def test_csv(tmp_path: Path, separator: str) -> None:
 def test_csv_without_header_raises(tmp_path: Path) -> None:
     path = tmp_path / "flow.csv"
     path.write_text("0,1,2,3\n4,5,6,7\n", encoding="utf-8")
-    with pytest.raises(FieldError, match=r"flow.csv: its first line is '0,1,2,3'; expected the"):
+    with pytest.raises(FieldError, match=r"flow.csv: its first line is '0,1,2,3'; expected"):
         FlowField.from_file(path)
 
 
