@@ -1,8 +1,7 @@
 """Points of a surface: the one at a position in index space, and the one nearest to a point.
 
 Values are linear in the triangles that renderers draw, and bilinear in cells that are
-parallelograms, in space or in longitude and latitude. On the Earth places are looked up by these,
-so that values do not depend on the map.
+parallelograms, in space or, on every map, in longitude and latitude.
 
 To find a point in space, the triangles with the nearest middles are looked up in a tree. From them
 a walk leads over the surface, across the side on which the point lies as long as that leads nearer:

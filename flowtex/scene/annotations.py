@@ -235,7 +235,7 @@ class _Writer:
             return
         scale, projection = 1.0, scene.field.projection  # lengths of the map for one of the Earth
         if projection is not None:
-            found = projection.scale(np.asarray(camera.focal_point))
+            found = float(projection.scales(*projection.lonlat(np.asarray(camera.focal_point))))
             scale = found if 0 < found < math.inf else 1.0  # outside the map
         unit_px = scale * self._flow_height / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)

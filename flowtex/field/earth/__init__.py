@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.arrays import dot
 from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
@@ -212,12 +213,8 @@ class Projection:
         This is the inverse of :meth:`vectors`.
         """
         to_east, to_north = self._directions(lon, lat)
-
-        def times(a: Floats, b: Floats) -> Floats:
-            return np.asarray(np.sum(a * b, axis=-1))
-
-        east, north = times(vectors, to_east), times(vectors, to_north)
-        ee, en, nn = times(to_east, to_east), times(to_east, to_north), times(to_north, to_north)
+        east, north = dot(vectors, to_east), dot(vectors, to_north)
+        ee, en, nn = dot(to_east, to_east), dot(to_east, to_north), dot(to_north, to_north)
         area = ee * nn - en * en
         return (east * nn - north * en) / area, (north * ee - east * en) / area
 
@@ -254,12 +251,8 @@ class Projection:
         lon, lat = np.where(finite, lon, np.nan), np.where(finite, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
-    def scale(self, position: Floats) -> float:
-        """Return the scale of the map, in metres per metre on the Earth, at a position, (3,)."""
-        return 1.0 if self.is_globe else float(self.scales(*self.lonlat(position)))
-
     def scales(self, lon: Floats, lat: Floats) -> Floats:
-        """Return the scale, averaged over directions, at longitudes and latitudes, (...)."""
+        """Return metres of the map per metre, averaged over directions, (...)."""
         east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
         return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
 

@@ -3,11 +3,8 @@
 The first or the last line of an axis is a pole where all its nodes coincide, the other axis
 closes on itself, and the next line goes once around the point: the ends of a sphere, the middle of
 a disc. Index space continues beyond it on the far side: (i, -j) is the point (i + n / 2, j) for n
-even cells around j = 0, so a path over the pole has a continuous position. Where the lines that
-lead to the pole are not evenly spread, the line straight ahead takes the place of i + n / 2.
-
-Next to a pole cells have no width, and velocities along them are unbounded. Positions in a plane
-that touches the surface there are used instead, :meth:`Pole.place` and :meth:`Pole.index`.
+even cells around j = 0, so a path over the pole has a continuous position. Next to a pole, where
+cells have no width, positions in a touching plane are used: :meth:`Pole.place`.
 """
 
 from __future__ import annotations

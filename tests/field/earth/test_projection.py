@@ -68,7 +68,9 @@ def test_a_vector_is_how_a_particle_moves_on_the_map(
     share = 0.1 if name == "robinson" else 0.03
     far = np.hypot(east, north)
     tolerance = share * far + 0.01
-    assert vector == pytest.approx(moved, abs=tolerance * projection.scale(after(0)))
+    assert vector == pytest.approx(
+        moved, abs=tolerance * float(projection.scales(*projection.lonlat(after(0))))
+    )
 
 
 @property_test(100)
@@ -98,8 +100,10 @@ def test_a_pole_is_a_point_or_nowhere(name: str, lat: float) -> None:
 
 
 def test_the_scale_is_that_of_the_map() -> None:
-    assert PROJECTIONS["globe"].scale(np.array([EARTH_RADIUS, 0, 0])) == 1.0
+    assert PROJECTIONS["globe"].scales(np.array(0.0), np.array(0.0)) == 1.0
     mercator = PROJECTIONS["mercator"]
     for lat in (0.0, 30.0, 60.0):
         place = mercator.positions(np.array(10.0), np.array(lat))
-        assert mercator.scale(place) == pytest.approx(1 / np.cos(np.radians(lat)), rel=1e-5)
+        assert mercator.scales(*mercator.lonlat(place)) == pytest.approx(
+            1 / np.cos(np.radians(lat)), rel=1e-5
+        )
