@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from flowtex.errors import require_pyvista
 from flowtex.field.field_arrays import FieldArrays
 from flowtex.field.options import OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
+from flowtex.field.uncertainty import with_uncertainty
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,7 +121,7 @@ class FieldConstructors:
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         chosen = FieldOptions(**options)
         field = cls.of(read_meshes(mesh, chosen, name=name))
-        return _with_uncertainty(field, chosen.uncertainty)
+        return with_uncertainty(field, chosen.uncertainty)
 
     @classmethod
     @accepts_options(FieldOptions, names=OF_FILES, settings=False)
@@ -182,7 +183,7 @@ class FieldConstructors:
         chosen = FieldOptions(**options)
         with errors_of(path):
             arrays = read_files(path, chosen, time=time)
-            return _with_uncertainty(cls.of(cast("FieldArrays", arrays)), chosen.uncertainty)
+            return with_uncertainty(cls.of(cast("FieldArrays", arrays)), chosen.uncertainty)
 
     @classmethod
     @accepts_options(FieldOptions, names=OF_DATASETS[1:], settings=False)
@@ -280,10 +281,4 @@ class FieldConstructors:
 
         options = FieldOptions.of_dataset({"u": u, "v": v, **selection})
         field = cls.of(cast("FieldArrays", read_datasets(data, options, name=name)))
-        return _with_uncertainty(field, options.uncertainty)
-
-
-def _with_uncertainty(field: Any, uncertainty: Any) -> Any:
-    from flowtex.field.uncertainty import with_uncertainty
-
-    return field if uncertainty is None else with_uncertainty(field, uncertainty)
+        return with_uncertainty(field, options.uncertainty)

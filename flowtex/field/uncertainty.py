@@ -32,10 +32,12 @@ def spread_name(dim: str) -> str:
 def with_uncertainty(field: Field, value: Any) -> Field:
     """Return a field whose streaks show the uncertainty of its direction.
 
-    ``value`` is the name of a scalar of the field, which is averaged to the nodes if it is on
-    cells; or of the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I),
-    on triangles (N,) or (T, N): the standard deviation of the velocity over its magnitude.
+    ``value`` is the name of a scalar of the field, averaged to the nodes if it is on cells; or of
+    the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I), on triangles
+    (N,) or (T, N): the standard deviation of the velocity over its magnitude; or ``None``.
     """
+    if value is None:
+        return field
     flow: Any = field
     scalars = flow.scalars
     if not isinstance(value, str):
