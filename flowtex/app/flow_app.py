@@ -11,7 +11,7 @@ from typing import Any
 from trame.app import get_server
 from trame.ui.vuetify3 import VAppLayout
 
-from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, Appearance
+from flowtex.app.controllers.appearance import BACKGROUNDS, Appearance
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.library import Choice, Library
@@ -46,7 +46,6 @@ WORDS = {
     "BACKGROUNDS": str(list(BACKGROUNDS)),
     "FORMATS": str(list(FORMATS)),
     "PAINTERS": str(list(PAINTERS)),
-    "ANOTHER_TIME": ANOTHER_TIME,
     "LOD": TABLE["lod"].label.lower(),
     # Attributes of widgets of a kind.
     "BUTTON": 'icon size="small" variant="text"',

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import FileBeside
-from flowtex.app.server.page import name_among, number
+from flowtex.app.server.page import name_among
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.field.dates import time_text
 from flowtex.scene.options import EARTH_LINES
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values
@@ -37,20 +38,20 @@ COMPARISONS: dict[str, dict[str, Any]] = {
         )
     },
 }
-#: Label of a second pane at another time.
-ANOTHER_TIME = "Another time"
+#: Label of a second pane at another time, before it.
+TIME = "Time: "
+#: Most times that are offered, evenly spaced.
+MOST_TIMES = 100
 #: Label of a second pane with another file, before its name.
 FILE = "File: "
 #: Label of a second pane with another scalar, before its name.
 COLOUR_BY = "Colour by: "
-#: Stops of the slider of another time between two steps of the field.
-STOPS_PER_STEP = 8
 
 
-def comparison(name: str, time: float) -> dict[str, Any]:
+def comparison(name: str) -> dict[str, Any]:
     """Return the differences of a second pane by its label; none for another file, opened first."""
-    if name == ANOTHER_TIME:
-        return {"time": time}
+    if name.startswith(TIME):
+        return {"time": float(name.removeprefix(TIME))}
     if name.startswith(COLOUR_BY):
         return {"scalars": name.removeprefix(COLOUR_BY)}
     return {} if name.startswith(FILE) else COMPARISONS[name]
@@ -76,15 +77,12 @@ class Appearance(Controller):
             theme=self.theme,
             background=self.background,
             compare=self.compared,
-            time_beside=0.0,
-            moment_beside="",
             painter="",
         )
         self.show_field()
         on = self.state.on
         on(self.take_background, "theme", "background")
         on(self.take_comparison, "compare")
-        on(self.take_time_beside, "time_beside")
         on(self.take_painter, "painter")
         context.field_changed.connect(self.show_field)
         self.area.element.painter_changed.connect(
@@ -94,10 +92,8 @@ class Appearance(Controller):
 
     def show_field(self) -> None:
         """Show the possible comparisons with the flow on the page."""
-        times, comparisons = self.viewport.field.times, self._comparisons()
-        first, last = float(times[0]), float(times[-1])
-        tick = (last - first) / max((len(times) - 1) * STOPS_PER_STEP, 1)
-        self.state.set(comparisons=comparisons, first=first, last=last, tick=tick)
+        comparisons = self._comparisons()
+        self.state.set(comparisons=comparisons)
         if self.compared not in comparisons:
             self.state.set(compare="nothing")
             self.take_comparison()
@@ -127,8 +123,7 @@ class Appearance(Controller):
             self.state.set(compare=self.compared)
         elif choice != self.compared:
             try:
-                first = float(self.viewport.field.times[0])
-                self.area.compare(comparison(choice, first) or None)
+                self.area.compare(comparison(choice) or None)
             except Exception:
                 self.state.set(compare=self.compared)
                 raise
@@ -136,19 +131,6 @@ class Appearance(Controller):
             self.beside.end()
             if choice.startswith(FILE):
                 self.beside.open(choice.removeprefix(FILE))
-            self._show_time_beside()
-
-    def take_time_beside(self) -> None:
-        """Show another time in the second pane."""
-        time = number(self.state.get("time_beside"))
-        if self.compared == ANOTHER_TIME and time not in (None, self.viewport.time_beside):
-            self.viewport.time_beside = time
-            self.area.changed()
-        self._show_time_beside()
-
-    def _show_time_beside(self) -> None:
-        time = self.viewport.time_beside
-        self.state.set(time_beside=time, moment_beside=time_text(self.viewport.field, time))
 
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""
@@ -160,7 +142,6 @@ class Appearance(Controller):
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
-            "time_beside": self.viewport.time_beside if self.compared == ANOTHER_TIME else None,
         }
 
     def restore(self, saved: State) -> None:
@@ -180,12 +161,11 @@ class Appearance(Controller):
             self.context.complain(error)
         self.take_background()
         self.take_comparison()
-        if saved.get("time_beside") is not None:
-            self.state.set(time_beside=saved["time_beside"])
-            self.take_time_beside()
 
     def _comparisons(self) -> list[str]:
-        others = [] if self.viewport.field.steady else [ANOTHER_TIME]
+        times = self.viewport.field.times
+        steps = np.linspace(0, len(times) - 1, min(len(times), MOST_TIMES)).round().astype(int)
+        others = [f"{TIME}{times[n]:.12g}" for n in steps if len(times) > 1]
         others += [COLOUR_BY + name for name in self.area.scene.scalar_names]
         data = self.beside.data
         return [*COMPARISONS, *others, *(FILE + name for name in data.names if name != data.name)]

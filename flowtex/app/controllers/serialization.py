@@ -16,13 +16,13 @@ from urllib.parse import parse_qsl, quote, urlencode
 from flowtex._util.arguments import brief
 from flowtex._util.written import NUMBER, Form, UnreadableError
 from flowtex.app.controllers.appearance import (
-    ANOTHER_TIME,
     BACKGROUNDS,
     COLOUR_BY,
     COMPARISONS,
     FILE,
     LOOK,
     PLAIN,
+    TIME,
     comparison,
     look_shown,
 )
@@ -136,7 +136,15 @@ def _name(text: str) -> str:
 
 
 NAME = Form(read=_name)
-_SPLIT = _one_of(*COMPARISONS, ANOTHER_TIME)
+
+
+def _split(text: str) -> str:
+    if text.startswith(TIME):
+        NUMBER.read(text.removeprefix(TIME))
+        return text
+    return (NAME if text.startswith((COLOUR_BY, FILE)) else _one_of(*COMPARISONS)).read(text)
+
+
 #: How each name is read and written, in the order of a link.
 _FORMS: dict[str, Form] = {
     "file": NAME,
@@ -150,10 +158,7 @@ _FORMS: dict[str, Form] = {
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),
-    "split": Form(
-        read=lambda text: (NAME if text.startswith((COLOUR_BY, FILE)) else _SPLIT).read(text)
-    ),
-    "time_beside": NUMBER,
+    "split": Form(read=_split),
     "camera": Form(
         read=lambda text: Camera.from_text(text).to_dict(),
         write=lambda camera: Camera.from_dict(camera).to_text(),
@@ -175,7 +180,7 @@ def to_python(
     """
     split = state.get("split") or "nothing"
     lines = ["import flowtex", "", f"picture = {_render(state, source, size)}"]
-    beside = comparison(split, state.get("time_beside") or 0.0)
+    beside = comparison(split)
     if split.startswith(FILE):
         beside, source = {"file": split.removeprefix(FILE), "time": None}, source_beside
     if beside:

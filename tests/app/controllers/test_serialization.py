@@ -44,7 +44,6 @@ STATE: dict[str, Any] = {
     "theme": "light",
     "background": "black",
     "split": "Colour by: p & q",
-    "time_beside": 0.1,
     "camera": CAMERA,
     "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
 }
@@ -87,6 +86,7 @@ def test_an_image_and_unknown_settings_are_not_in_a_link() -> None:
         ("opacity=x", "opacity is 'x'; expected a number"),
         ("theme=pink", "theme is 'pink'; expected 'dark' or 'light'"),
         ("split=all", "split is 'all'; expected 'nothing' or"),
+        ("split=Time:%20x", "split is 'Time: x'; expected a number"),
         ("file=a%00b", "file is 'a\\x00b'; expected a name"),
         ("file=" + "a" * 500, "expected a name of at most 400 printable"),
         ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected nine numbers"),
@@ -155,7 +155,7 @@ def test_the_python_lines_draw_the_same_picture(
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
     later = {"field": flowtex.FlowField.from_file("later.vts")}
-    scene.compare(later if split == "File: later.vts" else comparison(split, 0.0) or None)
+    scene.compare(later if split == "File: later.vts" else comparison(split) or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
     scene.clock = 0.7
