@@ -95,33 +95,14 @@ def check_picture_file(output: Path) -> None:
     checked_target(output)
 
 
-def check_page_file(output: Path) -> None:
-    """Raise an error if the page could not be written, before anything is traced."""
-    from flowtex.host.export import SUFFIXES
-
-    if output.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"{output}: expected a name that ends in {', '.join(SUFFIXES)}")
-    checked_target(output)
-
-
 def drawing(*groups: object) -> dict[str, Any]:
     """Return the drawing options of flags; raise an error if they conflict."""
     values = arguments(*groups)
-    if values.get("noise") == "image" and "image" not in values:
-        raise UsageError("--noise is image but no image is given; add --image FILE")
     options = Options.split("appearance", "view", **values)
     options.make_settings()
     if options.appearance.image is not None:
         load_image(options.appearance.image)
     return values
-
-
-def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
-    """Raise an error for pathlines of a single time."""
-    if "time" in choice and values.get("lines") == "pathlines":
-        raise UsageError(
-            "--lines is pathlines, which need all times; omit --time, or use flowtex render"
-        )
 
 
 def require_app() -> None:

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -37,9 +37,6 @@ from flowtex.cli.options import (
     UsageError,
     arguments,
 )
-
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
 
 #: Environment variable with the secret word of ``flowtex serve``.
 TOKEN_VARIABLE = "FLOWTEX_TOKEN"
@@ -88,12 +85,15 @@ def serve(
     from flowtex.app.server.security import LimitedServer, known_hosts, new_secret
     from flowtex.app.server.site import serve_until_ended
     from flowtex.app.server.store_site import ServedStore, store_application
+    from flowtex.host.export import opened_views, page_text
     from flowtex.rendering.diagnostics import has_display
 
     with waiting(f"Reading {store.name}") as end_waiting:
         served = ServedStore(store)
         field = open_store(store)
-        page, word = _page(field, title, options, f"store/{served.run}/"), given or new_secret()
+        word, link = given or new_secret(), f"store/{served.run}/"
+        with opened_views(field, **options) as (views, shown):
+            page = page_text(views, store=link, title=title, **shown)
         hosts = known_hosts(server.host, server.allow_host)
         limited = LimitedServer(
             store_application(served, page, word, hosts), handler_cancellation=True
@@ -135,21 +135,6 @@ def _secret_word(token: str | None, file: Path | None) -> str | None:
     if readable:
         complain(UserWarning(f"other users of this machine can read {readable}"), "yellow")
     return word
-
-
-def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:
-    from flowtex.host.export import page_text
-    from flowtex.host.view import web_views
-    from flowtex.scene.options import Options
-
-    arguments = Options.split(**options)
-    views = web_views(field, arguments)
-    try:
-        camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return page_text(views, store=store, camera=camera, title=title, axes=arguments.view.axes)
-    finally:
-        for view in views:
-            view.close()
 
 
 def pyramid(

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex.cli.commands import begin, serve_library, serve_processes
-from flowtex.cli.console import check_lines, drawing, load_field
+from flowtex.cli.console import drawing, load_field
 from flowtex.cli.options import (
     FLAT,
     SIZE,
@@ -101,7 +101,6 @@ def show(
     Several files, or a folder, are shown on a page with a list of files.
     """
     choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
-    check_lines(choice, options)
     from flowtex.rendering import diagnostics
 
     on_page = page is not None or not diagnostics.has_display()

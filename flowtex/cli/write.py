@@ -12,8 +12,6 @@ from cyclopts import Parameter
 from flowtex._util.array_types import AnyArray
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.console import (
-    check_lines,
-    check_page_file,
     check_picture_file,
     describe,
     drawing,
@@ -113,7 +111,6 @@ def movie(
         check_movie(output, options["size"], default_fps(output) if fps is None else fps, quality)
     except ModuleNotFoundError as error:
         raise UsageError(str(error)) from error
-    check_lines(choice, options)
     diagnostics.begin_trial()
     field = load_field(files, choice)
     diagnostics.require_opengl()
@@ -157,8 +154,6 @@ def export(
     """Write a file as one HTML page that needs neither a server nor a network."""
     start = time.perf_counter()
     choice, options = arguments(flow), drawing(look, settings)
-    check_page_file(output)
-    check_lines(choice, options)
     field = load_field(files, choice)
     if steps is not None and steps < 1:
         raise UsageError(
@@ -216,8 +211,8 @@ def formula(
     """Draw a flow from a formula: as a page, as a picture, or in a window."""
     options, frame = drawing(look, settings), frame or FrameFlags()
     is_page = output is not None and output.suffix.lower() in (".html", ".htm")
-    if output is not None:
-        (check_page_file if is_page else check_picture_file)(output)
+    if output is not None and not is_page:
+        check_picture_file(output)
     from flowtex.field.formula.make import line_field
 
     field = line_field("; ".join(words))

@@ -17,6 +17,7 @@ import math
 import re
 import string
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
@@ -167,15 +168,23 @@ def export(
         raise FieldError(
             f"path is {str(path)!r}; expected a name that ends in {', '.join(SUFFIXES)}"
         )
+    with opened_views(mesh, steps=steps, **options) as (views, shown):
+        return write_page(views, path, store=store, basemap=basemap, title=title, **shown)
+
+
+@contextmanager
+def opened_views(
+    mesh: Any, *, steps: int | None = None, **options: Any
+) -> Iterator[tuple[tuple[WebView, ...], dict[str, Any]]]:
+    """Yield the views of a mesh, and how they are shown at first: camera and axes."""
     shown, arguments = browser_options(mesh, **options)
-    views = web_views(shown, arguments, steps=steps)
+    views, view = web_views(shown, arguments, steps=steps), arguments.view
     try:
-        camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        shown = {"camera": camera, "title": title, "axes": arguments.view.axes}
-        return write_page(views, path, store=store, basemap=basemap, **shown)
+        camera = view.first_camera(views[0].field.surface).to_dict()
+        yield views, {"camera": camera, "axes": view.axes}
     finally:
-        for view in views:
-            view.close()
+        for each in views:
+            each.close()
 
 
 def write_page(

@@ -33,8 +33,6 @@ LARGE_NODES = 60_000
 COARSE_STEADY = 6_000
 #: Nodes of the coarse form of a field that varies, which takes longer to trace.
 COARSE_VARYING = 2_500
-#: A field that the client traces is sent whole if the moment shown has at most so many nodes.
-VERY_LARGE_NODES = 600_000
 #: Bytes that go in one message together.
 MESSAGE_BYTES = 2_000_000
 #: Seconds after which data without an acknowledgement are sent again.
@@ -190,12 +188,6 @@ class Feed:
         is_whole = self.view.scene.pyramid is None
         if field.triangles is not None or (is_whole and nodes * len(field.times) <= LARGE_NODES):
             return self.view.data()
-        if is_whole and nodes <= LARGE_NODES:
-            # Where the client traces, no more times are sent than the paths lead through.
-            data = self.view.data()
-            steps = len(data.moment(self._moment()))
-            if data.traced and steps * nodes <= VERY_LARGE_NODES:
-                return data
         return self.view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _complete(self, order: int) -> None:

@@ -97,15 +97,12 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 
 
 def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
-    if size is not None:
-        raise FieldError(
-            f"size is {size!r}, but there is no display, and a page is as large as the browser's "
-            "window; omit size, or draw with flowtex.render"
-        )
-    if options.pop("beside", None) is not None:
-        raise FieldError(
-            "two views need a window, but there is no display; use flowtex.render to draw both"
-        )
+    for name, value in (("size", size), ("beside", options.pop("beside", None))):
+        if value is not None:
+            raise FieldError(
+                f"{name} is {value!r}, but without a display there is a page, which has none; "
+                f"omit {name}, or draw with flowtex.render"
+            )
     field = read_field(mesh, Options.split(**options).field)
     from flowtex.app import serve
 

@@ -157,7 +157,7 @@ def test_a_picture_is_drawn_along_the_flow(
         ("render {gyre}", "--output"),
         ("render {gyre} --opacty 1", "Did you mean --opacity?"),
         ("render {gyre} --slize z=0", "Did you mean --size?"),
-        ("export {gyre} -o {tmp}/page.png", "page.png: expected a name that ends in .html"),
+        ("export {gyre} -o {tmp}/page.png", "page.png'; expected a name that ends in .html"),
         ("export {gyre} -o {tmp}/page.html --steps 0", "--steps is 0; expected 1 to 1"),
         ("movie {gyre} -o {tmp}/a.avi", "'.avi' is not a movie format; expected .mp4"),
         ("info {tmp}/u.nc {tmp}/v.nc", "v.nc: no such file; check the path"),

@@ -1,4 +1,4 @@
-"""Common tools of a page: its state and elements, tasks, and checks of its values.
+"""Common tools of a page: its state, and checks of its values.
 
 A page may send anything instead of a number or a name. Invalid values are dropped or clipped here,
 so that no handler has to check again.
@@ -8,18 +8,13 @@ from __future__ import annotations
 
 import asyncio
 import itertools
-import logging
 import math
-from collections.abc import Callable, Container, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import Any, TypeGuard
-
-from trame_client.widgets.core import AbstractElement
 
 #: Characters of a message to a page, at most.
 MESSAGE_LENGTH = 400
-_log = logging.getLogger(__name__)
 _count = itertools.count(1)
 
 
@@ -28,37 +23,6 @@ def running_loop() -> asyncio.AbstractEventLoop | None:
     with suppress(RuntimeError):
         return asyncio.get_running_loop()
     return None
-
-
-def start_task(work: Coroutine[Any, Any, None], failure: str) -> asyncio.Task[None]:
-    """Start a task in the background; an error is logged with the text ``failure``."""
-    task = asyncio.get_running_loop().create_task(work)
-
-    def log_error(ended: asyncio.Task[None]) -> None:
-        if not ended.cancelled() and (error := ended.exception()) is not None:
-            _log.error(failure, exc_info=error)
-
-    task.add_done_callback(log_error)
-    return task
-
-
-class PageElement(AbstractElement):
-    """An element that ``client/src/app`` makes; its script and style come with it."""
-
-    def __init__(
-        self, name: str, properties: Sequence[str], events: Sequence[str] = (), **attributes: Any
-    ) -> None:
-        super().__init__(f"flowtex-{name}", **attributes)
-        self._attr_names += properties
-        self._event_names += events
-        self.server.enable_module(
-            {
-                "serve": {"__flowtex": str(Path(__file__).parents[1] / "ui" / "static")},
-                "styles": ["__flowtex/flowtex.css"],
-                "scripts": ["__flowtex/flowtex.js"],
-                "vue_use": ["flowtex_page"],
-            }
-        )
 
 
 class PageState:

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import trame_rca.module
+from trame_client.widgets.core import AbstractElement
 
-from flowtex.app.server.page import PageElement, PageState, start_task
+from flowtex.app.server.page import PageState
 from flowtex.app.streaming.element import Element, Player
 from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
@@ -23,6 +25,18 @@ from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import Change, Scene
+
+#: Events of the element on the page.
+EVENTS = ("camera", "time", "clock", "playing", "setting", "colours")
+
+
+class _Client(AbstractElement):
+    """The element that ``client/src/app`` makes."""
+
+    def __init__(self, name: str, **attributes: Any) -> None:
+        super().__init__(name, **attributes)
+        self._attr_names += ["begin", "read"]
+        self._event_names += EVENTS
 
 
 class FlowArea(AppearanceAttributes):
@@ -105,18 +119,23 @@ class FlowArea(AppearanceAttributes):
         """Add the view to the open layout; ``attributes`` are those of the element."""
         element, server = self.element, self.server
         server.enable_module(trame_rca.module)
-        events = ("camera", "time", "clock", "playing", "setting", "colours")
+        server.enable_module(
+            {
+                "serve": {"__flowtex": str(Path(__file__).parents[1] / "ui" / "static")},
+                "styles": ["__flowtex/flowtex.css"],
+                "scripts": ["__flowtex/flowtex.js"],
+                "vue_use": ["flowtex_page"],
+            }
+        )
         attributes["style"] = "width: 100%; height: 100%; " + attributes.get("style", "")
-        return PageElement(
-            "client",
-            ["begin", "read"],
-            events,
+        return _Client(
+            "flowtex-client",
             ref=element.ref,
             begin=server.trigger_name(element.begin),
             read=server.trigger_name(self.points.read),
             **{
                 name: (getattr(element, f"take_{name}"), "[$event.value, $event.page]")
-                for name in events
+                for name in EVENTS
             },
             **attributes,
         )
@@ -187,4 +206,4 @@ class FlowArea(AppearanceAttributes):
         if self._tasks:  # a page can trigger this again
             return
         self.server.controller.rc_area_register(self.stream)
-        self._tasks.append(start_task(self.stream.run(), "the page has stopped drawing"))
+        self._tasks.append(asyncio.create_task(self.stream.run()))

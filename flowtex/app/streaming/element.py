@@ -19,7 +19,7 @@ from typing import Any
 
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Routes
-from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop, start_task
+from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
@@ -344,7 +344,7 @@ class Player:
             return
         self._requested = nearest
         if self._reading is None or self._reading.done():
-            self._reading = start_task(self._read(), "a time step cannot be read")
+            self._reading = asyncio.create_task(self._read())
 
     async def _read(self) -> None:
         while (time := self._requested) is not None:
