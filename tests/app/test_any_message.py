@@ -33,7 +33,7 @@ def app() -> Iterator[FlowApp]:
 @property_test(40)
 @given(junk(), junk(), links())
 def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link: str) -> None:
-    element = app.area.element
+    element = app.area
     names = ("theme", "background", "compare", "painter")
     before = {name: app.state.get(name) for name in names}
     look = app.area.scene.appearance

@@ -51,7 +51,7 @@ async def test_use_leaves_no_object_behind() -> None:
     app.area.settings.resolution = 32
 
     def use() -> None:
-        element, whole = app.area.element, app.viewport.camera
+        element, whole = app.area, app.viewport.camera
         element.begin("browser")
         element.take_camera(pan(whole, 0.1, 0.1, 1.5).to_dict())
         element.take_camera(whole.to_dict())

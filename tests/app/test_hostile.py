@@ -248,7 +248,7 @@ async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -
     assert len(app.field.times) == 3
     async with playing(app):
         app.area.scalars, app.area.clim = "depth", (-1.0, 99.0)
-        app.area.element.take_time(1.0)
+        app.area.take_time(1.0)
         app.viewport.camera = camera = pan(app.viewport.camera, 0.2, 0.1, app.viewport.aspect)
         app.state.send(index=5)
         await until(lambda: app.data.choice.plane == "k=5")

@@ -85,9 +85,7 @@ class Appearance(Controller):
         on(self.take_comparison, "compare")
         on(self.take_painter, "painter")
         context.field_changed.connect(self.show_field)
-        self.area.element.painter_changed.connect(
-            lambda: self.state.set(painter=self.area.element.painter)
-        )
+        self.area.painter_changed.connect(lambda: self.state.set(painter=self.area.painter))
         self.take_background()
 
     def show_field(self) -> None:
@@ -100,7 +98,7 @@ class Appearance(Controller):
 
     def take_painter(self) -> None:
         """Draw by the painter that the page requests; the camera stays the same."""
-        painter, element = self.state.get("painter"), self.area.element
+        painter, element = self.state.get("painter"), self.area
         if painter != element.painter and name_among(painter, PAINTERS):
             element.call("paint", painter)  # the page begins again with it
         else:

@@ -40,7 +40,7 @@ class Context:
         self.routes = Routes.of(state.server)  #: The files that the page may fetch.
         self.controllers: list[Controller] = []  #: All, in the order in which they were made.
         self.field_changed = Signal()  #: Signal after another flow is shown.
-        area.element.failed.connect(self.complain)
+        area.failed.connect(self.complain)
 
     def complain(self, problem: object) -> None:
         """Show an error on the page."""

@@ -50,7 +50,7 @@ class Data(FlowOpener):
         self.stream.data_failed.connect(
             lambda error: context.complain(without_folder(str(error), self.name))
         )
-        context.area.element.parameter_asked.connect(self.take_parameter)
+        context.area.parameter_asked.connect(self.take_parameter)
 
     @property
     def name(self) -> str:
@@ -278,8 +278,8 @@ class FileBeside(FlowOpener):
             pairs = zip(astuple(self._flow.choice), astuple(self.data.choice), strict=True)
             differing = [part for part, first in pairs if part not in (first, "")]
             names = (self.data.name, " · ".join([self._flow.name, *differing]))
-        self.area.element.names = names
-        self.area.element.follow()
+        self.area.names = names
+        self.area.follow()
 
     def close(self) -> None:
         """End running tasks."""

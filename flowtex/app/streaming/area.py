@@ -8,23 +8,32 @@ or of the appearance, such as ``area.cmap = "magma"``, is drawn at once.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import trame_rca.module
 from trame_client.widgets.core import AbstractElement
 
-from flowtex.app.server.page import PageState
-from flowtex.app.streaming.element import Element, Player
+from flowtex.app.server.files import Routes
+from flowtex.app.server.page import PageState, mapping, name_among, number, running_loop
+from flowtex.app.streaming.element import PAINTERS, HandedScene, Player
 from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions
+from flowtex.host.view import CHOSEN, client_module
+from flowtex.plotting.handle import FlowHandle
+from flowtex.rendering.camera import Camera, CameraError
+from flowtex.rendering.webgl.protocol import Header
+from flowtex.rendering.webgl.velocity import PREFIX
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import Change, Scene
+from flowtex.settings import TABLE, Signal
 
 #: Events of the element on the page.
 EVENTS = ("camera", "time", "clock", "playing", "setting", "colours")
@@ -58,8 +67,8 @@ class FlowArea(AppearanceAttributes):
     ----------
     viewport, stream, player
         The view as it is drawn, the stream of pictures to the page, and the animation.
-    element, points
-        The element on the page, and the values at points.
+    points
+        The values at points.
     scalars, cmap, clim, log_scale, color, opacity, visible, lighting
         Arguments of ``plotter.flowtex.add``, which can be changed.
 
@@ -85,12 +94,31 @@ class FlowArea(AppearanceAttributes):
         self.state = state or PageState(server)
         names = FieldOptions.__dataclass_fields__
         self._reading = FieldOptions(**{k: options.pop(k, None) for k in names})
-        axes = ViewOptions(axes=options.pop("axes", None)).axes
+        self._axes = ViewOptions(axes=options.pop("axes", None)).axes
         self.viewport = Viewport(read_field(flow, self._reading), **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
-        self.element = Element(self.state, self.viewport, self.stream, self.player, axes)
         self.points = PointReader(self.viewport)
+        self.painter = ""  #: ``"server"`` or ``"browser"``; empty before a page begins.
+        #: Names of the panes, where they differ from those of their fields.
+        self.names: tuple[str, ...] = ()
+        #: Signals with the error of a user's action, and after a change of the painter.
+        self.failed, self.painter_changed = Signal(), Signal()
+        self.parameter_asked = Signal()
+        self.ref = self.state.key("element")
+        self._routes = Routes.of(server)
+        script = self._routes.give(
+            "client", lambda _rest: (client_module().encode(), "text/javascript", None)
+        )
+        self._client = f"{script}.js"
+        self._scenes: list[HandedScene] = []
+        self._handed: tuple[object, ...] = ()
+        self._sent: Header = {}
+        self._due: asyncio.Handle | None = None
+        #: Name of the page whose message is being handled.
+        self._by = ""
+        self.player.time_changed.connect(self._follow_time)
+        self.player.playing_changed.connect(self.follow)
         self._tasks: list[asyncio.Task[None]] = []
         settings = self.settings.observe(lambda name, value: self._changed())
         self._ends = (settings, self.scene.observe(self._scene_changed))
@@ -117,7 +145,7 @@ class FlowArea(AppearanceAttributes):
 
     def ui(self, **attributes: Any) -> Any:
         """Add the view to the open layout; ``attributes`` are those of the element."""
-        element, server = self.element, self.server
+        server = self.server
         server.enable_module(trame_rca.module)
         server.enable_module(
             {
@@ -130,11 +158,11 @@ class FlowArea(AppearanceAttributes):
         attributes["style"] = "width: 100%; height: 100%; " + attributes.get("style", "")
         return _Client(
             "flowtex-client",
-            ref=element.ref,
-            begin=server.trigger_name(element.begin),
+            ref=self.ref,
+            begin=server.trigger_name(self.begin),
             read=server.trigger_name(self.points.read),
             **{
-                name: (getattr(element, f"take_{name}"), "[$event.value, $event.page]")
+                name: (getattr(self, f"take_{name}"), "[$event.value, $event.page]")
                 for name in EVENTS
             },
             **attributes,
@@ -168,8 +196,8 @@ class FlowArea(AppearanceAttributes):
 
     def look(self, camera: object) -> None:
         """Set the camera, unless it sees nothing."""
-        if self.element.take_camera(camera):
-            self.element.repeat()
+        if self.take_camera(camera):
+            self.repeat()
 
     def reset_camera(self) -> None:
         """Show the whole surface again."""
@@ -178,7 +206,7 @@ class FlowArea(AppearanceAttributes):
 
     def changed(self) -> None:
         """Draw after a change, and notify the page."""
-        self.element.follow()
+        self.follow()
         self.stream.changed()
 
     def close(self) -> None:
@@ -188,11 +216,167 @@ class FlowArea(AppearanceAttributes):
             task.cancel()
         self._tasks.clear()
         self.player.close()
-        self.element.close()
+        self.painter = ""
+        if self._due is not None:
+            self._due.cancel()
+        for scene in self._scenes:
+            scene.close()
         self.points.close()
         for end in self._ends:
             end()
         self.viewport.close()
+
+    # --- messages to the page ------------------------------------------------------------------
+
+    def begin(self, painter: object) -> Header:
+        """Return all values that a new page needs, or a page with another painter."""
+        self.painter = painter if name_among(painter, PAINTERS) else PAINTERS[0]
+        self.stream.paused, self.stream.fits = self.painter == "browser", False
+        self.painter_changed.emit()
+        self.stream.reset()
+        self._sent = self._present()
+        area = self.stream.area_name
+        return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._sent}
+
+    def follow(self) -> None:
+        """Send changes to the page; other scenes after all pending changes."""
+        if not self.painter or self._due is not None:
+            return
+        loop = running_loop()
+        if loop is not None and self._handed != self._appearances():
+            self._due = loop.call_soon(self._send_changes)
+        else:
+            self._send_changes()
+
+    def _follow_time(self) -> None:
+        with self._changed_by(self.player.page):
+            self.follow()
+
+    def _send_changes(self) -> None:
+        self._due = None
+        changes: Header = {}
+        if self._handed != self._appearances():
+            changes["scenes"] = self._hand_over()
+        present = self._present()
+        changes |= {k: v for k, v in present.items() if v != self._sent.get(k)}
+        self._sent = present
+        if changes:
+            self.call("take", {**changes, "by": self._by})
+
+    def repeat(self) -> None:
+        """Send the current values to the page again, to replace invalid ones."""
+        self._handed, self._sent = (), {}
+        self.follow()
+
+    def call(self, method: str, *values: object) -> None:
+        """Call a method of the element on the page."""
+        self.server.js_call(self.ref, method, *values)
+
+    def _present(self) -> Header:
+        viewport = self.viewport
+        return {
+            "settings": dict(viewport.settings),
+            "camera": None if viewport.sees_all else viewport.camera.to_dict(),
+            "time": viewport.handle.time,
+            "timeBeside": viewport.time_beside if viewport.time_shift is None else None,
+            "clock": viewport.clock,
+            "playing": self.player.playing,
+        }
+
+    def _appearances(self) -> tuple[object, ...]:
+        return (
+            self.viewport.background,
+            self.names,
+            *(_appearance(pane) for pane in self.viewport.panes),
+        )
+
+    def _hand_over(self) -> list[Header]:
+        viewport, present = self.viewport, self._present()
+        panes, changes = viewport.panes, viewport.differences
+        for scene in self._scenes[len(panes) :]:
+            scene.close()
+        self._scenes = self._scenes[: len(panes)]
+        self._scenes += [HandedScene(self._routes) for _ in panes[len(self._scenes) :]]
+        settings = {name: value for name, value in changes.items() if name in TABLE}
+        result = []
+        for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
+            values = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
+            if n:
+                values |= {"own": settings, "timeShift": viewport.time_shift}
+            if n < len(self.names):
+                values["name"] = self.names[n]
+            result.append(scene.update(pane, viewport.background, **values))
+        self._handed = self._appearances()
+        return result
+
+    # --- messages from the page ------------------------------------------------------------------
+
+    @contextmanager
+    def _changed_by(self, page: object) -> Iterator[None]:
+        """Send changes by one page to all others."""
+        self._by = page if isinstance(page, str) else ""
+        try:
+            yield
+        except FieldError as error:
+            self._by = ""
+            self.failed.emit(error)
+            self.repeat()
+        finally:
+            self._by = ""
+
+    def take_camera(self, values: Any, page: object = "") -> bool:
+        """Set a camera sent by a page; return whether it is valid."""
+        viewport = self.viewport
+        try:
+            camera = Camera.from_dict(values, viewport.camera)
+        except CameraError:
+            return False
+        near = camera.is_near(viewport.field.surface)
+        if near:
+            with self._changed_by(page):
+                viewport.camera = camera
+                self.follow()
+            self.stream.changed()
+        return near
+
+    def take_time(self, time: object, page: object = "") -> None:
+        """Show a time of the field."""
+        checked = number(time, *map(float, self.viewport.field.times[[0, -1]]))
+        if checked is not None:
+            self.player.go_to(checked, page if isinstance(page, str) else "")
+
+    def take_clock(self, clock: object, page: object = "") -> None:
+        """Show a moment of the streaming of a steady flow."""
+        checked = number(clock, 0, 1e9)
+        if checked is not None:
+            with self._changed_by(page):
+                self.viewport.clock = checked
+                self.follow()
+            self.stream.changed()
+
+    def take_playing(self, playing: object, page: object = "") -> None:
+        """Start or stop the animation, as on the page."""
+        with self._changed_by(page):
+            self.player.playing = bool(playing)
+
+    def take_setting(self, pair: object, page: object = "") -> None:
+        """Set the setting that the page requests, or report an error."""
+        if not (isinstance(pair, list) and len(pair) == 2):
+            return
+        name, value = pair[0], number(pair[1], -1e300, 1e300)
+        if isinstance(name, str) and name.startswith(PREFIX) and value is not None:
+            self.parameter_asked.emit(name.removeprefix(PREFIX), value)
+        elif name_among(pair[0], TABLE):
+            with self._changed_by(page):
+                self.viewport.settings.update(**{pair[0]: pair[1]})
+
+    def take_colours(self, choice: object, page: object = "") -> None:
+        """Set the colours that the page requests, or report an error."""
+        del page  # which receives the colours as well
+        changes = {name: value for name, value in mapping(choice).items() if name in CHOSEN}
+        scene = self.viewport.scene
+        with self._changed_by(""), suppress(KeyError, TypeError):
+            scene.appearance = scene.appearance.changed(**changes)
 
     def _scene_changed(self, affects: Change) -> None:
         if affects == "appearance":
@@ -207,3 +391,11 @@ class FlowArea(AppearanceAttributes):
             return
         self.server.controller.rc_area_register(self.stream)
         self._tasks.append(asyncio.create_task(self.stream.run()))
+
+
+def _appearance(pane: FlowHandle) -> tuple[object, ...]:
+    scene = pane.scene
+    settings = scene.settings
+    built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
+    baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
+    return (*built, *baked, scene.field, scene.appearance, id(scene.image))

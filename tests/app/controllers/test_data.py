@@ -95,7 +95,7 @@ async def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
         task = asyncio.create_task(app.stream.run())
         app.stream.changed()
         await until(lambda: streamer.sent)
-        app.area.element.take_time(2 * 86_400.0)  # at which the reader crashes
+        app.area.take_time(2 * 86_400.0)  # at which the reader crashes
         await until(lambda: app.state.get("problem") != "")
         assert app.state.get("problem").startswith("winds.nc: the reader of this file crashed")
         assert app.viewport.handle.time == 0.0, "time stands"

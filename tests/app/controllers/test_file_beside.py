@@ -57,7 +57,7 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         assert second.settings.contrast == 2.0 and second.cmap == "magma"
         assert second.scene.scalar_limits == pytest.approx((3, 6))
         assert first.scene.scalar_limits[1] < 2
-        assert app.area.element.names == ("one", "two")
+        assert app.area.names == ("one", "two")
         app.area.clim = (0.0, 4.0)
         assert second.scene.scalar_limits == first.scene.scalar_limits == (0, 4)
         app.area.settings.contrast, app.area.opacity = 1.0, 0.5
@@ -66,7 +66,7 @@ async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         app.area.scalars, app.area.clim = "height", None
         assert second.scalars == "speed" and second.clim is None
         app.state.send(compare="nothing")
-        assert len(app.viewport.panes) == 1 and not app.area.element.names
+        assert len(app.viewport.panes) == 1 and not app.area.names
 
 
 async def test_the_time_is_that_of_the_first_or_the_last() -> None:
@@ -74,16 +74,16 @@ async def test_the_time_is_that_of_the_first_or_the_last() -> None:
     async with playing(app):
         await beside(app, "two")
         second = app.viewport.panes[1]
-        app.area.element.take_time(0.25)
+        app.area.take_time(0.25)
         assert second.time == 0.25
-        app.area.element.take_time(3.0)
+        app.area.take_time(3.0)
         assert second.time == 1.5
-        assert app.area.element.names == ("one", "two")
+        assert app.area.names == ("one", "two")
         await beside(app, "three")
         app.state.send(file="three")
         # The file beside is the first one now.
         await until(lambda: app.state.get("compare") == "nothing")
-        assert len(app.viewport.panes) == 1 and not app.area.element.names
+        assert len(app.viewport.panes) == 1 and not app.area.names
 
 
 def block(turn: float, nodes: int) -> pv.StructuredGrid:
@@ -119,13 +119,13 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         await until(lambda: app.data.choice.plane == "k=5")
         await beside(app, "c.vts")
         # It has no such plane, and says which one it is.
-        assert app.area.element.names == ("a.vts", "c.vts · k=1")
+        assert app.area.names == ("a.vts", "c.vts · k=1")
         assert height() == pytest.approx(0.5)
         app.state.send(compare="File: torn.vts")
         await until(lambda: app.state.get("problem"))
         assert app.state.get("problem").startswith("torn.vts: ")
         assert str(tmp_path) not in app.state.get("problem")
-        assert len(app.viewport.panes) == 1 and not app.area.element.names
+        assert len(app.viewport.panes) == 1 and not app.area.names
         assert app.state.get("compare") == "nothing"
         app.state.send(index=2)  # nothing is beside it that would follow
         await until(lambda: app.data.choice.plane == "k=2")

@@ -44,7 +44,7 @@ class Told:
 
     def __init__(self, app: FlowApp, monkeypatch: pytest.MonkeyPatch) -> None:
         self.calls: list[tuple[str, Any]] = []
-        self._ref = app.area.element.ref
+        self._ref = app.area.ref
         monkeypatch.setattr(app.server, "js_call", self)
 
     def __call__(self, ref: str, method: str, value: Any) -> None:
@@ -71,7 +71,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
 ) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
     app = large()
-    (scene,) = app.area.element.begin("browser")["scenes"]
+    (scene,) = app.area.begin("browser")["scenes"]
     assert app.stream.paused
     assert scene["header"]["pyramid"]["shapes"] == [[200, 300], [101, 151], [51, 76]]
     ask = asking(app, scene)
@@ -123,7 +123,7 @@ def test_a_page_is_told_what_changes_here_and_what_others_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     app = small_page(small(steps=4), 3, 96, 64)
-    told, element = Told(app, monkeypatch), app.area.element
+    told, element = Told(app, monkeypatch), app.area
     app.area.settings.contrast = 2.0
     assert told.calls == []  # there is no page yet
     begun = element.begin("browser")
@@ -148,7 +148,7 @@ def test_a_page_is_told_what_changes_here_and_what_others_say(
 
 def test_what_cannot_be_is_told_and_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
     app = small_page(small(), 9, 96, 64)
-    told, element = Told(app, monkeypatch), app.area.element
+    told, element = Told(app, monkeypatch), app.area
     element.begin("browser")
     element.take_setting(["samples", 1000])
     assert "samples is 1000; expected" in app.state.get("problem")
@@ -161,7 +161,7 @@ def test_what_cannot_be_is_told_and_taken_back(monkeypatch: pytest.MonkeyPatch) 
 
 def test_colours_are_those_that_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     app = small_page(small(), 3, 96, 64)
-    told, element = Told(app, monkeypatch), app.area.element
+    told, element = Told(app, monkeypatch), app.area
     element.begin("browser")
     element.take_colours({"scalars": "height", "clim": [0, 2], "cmap": "magma", "opacity": 0.5})
     assert (app.area.scalars, app.area.clim, app.area.cmap) == ("height", (0, 2), "magma")
@@ -183,7 +183,7 @@ def test_colours_are_those_that_are_chosen(monkeypatch: pytest.MonkeyPatch) -> N
 def test_two_panes_are_two_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     app = small_page(small(steps=4), 3, 96, 64)
     told = Told(app, monkeypatch)
-    app.area.element.begin("browser")
+    app.area.begin("browser")
     app.area.compare({"lod": False})
     first, second = (scene["header"] for scene in told.taken()["scenes"])
     assert first["differs"] == second["differs"] == ["lod"]
