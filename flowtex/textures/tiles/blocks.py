@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.field.triangles.triangle_nodes import neighbours, triangle_normals
 
@@ -87,7 +87,7 @@ def _extent(values: Floats) -> float:
     return max(float(np.ptp(values)), SAME * float(np.abs(values).max()))
 
 
-def block_roughness(nodes: Nodes, cells: int) -> Floats:
+def block_roughness(nodes: Nodes | FlowField, cells: int) -> Floats:
     """Return the greatest error in each block of ``cells`` cells of the next level.
 
     The errors, (rows, columns), are those of the first step, in multiples of what is not seen in
@@ -103,18 +103,22 @@ def block_roughness(nodes: Nodes, cells: int) -> Floats:
         values.append((steps[0][..., None], np.full(speed.shape, extent)))
     shape = [max(-(-(n // 2) // cells), 1) for n in speed.shape]
     greatest, longest = np.zeros(shape), np.full(shape, np.finfo(float).tiny)
-    for axis, count in enumerate(speed.shape):
-        if count < 3:
-            continue
-        for part, most in zip(_errors(axis, nodes, values), (greatest, longest), strict=True):
-            for along in (0, 1):
-                starts = np.arange(shape[along]) * (cells if along == axis else 2 * cells)
-                part = np.maximum.reduceat(part, np.minimum(starts, part.shape[along] - 1), along)
-            np.maximum(most, part, out=most)
+    for row in range(shape[0]):
+        rows = slice(2 * cells * row, 2 * cells * (row + 1) + 1)
+        arrays = nodes.points[rows], nodes.valid[rows], [(v[rows], s[rows]) for v, s in values]
+        for axis in (0, 1):
+            for found, most in zip(_errors(axis, *arrays), (greatest, longest), strict=True):
+                if found.size:
+                    starts = np.arange(shape[1]) * (cells if axis else 2 * cells)
+                    starts = np.minimum(starts, found.shape[1] - 1)
+                    found = np.maximum.reduceat(found.max(axis=0), starts)
+                    np.maximum(most[row], found, out=most[row])
     return greatest / longest
 
 
-def _errors(axis: int, nodes: Nodes, values: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+def _errors(
+    axis: int, points: Floats, valid: Bools, values: list[tuple[Floats, Floats]]
+) -> tuple[Floats, Floats]:
     """Return errors at the nodes of the lines to leave out along an axis, and lengths of cells.
 
     Each of ``values`` has a number of components, (J, I, C), and a size to compare with, (J, I).
@@ -126,23 +130,26 @@ def _errors(axis: int, nodes: Nodes, values: list[tuple[Floats, Floats]]) -> tup
         count = (len(array) - 1) // 2
         return [array[k : k + 2 * count : 2] for k in (0, 1, 2)]
 
-    before, middle, after = lines(nodes.points)
+    before, middle, after = lines(points)
     one, other = norm(middle - before), norm(after - middle)
     share = np.divide(one, one + other, where=one + other > 0, out=np.full_like(one, 0.5))
     length, errors = norm(after - before), np.zeros(share.shape)
     # A scalar that is NaN at some nodes, or a size of zero, gives NaN or infinity.
     with np.errstate(invalid="ignore", divide="ignore"):
-        for array, size in [(nodes.points, None), *values]:
+        for array, size in [(points, None), *values]:
             before, middle, after = lines(array)
             error = norm(middle - before - share[..., None] * (after - before))
-            limit = (
-                PLACE_ERROR * length if size is None else VALUE_ERROR * np.max(lines(size), axis=0)
-            )
+            if size is None:
+                limit = PLACE_ERROR * length
+            else:
+                limit = VALUE_ERROR * np.maximum.reduce(lines(size))
             errors = np.maximum(errors, np.where(error > 0, error / limit, error))
-    valid = np.sum(lines(nodes.valid), axis=0)
     errors *= length
-    errors[np.isnan(errors) | (valid < 3)] = np.inf
-    errors[valid == 0] = length[valid == 0] = 0.0
+    if not valid.all():
+        known = np.sum(lines(valid), axis=0)
+        errors[known < 3] = np.inf
+        errors[known == 0] = length[known == 0] = 0.0
+    errors[np.isnan(errors)] = np.inf
     return np.moveaxis(errors, 0, axis), np.moveaxis(length, 0, axis)
 
 

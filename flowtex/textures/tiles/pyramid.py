@@ -76,8 +76,7 @@ NEEDED_SHARE = 0.75
 MOST_CUT_SHARE = 5e-3
 #: Step between the lines that are sampled for cut paths.
 SAMPLED_LINES = 8
-#: Rows that are averaged together.
-ROWS = 256
+ROWS = 256  #: Rows that are averaged together.
 
 
 class TileKey(NamedTuple):
@@ -207,7 +206,8 @@ class Pyramid:
         greatest = np.zeros(())
         for coarser in range(max(level - 1, 1), level + 1):
             if coarser not in self._roughness:
-                nodes = self._nodes(coarser - 1, *map(np.arange, self.shape(coarser - 1)))
+                lines = map(np.arange, self.shape(coarser - 1))
+                nodes = self.field if coarser == 1 else self._nodes(coarser - 1, *lines)
                 self._roughness[coarser] = block_roughness(nodes, BLOCK_CELLS)
             errors = self._roughness[coarser]
             if coarser < level:
