@@ -220,8 +220,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         valid
             Nodes that have data, (J, I). All by default.
         periodic
-            Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default those
-            whose first and last lines of nodes coincide, and rings that lack their last cell.
+            Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default they are
+            detected: first and last lines of nodes that coincide, a ring that ends one cell short,
+            and global longitude on a flat map.
         scalars
             Further nodal arrays, name to (J, I) or (T, J, I); values beyond 1e100 become NaN.
         cell_scalars

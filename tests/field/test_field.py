@@ -143,6 +143,21 @@ def test_a_ring_one_cell_short_gets_its_line(
     np.testing.assert_allclose(turn(ring(13, last=True)), field.points, atol=1e-12)
 
 
+@pytest.mark.parametrize(("letter", "turn", "closed"), AXES)
+@pytest.mark.parametrize("count", [36, 37])
+def test_global_longitude_closes_an_axis(
+    count: int, letter: str, turn: Callable[[Floats], Floats], closed: tuple[bool, bool]
+) -> None:
+    x, y = np.meshgrid(np.arange(count) * 10.0 - 180, np.linspace(90, -90, 19), indexing="ij")
+    points = turn(np.stack([x, y, 0 * x], axis=-1))
+    field = FlowField.from_arrays(points, ones(points))
+    axis = "ji".index(letter)
+    assert field.periodic == closed
+    assert field.shape[axis] == 37
+    assert np.ptp(field.points[..., 0]) == pytest.approx(360)
+    assert field.surface.offset[axis].tolist() == [360, 0, 0]
+
+
 def test_a_torus_closes_both_axes() -> None:
     a, b = np.meshgrid(*[np.linspace(0, 2 * np.pi, 24, endpoint=False)] * 2)
     r = 3 + np.cos(a)

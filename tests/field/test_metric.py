@@ -154,7 +154,8 @@ def test_a_whole_turn_comes_back() -> None:
 def test_a_turn_of_a_flat_map_goes_on() -> None:
     x, y = np.meshgrid(np.arange(0.0, 361, 10), np.linspace(-90, 90, 19))
     points = np.stack([x, y], axis=-1)
-    surface = FlowField.from_arrays(points, np.ones_like(points), periodic="i").surface
+    surface = FlowField.from_arrays(points, np.ones_like(points)).surface
+    assert surface.periodic == (False, True)
     at = inside(np.random.default_rng(4), 19, 37)
     np.testing.assert_allclose(
         surface.at(at + np.array([36, 0])), surface.at(at) + np.array([360, 0, 0]), atol=1e-11

@@ -87,6 +87,9 @@ def find_closure(points: Floats) -> tuple[bool, Floats | None]:
         return False, None
     if _coincide(points, extent):
         return True, None
+    turn = _longitude(points)
+    if turn is not None:
+        return turn
     if len(points) >= MIN_RING_LINES and _one_cell_short(points):
         return True, points[:1]
     return False, None
@@ -135,6 +138,26 @@ def _one_cell_short(points: Floats) -> bool:
     with np.errstate(invalid="ignore"):
         around = np.nansum(steps, axis=0) >= 0.75 * len(steps) * gap
     return bool(around[finite].all())
+
+
+def _longitude(points: Floats) -> tuple[bool, Floats | None] | None:
+    """Recognise global longitude in degrees along the first axis of a flat map."""
+    x, y = points[..., 0], points[..., 1]
+    if not np.isfinite(x[:, 0]).all():
+        return None
+    # One line is enough to exclude most other meshes.
+    steps = np.diff(x[:, 0])
+    even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
+    span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])
+    repeats, ends_short = abs(span - 360) <= 1e-3 * step, abs(span + step - 360) <= 1e-2 * step
+    if not (even and (repeats or ends_short)):
+        return None
+    if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
+        return None
+    same = np.ptp(x, axis=1).max() <= 1e-6 * 360
+    if not (same and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
+        return None
+    return True, None if repeats else 2 * points[-1:] - points[-2:-1]
 
 
 def _repeat_first(a: A, axis: int) -> A:

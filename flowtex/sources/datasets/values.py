@@ -16,6 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
+from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
@@ -230,6 +231,10 @@ def region_lines(places: Places, name: str | None) -> NodeLines | None:
         return None
     a, b = places.lines
     if not places.is_earth:
+        ends = [np.broadcast_arrays(a, b[[0, -1], None]), np.broadcast_arrays(a[[0, -1], None], b)]
+        grids = [np.stack([*pair, np.zeros(pair[0].shape)], axis=-1) for pair in ends]
+        if any(find_closure(np.swapaxes(grid, 0, 1))[0] for grid in grids):
+            return None
         columns = np.tile(np.arange(len(a)), (2, 1))
         return NodeLines(a, b, np.arange(len(b)), columns, np.zeros(len(a)), None, "")
     projection = maps.projection_of(places, name)

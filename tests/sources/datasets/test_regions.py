@@ -149,6 +149,10 @@ def test_grids_that_are_no_lines_are_read_whole() -> None:
         lat=(("j", "i"), lat, {"units": "degrees_north"}),
     )
     assert isinstance(read_datasets(curved, FieldOptions(), regions=True), GridArrays)
+    flat = dataset(np.arange(0.0, 360, 1.5), LATITUDES["north"], plane=True)
+    assert isinstance(
+        read_datasets(flat, FieldOptions(), regions=True), GridArrays
+    )  # it may close, as longitude does
 
 
 def test_the_largest_models_are_recognised_by_their_lines() -> None:
