@@ -17,7 +17,7 @@ from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.controllers.sharing import FORMATS, Sharing
 from flowtex.app.server.files import UPLOAD_SUFFIXES
-from flowtex.app.server.page import PageState
+from flowtex.app.server.page import PageState, name_among
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions.local import MakeApp, opener
 from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
@@ -55,6 +55,15 @@ WORDS = {
     "SLIDER": 'density="compact" color="primary" hide-details thumb-size="14" track-size="3"',
     "SWITCH": 'density="compact" color="primary" hide-details inset class="flowtex-switch"',
     "TOGGLE": 'density="compact" color="primary" variant="text" mandatory class="flowtex-toggle"',
+}
+#: Directions of view onto a surface, and their directions up.
+VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    "from +x": ((1, 0, 0), (0, 0, 1)),
+    "from -x": ((-1, 0, 0), (0, 0, 1)),
+    "from +y": ((0, 1, 0), (0, 0, 1)),
+    "from -y": ((0, -1, 0), (0, 0, 1)),
+    "from +z": ((0, 0, 1), (0, 1, 0)),
+    "from -z": ((0, 0, -1), (0, 1, 0)),
 }
 
 
@@ -164,6 +173,23 @@ class FlowApp:
 
 class Viewpoint(Controller):
     """The camera and the time of a page."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.state.set(views=self.views)
+        context.field_changed.connect(lambda: self.state.set(views=self.views))
+
+    @property
+    def views(self) -> list[str]:
+        """Names of the directions of view; none for a flat surface."""
+        return [] if self.viewport.flat else list(VIEWS)
+
+    def look_from(self, name: object) -> None:
+        """Look at the whole of a curved surface from a side."""
+        if name_among(name, VIEWS):
+            toward, up = VIEWS[name]
+            self.viewport.home(toward=toward, up=up)
+            self.area.changed()
 
     def describe(self) -> State:
         """Return the camera, and the time where it makes a difference."""
@@ -292,6 +318,7 @@ def build_page(app: FlowApp) -> Any:
         "list_files": data.list_files,
         "reload": data.reload,
         "cancel_opening": app.cancel_opening,
+        "look_from": app.viewpoint.look_from,
         "save": sharing.start,
         "cancel_saving": sharing.cancel,
         "show_state": sharing.show_state,

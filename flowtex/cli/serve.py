@@ -6,6 +6,7 @@ import asyncio
 import os
 import re
 import stat
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -189,6 +190,7 @@ def pyramid(
         raise UsageError(
             "--output is missing; expected the folder or the URL of a store, such as -o flow.zarr"
         )
+    start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"):
         place: Any = files[0] if len(files) == 1 else files
         source = source_of(place, **arguments(flow))
@@ -196,8 +198,9 @@ def pyramid(
         built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
     kept = f", {built.kept:,} kept" if built.kept else ""
     rows, columns = source.shape
+    seconds = time.perf_counter() - start
     text = f"{columns} × {rows} nodes, {built.depth + 1} levels"
-    report(output, text, f"{built.made:,} shards built{kept}")
+    report(output, text, f"{built.made:,} shards built{kept}, {seconds:.1f} s")
     return 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -31,6 +32,9 @@ from flowtex.cli.options import (
     pixels,
 )
 
+#: Share of the flow that may leave the surface before the message has it.
+NOTABLE_LOSS = 0.01
+
 
 def render(
     *files: FILE,
@@ -47,6 +51,7 @@ def render(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Draw a file as a picture."""
+    start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
     from flowtex.rendering import diagnostics
@@ -61,7 +66,10 @@ def render(
     from flowtex import render as draw
 
     write_picture(draw(field, **shown, **options), output)
-    report(output, describe(field), _size(options))
+    share = field.normal_share
+    lost = f", {share:.0%} of the flow is normal to the surface" if share > NOTABLE_LOSS else ""
+    seconds = time.perf_counter() - start
+    report(output, f"{describe(field)}{lost}", f"{_size(options)}, {seconds:.1f} s")
     return 0
 
 
@@ -94,6 +102,7 @@ def movie(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Write a file as a movie: a seamless loop, or all times of a time-varying flow."""
+    start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     from flowtex.plotting.offscreen.encoders import check_movie, default_fps
     from flowtex.rendering import diagnostics
@@ -112,7 +121,7 @@ def movie(
     loop = ", a seamless loop" if result.closed else ""
     figures = (
         f"{_size(options)}, {result.frames} frames in {result.seconds:g} s, "
-        f"{result.nbytes / 1e6:.1f} MB"
+        f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
     report(output, f"{describe(field)}{loop}", figures)
     return 0
@@ -143,6 +152,7 @@ def export(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Write a file as one HTML page that needs neither a server nor a network."""
+    start = time.perf_counter()
     choice, options = arguments(flow), drawing(look, settings)
     field = load_field(files, choice)
     if steps is not None and steps < 1:
@@ -154,8 +164,9 @@ def export(
     with writing(output):
         options |= {"steps": steps, "title": title, "store": store, "basemap": basemap}
         page = write_page(field, output, **options)
+    seconds = time.perf_counter() - start
     selected = "" if page.steps == len(field.times) else f", {page.steps} of them"
-    report(output, f"{describe(field)}{selected}", f"{page.nbytes / 1e6:.2f} MB")
+    report(output, f"{describe(field)}{selected}", f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s")
     return 0
 
 

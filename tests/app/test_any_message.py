@@ -40,6 +40,7 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link
 
     async def story() -> None:
         element.begin(one)
+        app.viewpoint.look_from(one)
         for setting in (one, ["samples", two], [one, two]):
             element.take_setting(setting)
         element.take_colours(one)

@@ -289,4 +289,7 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
     app.viewport.camera = pan(app.viewport.camera, 0.3, 0.1, app.viewport.aspect)
     app.area.reset_camera()
     assert 0.5 < seen() <= 1.0
+    for view in app.viewpoint.views:
+        app.viewpoint.look_from(view)
+        assert 0.3 < seen() <= 1.0
     app.close()

@@ -127,7 +127,7 @@ def test_a_picture_is_drawn_along_the_flow(
         "--scalars", "none", "--zoom", "2",
     )  # fmt: skip
     assert (code, err) == (0, "")
-    assert "6 × 5 nodes" in output and "200 × 150" in output
+    assert "6 × 5 nodes" in output and "200 × 150" in output and "leaves the surface" not in output
     pixels = grey(out)
     assert pixels.shape == (150, 200)
     along, across = roughness(pixels)
@@ -318,6 +318,7 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
         "export", gyre, "-o", page, "--samples", 9, "--title", "two gyres", "--axes", "scale"
     )
     assert (code, err) == (0, "")
+    assert " MB, " in out
     assert f"{page.stat().st_size / 1e6:.2f} MB" in out
     read = Reader(page.read_text(encoding="utf-8"))
     assert (read.title, read.header()["axes"]) == ("two gyres", "scale")

@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 from PIL import Image
 
+from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex._util.progress import check, stoppable
@@ -43,6 +44,7 @@ FORMATS = ("PNG", "MP4", "GIF")
 LABELS = {
     "out_width": "the width",
     "out_height": "the height",
+    "out_density": "the fineness",
     "out_seconds": "the length in seconds",
     "out_fps": "the pictures per second",
 }
@@ -53,6 +55,8 @@ MOST_PIXELS = 100_000_000
 MOST_MOVIE_PIXELS = 9_000_000
 #: Longest side of either.
 LONGEST_SIDE_PX = 30_000
+#: How fine a picture may be.
+MOST_DENSITY = 8.0
 
 _log = logging.getLogger(__name__)
 
@@ -75,6 +79,7 @@ class Sharing(Controller):
             out_format=FORMATS[0],
             out_width=1920,
             out_height=1080,
+            out_density=1.0,
             out_smooth=True,
             out_annotations=False,
             out_seconds=4.0,
@@ -116,6 +121,7 @@ class Sharing(Controller):
                 path,
                 (int(numbers["out_width"]), int(numbers["out_height"])),
                 supersampling=2 if get("out_smooth") else 1,
+                density=numbers["out_density"],
                 annotations=bool(get("out_annotations")),
                 seconds=numbers["out_seconds"],
                 fps=numbers["out_fps"],
@@ -200,8 +206,9 @@ class Job:
     A picture of any size is drawn a tile at a time, through a window as large as a tile. The suffix
     of the file is the format: a picture as PNG, or a movie, which is a seamless loop of a steady
     flow, or all times of one that varies; an MP4 gets even sides. ``supersampling`` are the pixels
-    that are drawn, along each side, for one of the result.
-    Raises an ExportError or a MovieError for invalid arguments.
+    that are drawn, along each side, for one of the result, and ``density`` those of the result for
+    one that the settings speak of: 2 has grains of twice as many pixels, for high-resolution
+    screens and print. Raises an ExportError or a MovieError for invalid arguments.
     """
 
     def __init__(
@@ -211,6 +218,7 @@ class Job:
         size: tuple[int, int],
         *,
         supersampling: int = 1,
+        density: float = 1.0,
         annotations: bool = False,
         seconds: float | None = None,
         fps: float = 30.0,
@@ -220,14 +228,9 @@ class Job:
         suffix = path.suffix.lower()
         if suffix == ".mp4":
             size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
-        most = MOST_PIXELS if suffix == ".png" else MOST_MOVIE_PIXELS
-        if not all(1 <= side <= LONGEST_SIDE_PX for side in size) or size[0] * size[1] > most:
-            raise ExportError(
-                f"the size is {size[0]} x {size[1]}; expected 1 to {LONGEST_SIDE_PX:,} pixels "
-                f"along each side, and at most {most:,} in all"
-            )
+        _check(size, density, MOST_PIXELS if suffix == ".png" else MOST_MOVIE_PIXELS)
         self._viewport, self._size, self._quality = viewport, size, quality
-        self._supersampling = supersampling
+        self._supersampling, self._density = supersampling, density
         self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
         self.frames: FrameTimes | None = None
         self._report: Callable[[float], None] = lambda share: None
@@ -283,11 +286,11 @@ class Job:
             await asyncio.wrap_future(self._pool.submit(writer.close))
 
     def _prepare(self) -> None:
-        panes = self._viewport.panes
-        self._gap = GAP_PX if len(panes) > 1 else 0
+        panes, density = self._viewport.panes, self._density
+        self._gap = max(round(GAP_PX * density), 1) if len(panes) > 1 else 0
         self._viewport.longest_side = TILE_PX
         for pane in panes:
-            pane.density = self._supersampling
+            pane.density = density * self._supersampling
         if self._annotations:
             layouts = self._annotate(np.zeros((*self._size[::-1], 3), np.uint8))
             above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
@@ -335,3 +338,13 @@ def _moving(settings: Settings, field: FlowField) -> Settings:
     if field.steady and moving.motion == "off":
         moving.motion = "speed"
     return moving
+
+
+def _check(size: tuple[int, int], density: float, most: int) -> None:
+    if not all(1 <= side <= LONGEST_SIDE_PX for side in size) or size[0] * size[1] > most:
+        raise ExportError(
+            f"the size is {size[0]} x {size[1]}; expected 1 to {LONGEST_SIDE_PX:,} pixels along "
+            f"each side, and at most {most:,} in all"
+        )
+    expected = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
+    checked_number("density", density, 1 / MOST_DENSITY, MOST_DENSITY, expected=expected)

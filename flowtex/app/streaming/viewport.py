@@ -294,9 +294,9 @@ class Viewport:
 
     @property
     def sees_all(self) -> bool:
-        """Whether the camera shows the whole surface."""
+        """Whether the camera shows the whole surface from the default direction."""
         is_near = self._look.get("focus") or self._look.get("zoom", 1.0) != 1.0
-        return self.camera == self._home and not is_near
+        return self.camera == self._home and not (is_near or self._look.get("toward"))
 
     def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
         """Return the point of a pane's surface at (x, y) from -1 to 1; ``None`` beside it.

@@ -71,13 +71,15 @@ def test_a_picture_is_what_is_on_view(scene: Viewport, tmp_path: Path) -> None:
     assert difference(np.roll(pixels(path), 3, axis=0), shown) > 3
 
 
-def test_a_larger_picture_is_finer(scene: Viewport, tmp_path: Path) -> None:
+def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) -> None:
     view = (scene.size, scene.camera, dict(scene.handle.settings))
     shown = scene.draw(240, 160)
+    dense = run(Job(scene, tmp_path / "dense.png", (480, 320), density=2.0))
     fine = run(Job(scene, tmp_path / "fine.png", (480, 320)))
     smooth = run(Job(scene, tmp_path / "smooth.png", (240, 160), supersampling=2))
-    averaged = np.asarray(Image.open(fine).reduce(2))
-    assert difference(pixels(smooth), shown) < 5 < difference(averaged, shown)
+    averaged = [np.asarray(Image.open(path).reduce(2)) for path in (dense, fine)]
+    assert difference(averaged[0], shown) < 5 < difference(averaged[1], shown)
+    assert difference(pixels(smooth), averaged[0]) < 1
     # Nothing of what is on view has changed.
     assert view == (scene.size, scene.camera, dict(scene.handle.settings))
     assert difference(scene.draw(240, 160), shown) == 0
@@ -162,6 +164,7 @@ def test_a_cancelled_job_leaves_nothing(plain: Viewport, tmp_path: Path, kind: s
     [
         ("a.png", {"size": (0, 10)}, "is 0 x 10; expected 1 to 30,000 pixels along"),
         ("a.png", {"size": (20_000, 20_000)}, "at most 100,000,000 in all"),
+        ("a.png", {"density": 0.0}, "density is 0.0; expected 0.125 to 8"),
         ("a.gif", {"size": (5000, 5000)}, "the size is 5000 x 5000; expected"),
         ("a.gif", {"seconds": 1e9}, "seconds is 1000000000.0; expected a number from 0.1"),
         ("a.avi", {}, "'.avi' is not a movie format"),
