@@ -53,7 +53,7 @@ from flowtex.sources.datasets.values import (
     examined,
     read_step,
 )
-from flowtex.sources.models.conventions import check_faces, find_mesh
+from flowtex.sources.models.conventions import find_mesh, join_faces
 from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
@@ -234,7 +234,10 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets, choice = as_datasets(data, record), Choice.of(options)
     pair = select.choose_pair(datasets, *select.two_names(options.vectors))
-    check_faces(pair.u, {*choice.sel, *choice.isel})
+    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
+    if joined is not None:
+        datasets = Datasets(joined, datasets.closers)
+        pair = select.choose_pair(datasets, str(pair.u.name), str(pair.v.name))
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)
     one, two = pair.u, pair.v

@@ -1,13 +1,14 @@
 """Finding the mesh of a dataset by UGRID, by the names of models, or by the bounds of cells.
 
 Its dimensions, levels and times then get a form in which the axes are recognised. Values along one
-dimension are points of a mesh.
+dimension are points of a mesh: scattered ones, faces of a cube.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterator, Mapping, Sequence
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axis_kind
 from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
-from flowtex.sources.datasets.select import MOVING, find_pairs
+from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.reader_errors import values_in
@@ -244,11 +245,37 @@ def _is_surface(x: xr.DataArray, y: xr.DataArray) -> bool:
         return False
 
 
-def check_faces(array: xr.DataArray, chosen: Container[str]) -> None:
-    """Raise a FieldError for several faces of a globe, of which none is ``chosen``."""
-    for face, count in array.sizes.items():
-        if FACES_OF_GLOBE.match(str(face)) and 1 < count <= MOST_FACES and face not in chosen:
-            raise FieldError(
-                f"{array.name} lies on {count} faces of a globe ({face}); select one, as in "
-                f"isel={{{str(face)!r}: 0}}, or interpolate to longitudes and latitudes"
-            )
+def join_faces(
+    datasets: Sequence[xr.Dataset], pair: Pair, chosen: Container[str], wanted: str | None
+) -> list[xr.Dataset] | None:
+    """Return datasets with the faces of a globe along ``NODES``; ``None`` for other datasets.
+
+    ``chosen`` are axes along which one entry is selected, and ``wanted`` the directions of the
+    components, if they are given. Coordinates along a part of the axes only count the nodes, and
+    are dropped.
+    """
+    u = pair.u
+    sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}
+    face = next((d for d, n in sizes.items() if 1 < n <= MOST_FACES and d not in chosen), "")
+    if not face:
+        return None
+    if (wanted or pair.along) != "earth":
+        raise FieldError(
+            f"{u.name} and {pair.v.name} lie along the rows and columns of each of {sizes[face]} "
+            f"faces ({face}), as no standard name says eastward and northward; compute these "
+            f"components, or select one face, as in isel={{{face!r}: 0}}"
+        )
+    for lon, _ in _pairs([ds[name] for ds in datasets for name in ds.variables]):
+        dims = {str(d) for d in lon.dims}
+        if lon.ndim == 3 and face in dims:
+            return [_one_dimension(ds, dims) if dims <= set(ds.dims) else ds for ds in datasets]
+    return None
+
+
+def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
+    parts = [name for name, a in ds.variables.items() if face & {*a.dims} and face - {*a.dims}]
+    ds = ds.drop_vars(parts)
+    if "source" in ds.encoding and not ds.chunks and find_spec("dask") is not None:
+        # Otherwise all of a file is read.
+        ds = ds.chunk({d: 1 if d not in face else -1 for d in ds.dims})
+    return ds.stack({NODES: sorted(face)}, create_index=False)

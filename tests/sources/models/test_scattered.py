@@ -1,4 +1,4 @@
-"""Scattered points: triangles between neighbours, exact values."""
+"""Scattered points and faces of a cube: triangles between neighbours, exact values."""
 
 from __future__ import annotations
 
@@ -63,13 +63,35 @@ def reduced(n: int = 16) -> tuple[Floats, Floats]:
     return lon, np.repeat(lat, counts)
 
 
-def test_faces_of_a_globe_raise() -> None:
-    lon, lat = np.random.default_rng(0).uniform(-50, 50, (2, 6, 8, 8))
+def cube(n: int = 8) -> xr.Dataset:
+    """Faces of a cube, with coordinates along its axes that only count."""
+    a = np.linspace(-np.pi / 4, np.pi / 4, 2 * n + 1)[1::2]
+    p, q = np.meshgrid(np.tan(a), np.tan(a))
+    one = np.ones_like(p)
+    faces = ((one, p, q), (-p, one, q), (-one, -p, q), (p, -one, q), (-q, p, one), (q, p, -one))
+    x, y, z = np.moveaxis(np.array(faces), 1, 0)
+    lon, lat = np.degrees(np.arctan2(y, x)) % 360, np.degrees(np.arctan2(z, np.hypot(x, y)))
     u, v = components(lon, lat)
-    dims = ("nf", "y", "x")
-    ds = xr.Dataset({"U": (dims, u, EAST), "V": (dims, v, NORTH)}, {"lons": (dims, lon)})
-    with pytest.raises(FieldError, match=r"U lies on 6 faces of a globe .*isel={'nf': 0}"):
+    dims = ("nf", "Ydim", "Xdim")
+    counts = np.linspace(-5, 5, n)
+    return xr.Dataset(
+        {"U": (dims, u, EAST), "V": (dims, v, NORTH)},
+        {
+            "lons": (dims, lon),
+            "lats": (dims, lat),
+            "Xdim": ("Xdim", counts, {"units": "degrees_east"}),
+            "Ydim": ("Ydim", counts, {"units": "degrees_north"}),
+        },
+    )
+
+
+def test_components_along_rows_of_faces_raise() -> None:
+    ds = cube()
+    for name in "UV":
+        del ds[name].attrs["standard_name"]
+    with pytest.raises(FieldError, match=r"U and V lie along the rows.*6 faces.*isel={'nf': 0}"):
         FlowField.from_xarray(ds, globe=True)
+    assert faults(FlowField.from_xarray(ds, components="earth", globe=True)) < 1e-6
 
 
 def test_no_triangle_spans_the_notch() -> None:
