@@ -68,12 +68,16 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
 
 
 def has_roughness(field: FlowField) -> bool:
-    """Return whether the roughness of a field is known: its only step is in memory."""
+    """Return whether the roughness of a field is known: its only step is in memory.
+
+    A browser computes a formula at the nodes that it needs.
+    """
     arrays = (field.velocity, *field.scalars.values())
     return (
         len(field.times) == 1
         and all(isinstance(values, np.ndarray) for values in arrays)
         and not field.on_cells
+        and field.formula is None
     )
 
 
