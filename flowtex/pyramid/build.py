@@ -18,6 +18,7 @@ from flowtex.pyramid.layout import (
     DIGESTS,
     FLOW,
     MOST_HELD,
+    VALUES,
     Part,
     about_source,
     check_about,
@@ -192,11 +193,7 @@ def build(
         run, depth = _Run(place, group, about, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
-            units: list[Part | TileTask] = []
-            for level in range(depth + 1):
-                units += _existing_parts(run, level)
-                tiles = sorted(run.shards(f"{level}/{FLOW}"))
-                units += [TileTask(TileKey(level, j, i), (step,)) for step, j, i, _ in tiles]
+            units = sorted({*_existing_units(run)}, key=repr)
             run.work(workers, mend, units, "Checking existing objects", TILE_BYTES, new=False)
         _write_finest(run, data, workers if data.travels else threads)
         for level in range(1, depth + 1):
@@ -387,6 +384,20 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
             f"{run.place} was built from an earlier version of the field; build with fresh=True"
         )
     run.update(fingerprint=fingerprint)
+
+
+def _existing_units(run: _Run) -> Iterator[Part | TileTask]:
+    """Yield the parts, and the tiles at a step, of which an array has an object."""
+    for _, array in described(run.about).members(max_depth=None):
+        axes: Any = getattr(array.metadata, "dimension_names", None) or ()
+        level, _, kind = array.path.partition("/")
+        if kind in (FLOW, VALUES):
+            for step, row, column, *_ in run.shards(array.path):
+                yield TileTask(TileKey(int(level), row, column), (step,))
+        elif {"j", "i"} <= {*axes}:
+            for numbers in run.shards(array.path):
+                at = numbers if axes[0] == "time" else (0, *numbers)
+                yield Part(int(level), *at[:3])
 
 
 def _existing_parts(run: _Run, level: int) -> list[Part]:

@@ -259,7 +259,8 @@ class Levels:
         need, free = sum(map(_size, pieces, arrays)), available_bytes()
         if need > free:
             raise PyramidError(
-                f"{pieces[0].name} of {self.place} takes {need:,} bytes of {free:,} available ones"
+                f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
+                "of memory are available"
             )
 
         async def together() -> list[AnyArray]:
