@@ -82,13 +82,10 @@ class NodeSurface:
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
         nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
-        blocks = [nodes[block] for block in row_blocks(len(nodes), 1)]
-        # The middle of the box need not lie in the plane; the mean does.
-        mean = self.center + np.mean(nodes - self.center, axis=0)
-        offsets = (nodes - mean for nodes in blocks)
-        _, _, basis = np.linalg.svd(sum(o.T @ o for o in offsets))
-        height = max(np.abs((nodes - mean) @ basis[2]).max() for nodes in blocks)
-        if height > 1e-6 * self.extent:
+        offsets = nodes - self.center
+        offsets -= offsets.mean(axis=0)  # the middle of the box need not lie in the plane
+        _, _, basis = np.linalg.svd(offsets.T @ offsets)
+        if np.abs(offsets @ basis[2]).max() > 1e-6 * self.extent:
             return None
         normal = basis[2]
         if np.abs(normal).max() > 1 - 1e-12:
