@@ -80,12 +80,8 @@ def has_display() -> bool:
 
 
 def prefer_headless() -> None:
-    """Have VTK draw through EGL where there is no display, unless the user chose otherwise.
-
-    Without a display VTK tries X first and prints a warning for every window. It reads the
-    environment variable when it makes its first window, so calling this before that is enough.
-    """
-    if not has_display():
+    """Have VTK draw through EGL where there is no display, unless the user chose otherwise."""
+    if not has_display():  # VTK would warn of X for every window
         os.environ.setdefault(WINDOW_VARIABLE, "vtkEGLRenderWindow")
 
 
@@ -122,10 +118,7 @@ def opengl_report() -> OpenGLReport:
 
 
 def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenGLReport:
-    """Run a command that tries OpenGL, and return its report; a failed one where it crashes.
-
-    The last line that the command prints is the report as JSON.
-    """
+    """Run a command whose last line is a report as JSON; return it, or a failed one."""
     try:
         process = subprocess.run(
             command,
@@ -135,10 +128,8 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
             timeout=timeout,
             check=False,
         )
-    except subprocess.TimeoutExpired:
-        return _unusable(f"the test did not end within {timeout:g} s")
-    except OSError as error:
-        return _unusable(f"the test could not be started: {error}")
+    except (subprocess.TimeoutExpired, OSError) as error:
+        return _unusable(f"the test could not be run: {error}")
     lines = process.stdout.strip().splitlines()
     if process.returncode == 0 and lines:
         report = OpenGLReport(**json.loads(lines[-1]))
@@ -149,10 +140,7 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
         detail = f"; its last message: {errors[-1].rstrip('.')}" if errors else ""
         return _unusable(f"the test process ended with code {code}{detail}")
     # Before a crash VTK prints advice about another library than the one that is missing.
-    try:
-        name = signal.Signals(-code).name
-    except ValueError:  # a number that this system has no name for
-        name = f"signal {-code}"
+    name = signal.strsignal(-code) or f"signal {-code}"
     return _unusable(f"{name} ended the test process, which happens without an OpenGL library")
 
 

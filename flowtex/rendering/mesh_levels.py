@@ -52,8 +52,8 @@ class MeshLevels:
         #: blocks; of its outline, and along the surface, shares of it.
         self.error = self._errors(points)
         # No coarse cell covers blanked cells and others.
-        mixed = _in_blocks(cells, BLOCK_CELLS, BLOCK_CELLS)
-        mixed &= _in_blocks(~cells, BLOCK_CELLS, BLOCK_CELLS)
+        mixed = _in_blocks(cells, [BLOCK_CELLS] * 2)
+        mixed &= _in_blocks(~cells, [BLOCK_CELLS] * 2)
         self.error[1:, mixed] = np.inf
         #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
@@ -133,19 +133,19 @@ class MeshLevels:
         """
         directions, per_block = _directions(values), [BLOCK_CELLS, BLOCK_CELLS]
         lines = [np.arange(n) for n in self._shape]
-        errors = [np.zeros(_in_blocks(self._cells, *per_block).shape)]
+        errors = [np.zeros(_in_blocks(self._cells, per_block).shape)]
         while max(per_block) > 1:
             error = errors[-1]
             for axis in (0, 1):
                 off = self._weighted(_deviation(values, lines[axis], axis), directions, 1 - axis)
-                error = error + _in_blocks(_at_cells(off), *per_block)
+                error = error + _in_blocks(_at_cells(off), per_block)
                 kept = np.append(np.arange(0, len(lines[axis]) - 1, 2), len(lines[axis]) - 1)
                 values, lines[axis] = values.take(kept, axis), lines[axis][kept]
                 directions = directions.take(kept, axis + 1)
                 per_block[axis] //= 2
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
             off = self._weighted(twist / 4, directions[:, :-1, :-1])
-            errors.append(error + _in_blocks(off, *per_block))
+            errors.append(error + _in_blocks(off, per_block))
         return np.stack(errors)
 
     def _weighted(self, error: Floats, directions: Floats, border: int | None = None) -> Floats:
@@ -165,10 +165,11 @@ def _at_cells(values: Floats) -> Floats:
     return np.maximum(values[:, 1:], values[:, :-1])
 
 
-def _in_blocks(values: AnyArray, rows: int, columns: int) -> AnyArray:
+def _in_blocks(values: AnyArray, per_block: Sequence[int], most: np.ufunc = np.maximum) -> AnyArray:
     """Return the greatest value (J, I) of cells in each block of so many rows and columns."""
-    values = np.maximum.reduceat(values, np.arange(0, len(values), rows), axis=0)
-    return np.asarray(np.maximum.reduceat(values, np.arange(0, values.shape[1], columns), axis=1))
+    for axis, count in enumerate(per_block):
+        values = most.reduceat(values, np.arange(0, values.shape[axis], count), axis=axis)
+    return values
 
 
 def _directions(points: Floats) -> Floats:
@@ -221,7 +222,9 @@ def join(
     finest = scipy.ndimage.minimum_filter(nodes, 3, mode=edges)
     strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
     for part in parts:
-        limit = _least(finest, part) + BLOCK_CELLS.bit_length() - 1 - part.step
+        size = 1 << part.step
+        least = _in_blocks(_covered(finest, part), [size] * 2, np.minimum)
+        limit = least + BLOCK_CELLS.bit_length() - 1 - part.step
         np.minimum(part.levels, limit, out=part.levels)
         _put(strides, part, part.levels + part.step)
     # Lines between blocks, (2, rows + 1, columns + 1): below them, and left of them.
@@ -230,11 +233,9 @@ def join(
     lines = [np.maximum(*below), np.maximum(*left)]
     while True:
         for axis in (0, 1):
-            ends = [lines[axis].take(k, axis=axis) for k in (0, -1)]
+            line = lines[axis] if axis == 0 else lines[axis].T
             if periodic[axis]:
-                coarsest = np.maximum(*ends)
-                lines[axis][(slice(None),) * axis + (0,)] = coarsest
-                lines[axis][(slice(None),) * axis + (-1,)] = coarsest
+                line[0] = line[-1] = np.maximum(line[0], line[-1])
         joins, before = [], [line.copy() for line in lines]
         for part in parts:
             joins.append(_joined(part, lines))
@@ -271,19 +272,15 @@ def _put(blocks: Ints, part: Region, values: Ints) -> None:
     spread, drawn = (
         np.repeat(np.repeat(a, size, axis=0), size, axis=1) for a in (values, part.levels >= 0)
     )
-    covered = blocks[part.row : part.row + len(spread), part.column : part.column + spread.shape[1]]
+    covered = _covered(blocks, part)
     rows, columns = covered.shape
     np.copyto(covered, spread[:rows, :columns], where=drawn[:rows, :columns])
 
 
-def _least(blocks: Ints, part: Region) -> Ints:
-    """Return the least value of the finest blocks over each block of a part."""
-    size, (rows, columns) = 1 << part.step, part.levels.shape
-    j = np.arange(part.row, min(part.row + rows * size, len(blocks)))
-    i = np.arange(part.column, min(part.column + columns * size, blocks.shape[1]))
-    row_values = np.minimum.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
-    result: Ints = np.minimum.reduceat(row_values, np.arange(0, len(i), size), axis=1)
-    return result
+def _covered(blocks: Ints, part: Region) -> Ints:
+    """Return the finest blocks below those of a part."""
+    rows, columns = (n << part.step for n in part.levels.shape)
+    return blocks[part.row : part.row + rows, part.column : part.column + columns]
 
 
 def _snapped(places: Ints, level: Ints) -> Ints:

@@ -133,11 +133,6 @@ class TextureSet:
         return has_direction and self.image is None
 
     @cached_property
-    def least_unit(self) -> float:
-        """Shortest unit of lag of a node."""
-        return float(np.min(self.store.unit[self.geometry.field.valid]))
-
-    @cached_property
     def cell(self) -> float:
         """Length of a cell that the last layer's velocities are measured in."""
         return float(np.median(self.geometry.field.surface.cell_size[self.geometry.field.valid]))
@@ -211,7 +206,8 @@ class TextureSet:
             result[..., :2] = moved * scale
         else:
             by_length = np.float32(scale) / self._length[..., 0]
-            error = SLOPE_ERROR * float(slices.lags[m]) * self.least_unit * self.pace
+            least = float(np.min(self.store.unit[self.geometry.field.valid]))
+            error = SLOPE_ERROR * float(slices.lags[m]) * least * self.pace
             for channel, moved in enumerate(self._displacements(displacement[0, m], error)):
                 np.multiply(moved, by_length, out=result[..., channel])
         if m == 0:

@@ -118,18 +118,9 @@ class ClientData:
         """The formula that is sent in place of the velocity."""
         return client_formula(self.textures) if self.traced and self.pyramid is None else None
 
-    def _formula_header(self) -> Header:
-        if self.formula is None:
-            return {}
-        return {
-            **formula_header(self.formula, self.textures.grid.shape),
-            "table": [*parameter_rows(self.formula), *_table()],
-        }
-
     @property
-    def _parameters(self) -> dict[str, float]:
-        rows = [] if self.formula is None else parameter_rows(self.formula)
-        return {row["name"]: row["default"] for row in rows}
+    def _parameters(self) -> list[Header]:
+        return [] if self.formula is None else parameter_rows(self.formula)
 
     @cached_property
     def packing(self) -> Packing:
@@ -174,7 +165,7 @@ class ClientData:
         """Return all that is not an array, for JSON; by default of the whole and the first time."""
         return {
             **self.constants(),
-            "settings": dict(settings) | self._parameters,
+            "settings": dict(settings) | {row["name"]: row["default"] for row in self._parameters},
             "camera": self.first_camera().to_dict() if camera is None else dict(camera),
             "time": float(self.times[0] if time is None else time),
             "clock": float(clock),
@@ -225,8 +216,8 @@ class ClientData:
             "structure": None if self.marks is None else self.marks.header(),
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
-            "table": _table(),
-            **self._formula_header(),
+            "table": [*self._parameters, *_table()],
+            **(formula_header(self.formula, self.textures.grid.shape) if self.formula else {}),
         }
 
     def surface(self) -> Parts:

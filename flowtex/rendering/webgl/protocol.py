@@ -107,7 +107,7 @@ def _packed(array: AnyArray) -> tuple[Header, bytes]:
 def _planes(numbers: AnyArray, orders: tuple[int, ...], first: int = 0) -> bytes:
     for axis, order in enumerate(orders):
         for _ in range(order):
-            numbers = _differences(numbers, axis)
+            numbers = np.diff(numbers, axis=axis, prepend=numbers.dtype.type(0))
     numbers = np.ascontiguousarray(np.moveaxis(_signed_last(numbers[first:]), -1, 0))
     return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 
@@ -130,10 +130,6 @@ def _whole(array: AnyArray, channels: int) -> tuple[AnyArray, list[int] | None]:
     every = np.bitwise_or.reduce(numbers, axis=0)
     shift = np.maximum(np.frexp((every & -every).astype(float))[1] - 1, 0)
     return numbers >> shift.astype(numbers.dtype), (scale + shift).tolist()
-
-
-def _differences(numbers: AnyArray, axis: int) -> AnyArray:
-    return np.diff(numbers, axis=axis, prepend=numbers.dtype.type(0))
 
 
 def _signed_last(numbers: AnyArray) -> AnyArray:
