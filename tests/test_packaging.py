@@ -180,9 +180,7 @@ def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> Non
     package = tmp_path / "site-packages" / "flowtex"
     package.mkdir(parents=True)
     (package.parent / "shaders").mkdir()
-    with pytest.raises(
-        FileNotFoundError, match=r"^flowtex's shaders are missing: .*--no-deps flowtex$"
-    ):
+    with pytest.raises(FileNotFoundError, match=r"^flowtex's shaders are missing in "):
         shaders.shader_folder(package)
 
 
