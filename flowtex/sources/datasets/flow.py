@@ -281,7 +281,9 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
     places = grid.places
     trimmed = unrepeated(places)
     places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
-    kind = "rows and columns" if places.is_line else "curvilinear"
+    staggered = grid.rows is not None or grid.columns is not None
+    kind = "Arakawa C" if staggered else "both components at the same position"
+    kind += ", rows and columns" if places.is_line else ", curvilinear"
     record("coordinates", places.why)
     bare = Component(grid.u.variable, 1.0), Component(grid.v.variable, 1.0)
     angle = places.angle if pair.kind == select.POLAR else None
@@ -289,7 +291,7 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
     return Flow(
         replace(pair, u=grid.u, v=grid.v),
         drawn,
-        f"{grid.words}, {kind}",
+        kind,
         places,
         values,
         (rows, columns),
@@ -297,7 +299,7 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
         record,
         ahead=(axis_direction(pair.u, rows), axis_direction(pair.v, columns)),
         trimmed=trimmed,
-        staggered=grid.staggered,
+        staggered=staggered,
     )
 
 

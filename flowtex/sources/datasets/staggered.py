@@ -78,14 +78,8 @@ class Grid(NamedTuple):
     u: xr.DataArray
     v: xr.DataArray
     places: Places  #: Places of the cells that have all sides.
-    rows: Sides | None  #: Sides of the cells along a column, which have the second component.
-    columns: Sides | None
-    words: str
-
-    @property
-    def staggered(self) -> bool:
-        """Whether the components lie on the sides of cells."""
-        return self.rows is not None or self.columns is not None
+    rows: Sides | None = None  #: Sides of the cells along a column, with the second component.
+    columns: Sides | None = None
 
 
 def centred(
@@ -115,15 +109,12 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
         rows = Sides.counted(-1, v.sizes[dims[1][0]], v.sizes[dims[1][0]])
         count = u.sizes[dims[0][1]]
         columns = Sides.counted(-1, count, count, wraps=_wraps(nemo))
-        return _staggered(u, v, nemo, rows, columns, "Arakawa C, sides after the middle", record)
-    own = _source(u, datasets), _source(v, datasets)
-    apart = own[0] is not own[1]
+        return _staggered(u, v, nemo, (rows, columns), record)
+    own = _source(u, datasets)
+    apart = own is not _source(v, datasets)
     alike = u.sizes[dims[0][0]] == v.sizes[dims[1][0]] and u.shape == v.shape
     if apart or (dims[0] != dims[1] and alike):
-        at = [
-            _own_places(array, pair, source, beside)
-            for array, pair, source in zip((u, v), dims, own, strict=True)
-        ]
+        at = [_own_places(array, beside) for array in (u, v)]
         # In one dataset, only positions on the Earth distinguish axes of other names.
         known = [p for p in at if p is not None and (p.is_earth or apart)]
         if len(known) == 2 and known[0].is_earth == known[1].is_earth:
@@ -135,25 +126,17 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
         if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
             sizes = f"{dict(u.sizes)} and {dict(v.sizes)}"
             raise FieldError(f"{u.name} and {v.name} differ in size, {sizes}; expected one grid")
-        around = beside._replace(datasets=[*own[:1], *datasets])
-        places = find_places(u, dims[0], around)
-        return Grid(u, v, places, None, None, "both components at the same position")
+        return Grid(u, v, find_places(u, dims[0], beside._replace(datasets=[own, *datasets])))
     return _by_names(u, v, (row_u, column_v), beside)
 
 
 def _staggered(
-    u: xr.DataArray,
-    v: xr.DataArray,
-    places: Places,
-    rows: Sides,
-    columns: Sides,
-    words: str,
-    record: Record,
+    u: xr.DataArray, v: xr.DataArray, places: Places, sides: tuple[Sides, Sides], record: Record
 ) -> Grid:
-    at = np.ix_(rows.cells, columns.cells)
+    at = np.ix_(*(part.cells for part in sides))
     places = replace(places, a=places.a[at], b=places.b[at])
     record("align", f"{u.name} and {v.name} averaged from the sides of cells to their centres")
-    return Grid(u, v, places, rows, columns, words)
+    return Grid(u, v, places, *sides)
 
 
 def _at_true_cells(
@@ -196,8 +179,7 @@ def _by_positions(
                 axes = " and ".join(dims[1][n] for n in flips)
                 record("align", f"{v.name}: {axes} reversed to match {u.name}")
             v = v.isel({dims[1][n]: slice(None, None, -1) for n in flips})
-            words = "both components at the same position"
-            return Grid(u, renamed(v, rename, u), at_u, None, None, words)
+            return Grid(u, renamed(v, rename, u), at_u)
     offset = _offset(at_u, at_v)
     if offset is not None and all(abs(abs(part) - 0.5) < HALF for part in offset):
         row, column = (-1 if offset[0] > 0 else 0), (0 if offset[1] > 0 else -1)
@@ -206,8 +188,7 @@ def _by_positions(
         wraps = count == at_v.a.shape[1] and _wraps(at_u)
         columns = Sides.counted(column, count, at_v.a.shape[1], wraps=wraps)
         middle = _moved(at_u, columns, at_v.a.shape[1])
-        words = f"Arakawa C, sides {'after' if column else 'before'} the middle"
-        return _staggered(u, v, middle, rows, columns, words, record)
+        return _staggered(u, v, middle, (rows, columns), record)
     if dims[0] != dims[1]:
         return None
     raise FieldError(_apart(u, v, at_u, at_v))
@@ -236,13 +217,13 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
         at = np.ix_(*(found.one for found in matches))
         places = replace(at_u, a=at_u.a[at], b=at_u.b[at])
         v = renamed(v, dict(zip(dims[1], dims[0], strict=True)), u)
-        return Grid(u, v, places, None, None, "both components at the same position")
+        return Grid(u, v, places)
     if labels.is_between(b_u, b_v) and labels.is_between(a_v, a_u, period):
         rows, columns = Sides.between(b_u, b_v, None), Sides.between(a_v, a_u, period)
         if len(rows.cells) and len(columns.cells):
             a, b = np.broadcast_arrays(a_v, b_u[:, None])
             middle = replace(at_u, a=a, b=b, why=f"{at_u.why}, at the cell centres")
-            return _staggered(u, v, middle, rows, columns, "Arakawa C", record)
+            return _staggered(u, v, middle, (rows, columns), record)
     raise FieldError(_apart(u, v, at_u, at_v))
 
 
@@ -278,9 +259,8 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
     return (float(middle[0]), float(middle[1])) if (high - low).max() < HALF else None
 
 
-def _own_places(
-    array: xr.DataArray, dims: tuple[str, ...], source: xr.Dataset, beside: Beside
-) -> Places | None:
+def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
+    dims, source = horizontal_dims(array), _source(array, beside.datasets)
     if len(dims) < 2:
         return None
     own = {str(name): {*c.dims} for name, c in source.variables.items()}
@@ -318,8 +298,7 @@ def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: 
     at_rows = Sides.counted(first_row, *rows)
     wraps = columns[0] == columns[1] and _wraps(places)
     at_columns = Sides.counted(first_column, *columns, wraps=wraps)
-    words = f"Arakawa C, sides {'after' if first_column else 'before'} the middle"
-    return _staggered(u, v, places, at_rows, at_columns, words, beside.record)
+    return _staggered(u, v, places, (at_rows, at_columns), beside.record)
 
 
 def _moved(places: Places, sides: Sides, count: int) -> Places:
@@ -349,7 +328,7 @@ def _nemo_places(
         return find_places(of_t["glamt"], dims, of_cells)
     if u.name != "vozocrtx" or along_earth:
         return None
-    at = [_own_places(a, dims, _source(a, datasets), beside) for a in (u, v)]
+    at = [_own_places(a, beside) for a in (u, v)]
     if at[0] is None or at[1] is None or not at[0].is_earth or not at[0].is_near(at[1]):
         return None
     return at[0]

@@ -88,8 +88,8 @@ def read_section(
     y, y_factor, y_text = _vertical(up, two)
     count = drawn.steps
 
-    components = [checked_component(part, 1.0, 2, None, record) for part in parts]
-    along_u, along_v = (LazySteps(count, partial(_step, part, close)) for part in components)
+    checked = (checked_component(part, 1.0, 2, None, record) for part in parts)
+    along_u, along_v = (LazySteps(count, partial(_step, part, close)) for part in checked)
     velocities = LazySteps(count, partial(_velocity, along_u, along_v, metres * x_factor, y_factor))
     # The axes have different units, so a speed along both has none.
     speed = along_u.map(np.abs).map(partial(np.multiply, metres))

@@ -19,8 +19,7 @@ from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
-from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.inspection.netcdf import SUFFIXES as NETCDF
+from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.notices import Record
 from flowtex.sources.opening import tables

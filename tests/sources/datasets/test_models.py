@@ -25,10 +25,10 @@ KNOWN = {
     "ds_copernicusmarine": ("uo", "vo", "earth", "both components at the same position"),
     "ds_copernicusmarine_waves": ("VSDX", "VSDY", "grid", "both components at the same position"),
     "ds_CESM": ("UVEL", "VVEL", "grid", "both components at the same position.*curvilinear"),
-    "ds_MITgcm_netcdf": ("U", "V", "", "Arakawa C, sides before"),
+    "ds_MITgcm_netcdf": ("U", "V", "", "Arakawa C"),
     "ds_ERA5_wind": ("u10", "v10", "", "both components at the same position"),
-    "ds_ecco4": ("UVEL", "VVEL", "grid", "Arakawa C, sides before"),
-    "ds_CROCO_idealized": ("u", "v", "grid", "Arakawa C, sides after"),
+    "ds_ecco4": ("UVEL", "VVEL", "grid", "Arakawa C"),
+    "ds_CROCO_idealized": ("u", "v", "grid", "Arakawa C"),
 }
 #: What is refused, and with which words.
 REFUSED = {
@@ -89,7 +89,7 @@ def test_a_model_without_a_velocity_is_refused_with_the_reason(name: str) -> Non
 def test_the_two_files_of_nemo_are_one_field() -> None:
     pair = [models()["ds_NEMO_MOI_U"], models()["ds_NEMO_MOI_V"]]
     known = read_flow(pair, FieldOptions(), Record())
-    assert known.grid.startswith("Arakawa C, sides after")
+    assert known.grid.startswith("Arakawa C")
     with pytest.warns(DatasetNotice, match="deptht is 1 m, the nearest to the surface of 5"):
         field = FlowField.from_xarray(pair, globe=True)
     u, v = (ds[n].values[0] for ds, n in zip(pair, ("vozocrtx", "vomecrty"), strict=True))
