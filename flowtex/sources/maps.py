@@ -381,20 +381,17 @@ def projection_of(places: Places, name: str | None) -> Projection:
     low, high = float(np.nanmin(lat)), float(np.nanmax(lat))
     center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
     if name is None:
+        lon = places.a
+        edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
+        steps = np.diff(edge[np.isfinite(edge)])
+        has_pole = abs(((steps + 180.0) % 360.0 - 180.0).sum()) > 180.0  # inside the edge
         polar = not around or not places.is_line
-        polar = polar and (abs(low + high) / 2 > POLAR or (low * high > 0 and _has_pole(places)))
+        polar = polar and (abs(low + high) / 2 > POLAR or (low * high > 0 and has_pole))
         name = FLAT if not polar else "north" if low + high > 0 else "south"
     projection = Projection(name, center, max((high - low) / 2, 1.0))
     if (origin := projection.origin) is not None:
         projection = replace(projection, center=(origin, center[1]))
     return projection
-
-
-def _has_pole(places: Places) -> bool:
-    lon = places.a
-    edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
-    steps = np.diff(edge[np.isfinite(edge)])
-    return bool(abs(((steps + 180.0) % 360.0 - 180.0).sum()) > 180.0)
 
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:

@@ -253,7 +253,14 @@ def file_identity(paths: Iterable[Path]) -> Identity:
     changes among more than :data:`MOST_FILES` files.
     """
     files = (file for path in paths for file in _files(path.expanduser().absolute(), 0))
-    return tuple(_state(file) for file in islice(files, MOST_FILES))
+    states = []
+    for file in islice(files, MOST_FILES):
+        try:
+            state = file.stat()
+            states.append((str(file), state.st_ino, state.st_size, state.st_mtime_ns))
+        except (OSError, ValueError):
+            states.append((str(file), 0, 0, 0))
+    return tuple(states)
 
 
 def members_of(path: Path) -> list[Path]:
@@ -283,14 +290,6 @@ def _files(path: Path, depth: int) -> Iterator[Path]:
     elif depth < LIST_DEPTH:
         for member in members_of(path):
             yield from _files(member, depth + 1)
-
-
-def _state(path: Path) -> tuple[str, int, int, int]:
-    try:
-        state = path.stat()
-    except (OSError, ValueError):
-        return str(path), 0, 0, 0
-    return str(path), state.st_ino, state.st_size, state.st_mtime_ns
 
 
 class ArraySummary(NamedTuple):

@@ -383,7 +383,10 @@ def _drawn(
     if count == 1:
         return 0
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
-        number, reason = _at_surface(line, coordinate_of(array, dim)), "the nearest to the surface"
+        coordinate, reason = coordinate_of(array, dim), "the nearest to the surface"
+        name = "" if coordinate is None else str(coordinate.attrs.get("long_name", ""))
+        falls = is_pressure(coordinate) or FROM_THE_TOP.search(name)
+        number = int(np.nanargmin(-line.astype(float) if falls else np.abs(line.astype(float))))
     else:
         number, reason = 0, "the first"
     other = 0 if number else count - 1
@@ -395,13 +398,6 @@ def _drawn(
     text = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
     record("select", text, notable=True)
     return number
-
-
-def _at_surface(line: AnyArray, coordinate: xr.DataArray | None) -> int:
-    values = line.astype(float)
-    attrs = {} if coordinate is None else coordinate.attrs
-    falls = is_pressure(coordinate) or FROM_THE_TOP.search(str(attrs.get("long_name", "")))
-    return int(np.nanargmin(-values if falls else np.abs(values)))
 
 
 def is_pressure(coordinate: xr.DataArray | None) -> bool:

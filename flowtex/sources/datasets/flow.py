@@ -335,8 +335,14 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
             flow, mask, part_of, wanted
         ):
             masks.append((part_of.variable, mask))
-    flow = replace(flow, values=replace(flow.values, masks=tuple(masks)))
-    return _without_land(flow) if flow.staggered else flow
+    values = replace(flow.values, masks=tuple(masks))
+    if flow.staggered:  # those at rest may be land
+        u, v = values.read(0)
+        still: Bools = (u == 0) & (v == 0)
+        if still.mean() > LAND_SHARE:
+            record("mask", f"{still.mean():.0%} masked: at rest in the first step, as on land")
+            values = replace(values, land=still)
+    return replace(flow, values=values)
 
 
 def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
@@ -363,13 +369,3 @@ def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
         text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
         flow.record("mask", text, notable=mask.is_flag)
     return True
-
-
-def _without_land(flow: Flow) -> Flow:
-    """Return components on the sides of cells without those at rest, where these are land."""
-    u, v = flow.values.read(0)
-    still: Bools = (u == 0) & (v == 0)
-    if still.mean() <= LAND_SHARE:
-        return flow
-    flow.record("mask", f"{still.mean():.0%} masked: at rest in the first step, as on land")
-    return replace(flow, values=replace(flow.values, land=still))

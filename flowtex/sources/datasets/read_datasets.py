@@ -95,7 +95,12 @@ def read_datasets(
             )
         scalars = _scalars(flow)
         caption = ", ".join(filter(None, (name, record.reading.caption)))
-        words: dict[str, Any] = {"name": caption, **_scalar_texts(scalars)}
+        units_of, names = (
+            {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
+            for word in ("units", "long_name")
+        )
+        names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
+        words: dict[str, Any] = {"name": caption, "units": units_of, "long_names": names}
         by_regions = regions and flow.mesh is None and spread is None
         arrays: GridArrays | TriangleArrays | Regions | None
         arrays = _regions(flow, scalars, projection, words) if by_regions else None
@@ -263,15 +268,6 @@ def _regions(
     words |= {"start": start, "velocity_unit": "" if flat else own}
     words["times"] = np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float)
     return Regions(words, lines, flow.values, factor, others)
-
-
-def _scalar_texts(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
-    units_of, names = (
-        {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
-        for word in ("units", "long_name")
-    )
-    names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
-    return {"units": units_of, "long_names": names}
 
 
 class _Scalar(NamedTuple):

@@ -227,7 +227,9 @@ class Regions:
 
 def region_lines(places: Places, name: str | None) -> NodeLines | None:
     """Return the places of nodes; ``None`` where regions cannot be read separately."""
-    if not places.is_line or not all(_is_ordered(line) for line in places.lines):
+    steps = [np.diff(line) for line in places.lines]
+    ordered = all(len(s) and ((s > 0).all() or (s < 0).all()) for s in steps)
+    if not places.is_line or not ordered:
         return None
     a, b = places.lines
     if not places.is_earth:
@@ -247,8 +249,3 @@ def region_lines(places: Places, name: str | None) -> NodeLines | None:
         return lines
     kept = maps.shown_rows(maps.shown_positions(projection, lines.a[:1], lines.b[:, None]))
     return replace(lines, b=lines.b[kept], rows=lines.rows[kept])
-
-
-def _is_ordered(line: Floats) -> bool:
-    steps = np.diff(line)
-    return len(line) > 1 and bool((steps > 0).all() or (steps < 0).all())

@@ -207,16 +207,12 @@ def _steps(
 
 
 def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
+    """Return blocks with vectors as one mesh; scalars are NaN where a block lacks them."""
     import pyvista as pv
 
-    with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
-    text = f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}"
+    parts = {name: part for name, part in parts.items() if candidates(part)} or parts
+    text = f"{len(parts)} blocks are drawn together: {', '.join(parts)}"
     record("align", text, notable=True)
-    return pv.MultiBlock(_completed(with_flow, record)).combine()
-
-
-def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
-    """Return blocks that all have the scalars of each, which are NaN where a block lacks them."""
     blocks = {name: part.copy(deep=False) for name, part in parts.items()}
     scalars = [a for b in blocks.values() for a in catalogue(b) if a.numeric and a.components == 1]
     for array, where in sorted({(a.name, a.where) for a in scalars}):
@@ -228,7 +224,7 @@ def _completed(parts: Parts, record: Record) -> list[pv.DataSet]:
             data[array] = values.astype(np.float64)  # of one type, as others are dropped
         if lacking:
             record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
-    return list(blocks.values())
+    return pv.MultiBlock(list(blocks.values())).combine()
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:

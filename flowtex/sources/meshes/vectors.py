@@ -50,14 +50,11 @@ _GAP = r"[ _.:-]+"
 _FORMS = tuple(
     re.compile(form)
     for form in (
-        rf"(?P<token>[x-zu-w]){_GAP}.+",
-        rf"(?P<token>[X-ZU-W]){_GAP}.+",
+        rf"(?P<token>[x-zu-wX-ZU-W]){_GAP}.+",
         r"(?P<token>[XYZ])[A-Z][a-z].*",
-        rf".+?{_GAP}(?P<token>[X-ZU-Wx-zu-w0-3])",
-        r".+?[\[(](?P<token>[X-ZU-Wx-zu-w0-3])[\])]",
+        rf".+?({_GAP}|[\[(])(?P<token>[X-ZU-Wx-zu-w0-3])[\])]?",
         r".*[a-z0-9](?P<token>[XYZ])",
-        r"([uv]|vel|velocity)(?P<token>[xyz0-3])",
-        r"([UV]|Vel|Velocity|VEL|VELOCITY)(?P<token>[xyzXYZ0-3])",
+        r"([uvUV]|[vV]el(ocity)?|VEL(OCITY)?)(?P<token>[xyzXYZ0-3])",
         r"(?P<token>[uvwUVW])",
     )
 )
@@ -274,19 +271,13 @@ def _parses(name: str) -> Iterator[tuple[str, str, str]]:
         stem, token = _stem(before, after), match["token"]
         if NO_VELOCITY.fullmatch(stem) or _MOMENTUM.fullmatch(stem):
             continue
-        velocity = bool(_VELOCITY.fullmatch(stem))
+        velocity = _VELOCITY.fullmatch(stem) is not None
+        # Components, as x, y, z and numbers also have other uses.
+        plausible = {"u": velocity or not stem, "x": bool(stem)}
         for alphabet in _ALPHABETS:
-            if token in alphabet and _is_plausible(stem, alphabet, before, velocity=velocity):
+            kind = plausible.get(alphabet[0].lower(), velocity or before.endswith((":", "[")))
+            if token in alphabet and kind:
                 yield before, alphabet, after
-
-
-def _is_plausible(stem: str, alphabet: str, before: str, *, velocity: bool) -> bool:
-    """Return whether a name may be a component: x, y, z and numbers also have other uses."""
-    if alphabet[0] in "uU":
-        return velocity or not stem
-    if alphabet[0].isdecimal():
-        return velocity or before.endswith((":", "["))
-    return bool(stem)
 
 
 def _stem(before: str, after: str) -> str:

@@ -101,17 +101,14 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             if x not in variables or y not in variables:
                 continue
             longitude, latitude = variables[x], variables[y]
-            if longitude.ndim != (2 if x == y else 1) or not _varies(longitude):
+            values = np.asarray(values_in(longitude), dtype=float)
+            # Models write unused coordinates as zeros.
+            varies = np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf)
+            if longitude.ndim != (2 if x == y else 1) or not varies:
                 continue
             counts = variables.get(COUNTS.get(str(corners.name), ""))
             first = int(corners.attrs.get("start_index", 1))
             yield Mesh(kind, longitude, latitude, corners, counts, first)
-
-
-def _varies(c: xr.DataArray) -> bool:
-    """Return whether the values of a coordinate differ; models write unused ones as zeros."""
-    values = np.asarray(values_in(c), dtype=float)
-    return bool(np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf))
 
 
 def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
@@ -186,12 +183,14 @@ def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
 def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets in which the dimension of scattered points is called ``NODES``."""
     pairs = [pair for pair in find_pairs(datasets) if pair.rank <= NAMED]
-    for x, y in _positions(datasets):
+    for x, y in _pairs([ds[name] for ds in datasets for name in ds.variables]):
+        times = [d for d in map(str, x.dims) if axis_kind(x, d) == TIME]
+        if x.ndim != 1 and (x.ndim, len(times)) != (2, 1):
+            continue
         along = [a for ds in datasets for a in ds.data_vars.values() if set(x.dims) <= set(a.dims)]
         values = [a for a in along if a.dtype.kind in "fiu" and a.name not in (x.name, y.name)]
         if not values or any(not set(x.dims) <= set(pair.u.dims) for pair in pairs):
             continue
-        times = [d for d in map(str, x.dims) if axis_kind(x, d) == TIME]
         dim = next((str(d) for d in x.dims if d not in times), "")
         levels = any(axis_kind(a, str(d)) == LEVEL for a in values for d in {*a.dims} - {*x.dims})
         is_section = levels and any(is_vertical(a) for a in values)
@@ -214,15 +213,6 @@ def points_in(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
     for x, y in _pairs(list(variables.values())):
         if x.dims == (NODES,):
             yield Mesh(POINTS, x, y)
-
-
-def _positions(datasets: Sequence[xr.Dataset]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
-    """Yield pairs of coordinates along one dimension, perhaps also along time."""
-    arrays = [ds[name] for ds in datasets for name in ds.variables]
-    for x, y in _pairs(arrays):
-        times = [d for d in x.dims if axis_kind(x, str(d)) == TIME]
-        if x.ndim == 1 or (x.ndim == 2 and len(times) == 1):
-            yield x, y
 
 
 def _pairs(arrays: list[xr.DataArray]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:

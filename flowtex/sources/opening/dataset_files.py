@@ -83,7 +83,9 @@ def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
     """Join datasets of the same variables: steps of one series, or regions beside each other."""
     if len(group) < 2 or not any(array.ndim > 1 for array in group[0].data_vars.values()):
         return group
-    if _times_differ(group):
+    name = _time_axis(group)
+    times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in group]
+    if all(map(len, times)) and len({tuple(map(str, line)) for line in times}) == len(times):
         try:
             return [joined(group, record)]
         except FieldError:  # such as domains of different sizes
@@ -185,14 +187,6 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
             del c.attrs["axis"]
     return guessed
-
-
-def _times_differ(datasets: Sequence[xr.Dataset]) -> bool:
-    """Return whether several datasets have times, and none has the same as another."""
-    name = _time_axis(datasets)
-    times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in datasets]
-    texts = [tuple(map(str, line)) for line in times]
-    return all(map(len, times)) and len(set(texts)) == len(texts)
 
 
 def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
