@@ -60,9 +60,6 @@ def app() -> Iterator[FlowApp]:
     made.close()
 
 
-# --- what a page may send ------------------------------------------------------------------------
-
-
 def test_a_view_has_a_size_that_can_be_drawn(app: FlowApp) -> None:
     for junk in JUNK:
         for size in (junk, *({"w": 96, "h": 64, "p": 1, name: junk} for name in "whp")):
@@ -101,9 +98,6 @@ async def test_a_picture_that_fails_is_not_the_last_one(
         task.cancel()
 
 
-# --- pictures, movies, messages ------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["out_width", "out_seconds"])
 def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name: str) -> None:
     before = {key: app.state.get(key) for key in ("out_format", name)}
@@ -115,9 +109,6 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
         assert app.state.get("out_progress") is None
         assert list(app.sharing.downloads.folder.iterdir()) == []
     app.state.set(**before, problem="")
-
-
-# --- files and planes ----------------------------------------------------------------------------
 
 
 async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
@@ -265,9 +256,6 @@ def test_what_stays_open_is_bounded_in_bytes() -> None:
     library._sources.max_bytes = 1
     sizes = [library.source(name).nbytes for name in library.names]
     assert min(sizes) > 1000 and len(library._sources) == 1
-
-
-# --- where the camera stands ---------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

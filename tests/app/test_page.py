@@ -214,21 +214,6 @@ def test_a_file_is_sent_and_shown(page: Page, folder: Path, tmp_path: Path) -> N
     page.wait_for_selector(".v-overlay--active", state="hidden")
 
 
-def test_the_panel_of_a_narrow_page_lies_in_it(page: Page) -> None:
-    page.set_viewport_size({"width": 390, "height": 500})
-    group(page, "Save")
-    painted(page)
-    panel = page.locator(".flowtex-panel").bounding_box()
-    assert panel is not None and panel["x"] >= 0
-    assert panel["x"] + panel["width"] <= 390 and panel["y"] + panel["height"] <= 500
-    page.locator("[data-setting=size] .flowtex-label").hover()
-    page.get_by_text("may exceed the window").wait_for()
-    fold(page)
-    bar = page.locator(".bar").bounding_box()
-    assert bar is not None and bar["x"] >= 0 and bar["x"] + bar["width"] <= 390
-    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
-
-
 def test_a_series_plays_and_steps(page: Page) -> None:
     before = count(page)
     open_file(page, "series.pvd")

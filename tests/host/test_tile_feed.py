@@ -153,15 +153,3 @@ def test_errors_are_told_to_who_asked(
     client.load((7, 0, 0), 0)
     client.load(None, 9)
     assert [error.split(":")[0] for error in client.errors[1:]] == ["KeyError", "IndexError"]
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"key": 1}, {"key": [0, "a", 0]}, {"key": [0, 0]}, {"steps": [0.5]}, {"request": 3}]
-)
-def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Heard], wrong: Any) -> None:
-    client = make(swirl())
-    given = {"kind": "load", "request": "a", "key": [1, 0, 1], "steps": [0]}
-    client.say(**{**given, **wrong})
-    client.load((1, 0, 0), 0)
-    assert len(client.loaded) == 1
-    assert client.errors == []

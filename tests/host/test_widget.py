@@ -496,23 +496,6 @@ def test_a_camera_that_would_miss_another_flow_shows_it_whole(
     assert not widget.camera["parallel"]
 
 
-def test_a_mesh_is_read_as_the_first_one_was(make: Make) -> None:
-    import pyvista as pv
-
-    def block(scale: float) -> pv.ImageData:
-        mesh = pv.ImageData(dimensions=(8, 7, 4))
-        for name, turn in (("wind", scale), ("water", 0.0)):
-            mesh[name] = np.tile([1.0, turn, 0.0], (mesh.n_points, 1))
-        return mesh
-
-    widget = make(block(1.0), vectors="wind", plane="k=2")
-    widget.field = block(2.0)
-    assert widget.field.velocity[0, 0, 0].tolist() == [1, 2, 0]
-    field = gyre()
-    widget.field = field
-    assert widget.field.shape == field.shape
-
-
 def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
     import pyvista as pv
 

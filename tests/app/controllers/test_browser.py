@@ -99,36 +99,6 @@ def test_the_flow_appears_zooms_and_is_dragged(opened: Page) -> None:
     assert difference(moved[30:, 60:], closer[:-30, :-60]) < 0.25 * difference(moved, closer)
 
 
-def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
-    home(opened)
-    before, still = count(opened), WATCH.shot(opened)
-    opened.evaluate(
-        """() => {
-          window.pictures = 0;
-          const view = document.querySelector(".flowtex-views");
-          const paint = view.paint.bind(view);
-          view.paint = (...values) => { window.pictures += 1; paint(...values); };
-        }"""
-    )
-    opened.locator("button[data-name=play]").click()
-    opened.wait_for_function("() => window.pictures > 4")
-    one, seen = WATCH.shot(opened), opened.evaluate("() => window.pictures")
-    opened.wait_for_function("n => window.pictures > n + 3", arg=seen)
-    other = WATCH.shot(opened)
-    assert difference(one, still) > 2 and difference(one, other) > 2
-    opened.locator("button[data-name=play]").click()
-    WATCH.settled(opened, before)
-    quiet = opened.evaluate("() => window.pictures")
-    # The server answers what it is asked after that, and sends no picture.
-    opened.mouse.move(240, 220)
-    opened.mouse.move(250, 215)
-    opened.wait_for_function(
-        "() => document.querySelector('.flowtex').shadowRoot"
-        ".querySelector('.readout').textContent.includes('speed')"
-    )
-    assert opened.evaluate("() => window.pictures") == quiet
-
-
 def test_nothing_is_complained_of_and_nothing_comes_from_outside(
     opened: Page, demo: Served
 ) -> None:

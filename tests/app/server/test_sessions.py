@@ -12,7 +12,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import aiohttp
-import numpy as np
 import pytest
 
 pytest.importorskip("trame_rca")
@@ -23,8 +22,7 @@ from small_pages import small
 from trame.app.core import AVAILABLE_SERVERS
 from waiting import PATIENCE_S, until
 
-from flowtex import FlowField
-from flowtex.app import FlowApp, ServeError, serve
+from flowtex.app import FlowApp, serve
 from flowtex.app.server.files import Routes
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions import registry as sessions
@@ -339,14 +337,6 @@ def test_sessions_that_end_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_what_cannot_be_served_is_told() -> None:
-    field = FlowField.from_arrays(
-        np.stack([*np.meshgrid(range(3), range(3)), np.zeros((3, 3))], axis=-1).astype(float),
-        np.ones((3, 3, 3)),
-    )
-    with pytest.raises(ServeError, match="limit is 0; expected 1 or more"):
-        serve(field, limit=0)
-    with pytest.raises(ServeError, match="idle is -1; expected a positive number"):
-        serve(field, idle=-1)
     with pytest.raises(FieldError, match="samples cannot be used with a function"):
         serve(Plain, samples=3)
     assert usual_limit() >= 2
