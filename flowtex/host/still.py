@@ -8,18 +8,20 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.colours import rgb
 from flowtex.field.interpolation import steps_around
 from flowtex.host.view import WebView
+from flowtex.rendering.arrow_seeds import ArrowSeeds
 from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import (
@@ -30,7 +32,8 @@ from flowtex.rendering.map_overlay import (
     WIDTH_RANGE,
     map_lines,
 )
-from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.tile_choice import TileView
+from flowtex.rendering.uniforms import ViewState, arrow_distance, has_arrows
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.marks import (
     KIND_MARKS,
@@ -48,6 +51,24 @@ MakeCamera = Callable[[float], Camera]
 MOST_PIXELS = 160_000
 #: Room in pixels for ticks at the left, beside the last one at the right, and below.
 TICK_ROOM = (58, 16, 20)
+#: Steps of an arrow on each side of its seed.
+ARROW_STEPS = 6
+#: Length of an arrow over the distance of arrows.
+ARROW_LENGTH = 1.05
+#: Length of a head over that of the arrow.
+HEAD = 0.32
+#: Half the width of a head over the length of the arrow.
+HEAD_WIDTH = 0.144
+#: Width of the shaft, in pixels.
+SHAFT_PX = 2
+#: Width of the light outline of an arrow, in pixels.
+HALO_PX = 2
+#: Share of the surface in a pixel where arrows are.
+INSIDE = 0.9
+#: Pixels over which the directions of nodes are smoothed.
+SMOOTHING_PX = 2.0
+#: Distance of a seed from the surface in the picture, in heights of the view, that hides it.
+HIDDEN = 0.05
 #: Nodes of a small picture; more make no visible difference.
 NODES = 3_000
 #: Samples of a small picture; more make no visible difference.
@@ -116,8 +137,23 @@ def still_png(
 def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camera) -> Image.Image:
     scene = view.scene
     coarser = max(COARSER, math.ceil(math.sqrt(size[0] * size[1] / MOST_PIXELS)))
-    image = draw_flow(view, data, size, camera, scene.time, coarser)
+    image, picture = draw_flow(view, data, size, camera, scene.time, coarser)
     draw = ImageDraw.Draw(image)
+    if has_arrows(data.textures, scene.settings):
+        length = ARROW_LENGTH * arrow_distance(scene.settings)
+        for path in _arrow_paths(view, data, picture, camera, size):
+            path = path[np.append(True, np.diff(path, axis=0).any(axis=-1))]
+            if len(path) <= ARROW_STEPS:
+                continue
+            tip, back = path[-1], path[-1] - path[-2]
+            back *= HEAD * length / max(float(np.hypot(*back)), 1e-9)
+            side = HEAD_WIDTH / HEAD * np.array([-back[1], back[0]])
+            head = [tuple(p) for p in (tip, tip - back + side, tip - back - side)]
+            shaft = [tuple(p) for p in path[: -ARROW_STEPS // 2]]
+            for more, ink in ((HALO_PX, "white"), (0, "black")):
+                draw.line(shaft, ink, SHAFT_PX + more, joint="curve")
+                draw.line([*head, head[0]], ink, more or 1, joint="curve")
+            draw.polygon(head, "black")
     wide = float(np.clip(np.sqrt(size[1] / USUAL_HEIGHT_PX), *WIDTH_RANGE))
     for pieces, color, thick, _ in strokes(scene.structure, scene.settings, scene.step):
         for start, end in pixels_of(pieces, camera, size):
@@ -126,6 +162,52 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
             else:
                 draw.line([tuple(start), tuple(end)], color, max(round(wide * thick), 1))
     return image
+
+
+def _arrow_paths(
+    view: WebView, data: ClientData, picture: Picture, camera: Camera, size: tuple[int, int]
+) -> Iterator[AnyArray]:
+    """Yield the pixels of arrows from tail to head, along the directions of the picture."""
+    geometry, aspect = data.textures.geometry, size[0] / size[1]
+    matrix, apart = camera.matrix(aspect), arrow_distance(view.scene.settings)
+    sides = np.stack([matrix[3] + sign * matrix[row] for row in (0, 1) for sign in (1, -1)])
+    half = camera.height / (1 if camera.parallel else camera.distance)
+    eye = None if camera.parallel else np.asarray(camera.position)
+    seeds = ArrowSeeds(geometry).seen(TileView(eye, half, size[1], sides), apart)
+    points = seeds.position @ geometry.frame + geometry.center
+    away = 1.0 if eye is None else np.linalg.norm(points - eye, axis=1)
+    points = points[seeds.radius * size[1] > 2 * half * away * apart]
+    # Directions on the screen, of the nearest node of each pixel.
+    field, pixels = data.field, picture.position
+    velocity = field.velocity[view.scene.step].reshape(-1, 3)[picture.nearest]
+    speed = np.maximum(np.linalg.norm(velocity, axis=-1, keepdims=True), np.finfo(float).tiny)
+    moved = pixels + velocity / speed * camera.height * 1e-3
+    way = np.subtract(*(pixels_of(p, camera, size) for p in (moved, pixels)))
+    way = scipy.ndimage.gaussian_filter(np.nan_to_num(way), (SMOOTHING_PX, SMOOTHING_PX, 0))
+    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), np.finfo(float).tiny)
+    scale = np.array(picture.covered.shape[::-1]) / size
+
+    def at(values: AnyArray, places: Floats) -> Floats:
+        index = (places * scale - 0.5).T[::-1]
+        return scipy.ndimage.map_coordinates(values, index, order=1, mode="nearest")
+
+    covered = picture.covered.astype(float)
+    start = pixels_of(points, camera, size)
+    inside = ((start >= 0) & (start < size)).all(axis=-1) & (at(covered, start) > INSIDE)
+    start, points = start[inside], points[inside]
+    shown = np.stack([at(np.nan_to_num(pixels[..., n]), start) for n in range(3)], axis=-1)
+    start = start[np.linalg.norm(shown - points, axis=-1) < HIDDEN * camera.height]
+    step = ARROW_LENGTH * apart / (2 * ARROW_STEPS)
+    tracks: list[list[Floats]] = []
+    for sign in (-1, 1):
+        place, track = start, []
+        for _ in range(ARROW_STEPS):
+            moved = np.stack([at(way[..., n], place) for n in (0, 1)], axis=-1)
+            goes_on = at(covered, place + sign * step * moved) > INSIDE  # else the flow ends
+            place = place + sign * step * moved * goes_on[:, None]
+            track.append(place)
+        tracks.append(track)
+    yield from np.stack([*tracks[0][::-1], start, *tracks[1]], axis=1)
 
 
 def preview_png(
@@ -143,7 +225,7 @@ def preview_png(
     """
     scene = view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
-    image = draw_flow(view, scene, size, Camera.from_dict(camera), time, coarser)
+    image, _ = draw_flow(view, scene, size, Camera.from_dict(camera), time, coarser)
     return encoded(image, is_page=scene.colours.background is None)
 
 
@@ -154,8 +236,8 @@ def draw_flow(
     camera: Camera,
     time: float | None,
     coarser: int,
-) -> Image.Image:
-    """Return a picture of the flow and the lines of its map."""
+) -> tuple[Image.Image, Picture]:
+    """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
     before, after, between = steps_around(
         scene.times, float(scene.times[0] if time is None else time)
     )
@@ -174,7 +256,7 @@ def draw_flow(
     drawn = np.rint(behind + scene.colours.opacity * (drawn - behind)).astype(np.uint8)
     image = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
     _draw_lines(image, scene, camera)
-    return image
+    return image, picture
 
 
 def encoded(image: Image.Image, exact: Iterable[int] = (), *, is_page: bool = False) -> bytes:

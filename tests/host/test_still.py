@@ -58,7 +58,7 @@ def test_ticks_stand_at_their_coordinates(size: tuple[int, int]) -> None:
 @pytest.mark.parametrize("axes", ["ticks", "scale", "none"])
 def test_a_still_has_what_the_browser_shows(axes: str) -> None:
     field = flowtex.examples.double_gyre_field(shape=(41, 81))
-    view, camera = views(field, samples=5, critical_points=8)
+    view, camera = views(field, samples=5, arrows=True, critical_points=8)
     image = pixels(still_png(view, (600, 320), camera, axes=axes))
     table = view.scene.legend_colours[::32, :3]
     corner = image[-45:, -160:]
@@ -67,6 +67,31 @@ def test_a_still_has_what_the_browser_shows(axes: str) -> None:
         marks = near(image, KIND_MARKS[kind].color)
         assert marks[:270].any() and marks[270:, :200].any()
     assert near(image, "grey", 1)[:270].any() == (axes == "ticks")
+    without, _ = views(field, samples=5, critical_points=8)
+    plain = pixels(still_png(without, (600, 320), camera, axes=axes))
+    arrows = near(image, "black", 4) & ~near(plain, "black", 40)
+    assert 0.005 < arrows[30:270].mean() < 0.1
+
+
+def test_arrows_of_a_still_point_along_the_flow() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 21), np.linspace(0, 1, 11))
+    field = FlowField.from_arrays((x[0], y[:, 0]), np.stack([1 + 0 * x, 0 * x], axis=-1))
+    view, camera = views(field, scalars=False, strength=0.0, arrows=60, samples=5)
+    ink = near(pixels(still_png(view, (600, 320), camera, axes="none"))[30:-30], "black", 4)
+    from scipy import ndimage
+
+    labels, count = ndimage.label(ink, np.ones((3, 3)))
+    found = 0
+    for box in ndimage.find_objects(labels):
+        arrow = ink[box]
+        height, width = arrow.shape
+        if width < 35:
+            continue
+        found += 1
+        assert height < 20  # along x
+        heads = arrow.sum(axis=0)
+        assert heads[width // 2 :].max() > 2 * heads[: width // 2].max()  # to the right
+    assert found > 5 <= count
 
 
 def test_a_still_of_a_browsers_frame_has_its_size_and_ground() -> None:
