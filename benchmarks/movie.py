@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.plotting.offscreen.encoders import write_movie
+from flowtex.plotting.offscreen.encoders import DEFAULT_QUALITY, MovieWriter
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.diagnostics import require_opengl
 
@@ -53,7 +53,10 @@ def main() -> None:
         coloured, pictures = picture_ms(field, count)
         with tempfile.TemporaryDirectory() as folder:
             start = processor_ms()
-            write_movie(Path(folder) / "movie.mp4", pictures, 30.0)
+            writer = MovieWriter(Path(folder) / "movie.mp4", (640, 400), 30.0, DEFAULT_QUALITY)
+            for picture in pictures:
+                writer.add(picture)
+            writer.finish()
             encoding = (processor_ms() - start) / len(pictures)
         table.add_row(name, f"{coloured:.0f}", f"{grey:.0f}", f"{encoding:.0f}")
     Console().print(require_opengl().renderer, table)

@@ -25,6 +25,7 @@ from flowtex.rendering.cpu.fragments import Fragments, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker, slices_at, view_state
+from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Side, Summing, Sums
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
@@ -104,6 +105,13 @@ class Probe:
     value: float | Floats
     path: Floats
     path_lags: Floats
+
+    @property
+    def greys(self) -> Floats:
+        """The noise of the samples as grey values, (K,), from 0, black, to 1, white."""
+        if self.noise.ndim == 1:
+            return 0.5 + 0.5 * tone(self.noise, 1.0)
+        return np.asarray(self.noise[:, :3].mean(axis=-1) + 1.0 - self.noise[:, 3])
 
 
 def probe(
