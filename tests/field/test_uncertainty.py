@@ -39,7 +39,7 @@ def coherence(drawn: Picture) -> float:
     return quality.alignment(drawn.value, u, v, drawn.covered).coherence
 
 
-@pytest.mark.parametrize("kernel", ["hann", "box", "ramp"])
+@pytest.mark.parametrize("kernel", ["hann", "box"])
 def test_no_uncertainty_changes_nothing(kernel: str) -> None:
     for field in (straight(), scattered_gyre()):
         told = with_uncertainty(field, np.zeros(field.shape))
