@@ -215,8 +215,8 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
             "check the mask"
         ]
-    offsets = p[ok]
-    offsets -= offsets.mean(axis=0)
+    nodes = p.reshape(-1, p.shape[-1]) if ok.all() else p[ok]
+    offsets = nodes - nodes.mean(axis=0)
     if (size := largest(offsets)) == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
     offsets /= size

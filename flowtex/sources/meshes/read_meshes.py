@@ -113,8 +113,10 @@ def _stacked(
         grid = masks.masked(same.grid)
         ranges.add(grid)
         sheet = draw(grid)
-        start = sheet if start is None else start
-        parts.check_nodes(start, sheet, step.label)
+        if start is None:
+            start = sheet
+        else:
+            parts.check_nodes(start, sheet, step.label)
         values = sheet.nodes(velocity), *_scalars(sheet, preference, velocity)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
