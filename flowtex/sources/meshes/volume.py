@@ -196,7 +196,9 @@ def plane_sheet(
     """Return the nodes of a plane of a structured mesh, (J, I)."""
     points = _positions(grid, plane)
     shown = ~plane.nodes(vectors.hidden_nodes(grid))
-    wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
+    # Only values of cells are spread beyond the last line.
+    known = np.where(shown[..., None], points, np.nan)
+    wrap = _wrap(known, periodic) if len(grid.cell_data) else (False, False)
     visible = plane.cells(vectors.visible_cells(grid))
 
     def nodes(array: MeshArray) -> Floats:
