@@ -31,7 +31,7 @@ except ModuleNotFoundError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 NAME = re.compile(r"flowtex-\w{8}\.tmp")  #: Names of temporary folders.
-STEM_LENGTH = 40  #: Characters of the name of a file that are in that of its part.
+STEM_LENGTH = 40  #: Greatest length of the file's name in the name of its part.
 
 
 def remove_stale_folders() -> None:

@@ -46,7 +46,7 @@ ENDED = "ended"  #: How a child ended whose status is unknown, as when the fork 
 PIPE_BYTES = 1 << 20  #: Bytes that may wait in the pipe of answers.
 REQUEST_BYTES = 65_536  #: Bytes of a request.
 STATUS_BYTES = 4  #: Bytes of a status.
-ENDING_S = 1.0  #: Seconds that a child has to end by itself.
+ENDING_S = 1.0  #: Seconds before a child that does not end is killed.
 
 _servers: dict[tuple[str, ...], ForkServer] = {}
 _lock = threading.Lock()

@@ -1,9 +1,8 @@
-"""The state of a page as text: as a link, and back, and as the lines of Python that draw it.
+"""Conversion of the state of a page to a link and back, and to Python code that draws it.
 
-The state is a mapping with the names of ``_FORMS`` below, each of which may be missing, and
-``settings`` by name. A link holds what differs from the defaults, as a query that
-people can read. Numbers come back exactly. A link may come from anybody: what is unknown or out of
-range is left out, and reported.
+The state is a mapping with the names of ``_FORMS`` below, all optional, and ``settings`` by name.
+A link contains the differences from the defaults as a readable query, and keeps numbers exactly.
+A link may come from anybody, so flowtex omits and reports unknown and invalid values.
 """
 
 from __future__ import annotations

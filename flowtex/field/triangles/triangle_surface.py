@@ -234,7 +234,7 @@ class TriangleSurface(NodeSurface):
         return len(self.triangles) > MOST_MEASURED
 
     def normal_share(self, velocity: Floats) -> float:
-        """Return how much of a velocity (1, N, 3) is normal to some of the triangles."""
+        """Return the normal share of a velocity (1, N, 3), sampled at some of the triangles."""
         corners = self.triangles[self.cells]
         corners = corners[:: -(-len(corners) // MOST_MEASURED)]
         normal, flow = triangle_normals(self.points[0], corners), velocity[0, corners].mean(axis=1)

@@ -69,10 +69,9 @@ def render(
 ) -> Picture:
     """Draw a flow texture with NumPy: slowly, in double precision, for any camera.
 
-    The formula, uniforms and half-precision textures are those of the shaders, so a picture of
-    another renderer can be judged by it. The size is in pixels. The time lies between two
-    destination ``steps`` as far as ``view.between`` tells. A look-up is summed along the paths in
-    place of the noise.
+    It uses the formula, uniforms and half-precision textures of the shaders, so it is the reference
+    for other renderers. The size is in pixels. ``view.between`` interpolates between the two
+    destination ``steps``. ``lookup`` replaces the noise.
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
     coverage = cover(textures.geometry.field.surface, camera, size)

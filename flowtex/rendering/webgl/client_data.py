@@ -251,7 +251,10 @@ class ClientData:
         return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
     def step(self, step: int) -> Parts:
-        """Return the arrays of one time, the smallest first; an IndexError if there is none."""
+        """Return the arrays of a time step, the smallest first.
+
+        Raises an IndexError when the step does not exist.
+        """
         if not 0 <= step < self.steps:
             raise IndexError(f"time step {step} does not exist: expected 0 to {self.steps - 1}")
         parts = self.values(step)

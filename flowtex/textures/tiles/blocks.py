@@ -1,7 +1,7 @@
-"""Blocks of a level: where they lie, and how much a picture loses where the level is drawn.
+"""Positions of the blocks of a level, and their roughness, which limits the size of cells.
 
-Every other line of nodes is left out at the next level. Where these agree with the nodes beside
-them, cells may be larger on the screen than elsewhere, and fewer nodes are traced.
+The next level omits every other line of nodes. Where interpolation of the other nodes replaces
+them, cells may be larger on the screen than elsewhere, so flowtex traces fewer nodes.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 BLOCK_CELLS = 64
 #: Greatest factor by which cells may be larger on the screen where a level is smooth.
 SMOOTH_CELLS = 4.0
-#: Error of an interpolated velocity that is not seen, as a share of the speed; of a scalar, as a
-#: share of its range.
+#: Invisible error of an interpolated velocity, as a share of the speed, or of an interpolated
+#: scalar, as a share of its range.
 VALUE_ERROR = 0.01
-#: Distance of a node from the line between those beside it that is not seen, as a share of this.
+#: Invisible distance of a node from the line between its two neighbours, as a share of the line.
 PLACE_ERROR = 0.03
 #: Share of the greatest speed around a node that counts as its own where the flow almost rests.
 REST_SPEED = 0.25
@@ -82,7 +82,7 @@ def has_roughness(field: FlowField) -> bool:
 
 
 def enlarging(errors: Floats, most: float = SMOOTH_CELLS) -> Floats:
-    """Return by which factors cells may be larger for errors in multiples of what is not seen."""
+    """Return factors by which cells may be larger, from errors in multiples of invisible ones."""
     return most / np.clip(errors, 1.0, most)
 
 
@@ -94,8 +94,8 @@ def _extent(values: Floats) -> float:
 def block_roughness(nodes: Nodes | FlowField, cells: int) -> Floats:
     """Return the greatest error in each block of ``cells`` cells of the next level.
 
-    The errors, (rows, columns), are those of the first step, in multiples of what is not seen in
-    the largest cell of the block.
+    The errors of the first step, (rows, columns), are multiples of an invisible error in the
+    largest cell of the block.
     """
     speed = around = np.where(nodes.valid, norm(nodes.velocity[0]), 0.0)
     for axis, count in enumerate(speed.shape):
@@ -123,7 +123,7 @@ def block_roughness(nodes: Nodes | FlowField, cells: int) -> Floats:
 def _errors(
     axis: int, points: Floats, valid: Bools, values: list[tuple[Floats, Floats]]
 ) -> tuple[Floats, Floats]:
-    """Return errors at the nodes of the lines to leave out along an axis, and lengths of cells.
+    """Return errors at the nodes of the omitted lines along an axis, and lengths of cells.
 
     Each of ``values`` has a number of components, (J, I, C), and a size to compare with, (J, I).
     Errors are multiplied by the length of the cell, because small cells are hardly seen.
@@ -148,7 +148,7 @@ def _errors(
             else:
                 limit = VALUE_ERROR * np.maximum.reduce(lines(size))
             errors = np.maximum(errors, np.where(error > 0, error / limit, error))
-    errors *= length
+        errors *= length
     if not valid.all():
         known = np.sum(lines(valid), axis=0)
         errors[known < 3] = np.inf
@@ -160,8 +160,8 @@ def _errors(
 def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices]) -> Floats:
     """Return errors at the next level of a field on triangles, as :func:`block_roughness` does.
 
-    In two triangles with a common edge a linear function at one end follows from the three nodes
-    of the other one. ``parts`` are the numbers of the triangles of each block.
+    The three nodes of a triangle extrapolate a linear function to the far node of its neighbour;
+    the difference measures curvature. ``parts`` has the numbers of the triangles of each block.
     """
     points, velocity = field.points[0], field.velocity[0, 0]
     beside = neighbours(points, triangles)
@@ -186,15 +186,16 @@ def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices
     with np.errstate(invalid="ignore", divide="ignore"):
         errors = np.abs(dot(d - a, normal)) / np.sqrt(area) / (4 * PLACE_ERROR)
         for nodal, size in values:
-            # Twice as far apart, nodes differ by four times as much from a line.
+            # The next level doubles the distances, which quadruples deviations from a line.
             error = norm(np.einsum("nk,nkc->nc", weights, nodal[nodes])) / 2
             error = np.where(error > 0, error / (VALUE_ERROR * size), error)
             errors = np.maximum(errors, error * length)
     errors[np.isnan(errors)] = np.inf
-    begins = np.flatnonzero(np.diff(here, prepend=-1))
-    greatest, longest = np.zeros((2, len(triangles)))
-    for most, found in ((greatest, errors), (longest, length)):
-        most[here[begins]] = np.maximum.reduceat(found, begins)
+    # A triangle without neighbours has no error.
+    greatest, longest = np.zeros(len(triangles)), np.full(len(triangles), np.finfo(float).tiny)
+    if len(begins := np.flatnonzero(np.diff(here, prepend=-1))):
+        for most, found in ((greatest, errors), (longest, length)):
+            most[here[begins]] = np.maximum.reduceat(found, begins)
     return np.array(
         [
             np.percentile(greatest[part], MOST_SHARE, method="lower") / longest[part].max()

@@ -194,13 +194,13 @@ class Pyramid:
         return self._places[level]
 
     def smooth_places(self, level: int) -> Floats:
-        """Return :meth:`places` with cells as many times smaller as they may be larger."""
+        """Return :meth:`places` with cell sizes divided by :meth:`enlarged`."""
         places = self.places(level).copy()
         places[..., 4] /= self.enlarged(level)
         return places
 
     def enlarged(self, level: int) -> Floats:
-        """Return how many times larger cells of blocks may be, where two levels show the same."""
+        """Return factors by which cells of blocks may be larger, (rows, columns)."""
         if not (level and self._has_roughness):
             return np.ones(self.places(level).shape[:2])
         greatest = np.zeros(())

@@ -96,7 +96,7 @@ class TrianglePyramid(Pyramid):
         return places
 
     def enlarged(self, level: int) -> Floats:
-        """Return factors of the size of cells, as for structured surfaces."""
+        """Return factors by which cells may be larger, as for structured surfaces."""
         factors = np.ones((2 ** self._steps(level),) * 2)
         if level and has_roughness(self.field):
             if level not in self._roughness:

@@ -98,6 +98,15 @@ def test_thin_cells_beside_long_ones_may_bend() -> None:
         assert (Pyramid(FlowField.from_arrays(points, flow)).enlarged(1) == expected).all()
 
 
+def test_triangles_without_neighbours_have_no_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 3000)
+    rng = np.random.default_rng(0)
+    corners = rng.uniform(0, 1, (3000, 1, 3)) + rng.normal(scale=0.004, size=(3000, 3, 3))
+    points, numbers = corners.reshape(-1, 3) * [1, 1, 0], np.arange(9000).reshape(-1, 3)
+    pyramid = TrianglePyramid(FlowField.from_triangles(points, numbers, points))
+    assert pyramid.depth and np.isfinite(pyramid.enlarged(1)).all()
+
+
 def test_triangles_of_smooth_flow_may_be_larger(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 3000)
     points, triangles = sphere(5)

@@ -156,7 +156,7 @@ class Sessions:
         return self._by_token.get(token)
 
     def files(self, token: str) -> Respond | None:
-        """Return what answers for the files of a token; it is not that of the session itself."""
+        """Return the handler of file requests for the token of a session's files."""
         return next((session.respond for session in self if session.files == token), None)
 
     async def prepare(self) -> dict[str, str]:
