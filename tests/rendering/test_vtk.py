@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
+from flows import scattered_swinging, swinging
 from measures import carried, streaks
 from plain_pyvista import off_colours
 from scipy.ndimage import binary_erosion
@@ -179,6 +180,41 @@ def test_edges_do_not_take_the_texture_away(plotter: Any) -> None:
     assert 0.005 < red.mean() < 0.3
     same = (np.abs(edged - plain).max(axis=-1) < 2)[~red]
     assert same.mean() > 0.85
+
+
+SERIES = {
+    "grid": (swinging, {}),
+    "streamlines": (swinging, {"lines": "streamlines"}),
+    "triangles": (scattered_swinging, {}),
+}
+
+
+def shown_at(plotter: Any, time: float) -> Any:
+    for handle in plotter.flowtex:
+        handle.time = time
+    return np.asarray(plotter.screenshot(return_img=True), float)
+
+
+@pytest.mark.parametrize("name", SERIES)
+def test_any_order_of_times_shows_what_a_new_plotter_does(name: str) -> None:
+    make, options = SERIES[name]
+    first, middle, last = make().times
+    between = (first + middle) / 2
+    orders = [first, middle, last, between, middle, first, between, last, middle]
+
+    def opened() -> Any:
+        plotter: Any = pv.Plotter(off_screen=True, window_size=[96, 96])
+        plotter.flowtex.add(make(), scalars=False, **options)
+        return plotter
+
+    expected = {}
+    for time in (first, middle, last, between):
+        with contextlib.closing(opened()) as plotter:
+            expected[time] = shown_at(plotter, time)
+        assert expected[time][32:64, 32:64].std() > 12
+    with contextlib.closing(opened()) as plotter:
+        for time in orders:
+            np.testing.assert_array_equal(shown_at(plotter, time), expected[time])
 
 
 def test_several_on_one_plotter_and_removal_leaves_nothing(plotter: Any) -> None:

@@ -165,8 +165,6 @@ class FlowLayer:
     def set_moment(self, before: int, after: int, between: float) -> None:
         """Show the time between two steps; the next ones in its direction are prepared."""
         old_time = self.view.time
-        if between and not self.view.between:
-            self._retire("u_slicesNext")  # a placeholder
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
             reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
@@ -262,6 +260,9 @@ class FlowLayer:
                 if self._gpu[name].GetTextureUnit() < 0:
                     self._gpu[name].Activate()
                 program.SetUniformi(name, self._gpu[name].GetTextureUnit())
+        if not self.view.between and program.IsUniformUsed("u_slicesNext"):
+            # At a step there is no next one, and the sampler needs a texture of its kind.
+            program.SetUniformi("u_slicesNext", self._gpu["u_slices"].GetTextureUnit())
         if (sums := self.sums) is not None and program.IsUniformUsed("u_sums"):
             if sums.GetTextureUnit() < 0:
                 sums.Activate()
@@ -317,11 +318,12 @@ class FlowLayer:
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
         none, single = np.zeros((1, 1, 1, 4)), partial(send, levels=0, single=True)
         loaders |= {
-            "u_slicesNext": lambda: send(**self._slices(1)) if self.view.between else single(none),
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
             "u_nodes": lambda: single(_nodes(geometry, self.view.anchor)),
         }
+        if self.view.between:
+            loaders["u_slicesNext"] = lambda: send(**self._slices(1))
         if (corners := geometry.corners) is not None:
             loaders["u_corners"] = lambda: single(_corners(corners))
         if (image := self.textures.image) is not None:
