@@ -31,7 +31,7 @@ const float FLOWTEX_OFF_PLANE = 0.5;
 const float FLOWTEX_EDGE_CELLS = 8.0;
 
 // Levels of detail.
-const float FLOWTEX_LEAST_SQUARE = 1e-38; // square of the longest side of a footprint
+const float FLOWTEX_LEAST_SQUARE = 1e-30; // square of the longest side of a footprint; no less, as graphics cards take numbers below 1.2e-38 as zero
 const float FLOWTEX_LEAST_TEXELS = 1e-6;  // side of a footprint in texels
 const float FLOWTEX_LEAST_ROUND = 0.25;   // shorter side of a footprint, over the longer one, that counts
 const float FLOWTEX_LEAST_FACING = 0.05;  // cosine between the normal and the ray to the eye

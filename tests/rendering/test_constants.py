@@ -36,6 +36,14 @@ def test_every_constant_of_the_shaders_is_used() -> None:
     assert set(NAMES) - used == {"KERNEL_HANN"}
 
 
+def test_numbers_are_not_too_small_for_graphics_cards() -> None:
+    # Subnormal numbers are zero there, so that a number divided by the greater one of both is NaN.
+    least = np.finfo(np.float32).tiny
+    for name in NAMES:
+        number = np.abs(np.asarray(getattr(const, name), dtype=float))
+        assert ((number == 0) | (number >= least)).all(), name
+
+
 @pytest.mark.parametrize("name", ["AGREED", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"])
 def test_textures_are_made_by_the_numbers_of_the_shaders(name: str) -> None:
     assert getattr(const, name) == getattr(texture_set, name)
