@@ -31,6 +31,7 @@ LOAD_SLOW = (
     "__main__",
     "xarray",
     "pyramid.objects",
+    "sources.inspection.zarr_stores",
 )
 MAX_ENTRIES, MAX_MODULES, MAX_LINES = 20, 15, 600
 

@@ -14,7 +14,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
-from flowtex.errors import import_extra
+from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.layout import (
@@ -71,6 +71,8 @@ class Levels:
             about = group.attrs["flowtex"]
         except PyramidError:
             raise
+        except FieldError as error:  # of a document that is refused
+            raise PyramidError(f"{self.place}: {error}") from None
         except Exception as error:
             raise PyramidError(
                 f"{self.place} contains no readable pyramid ({_error_text(error)}); build one"

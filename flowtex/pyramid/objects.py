@@ -26,6 +26,7 @@ from zarr.core.metadata import ArrayV3Metadata
 from zarr.storage import StorePath, WrapperStore
 
 from flowtex._util.cache import ByteCache
+from flowtex.errors import FieldError
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
 MOST_READS = 16  #: Most objects, or parts of them, that are read at once from one store.
@@ -84,6 +85,8 @@ class Objects(WrapperStore[Store]):
                 try:
                     result = await self._store.get(key, prototype, byte_range)
                     break
+                except FieldError:  # a document that is refused
+                    raise
                 except Exception as error:
                     # obstore does not repeat a request whose answer was cut off.
                     if "Interrupted" in str(error) and trial < MOST_REPEATS:

@@ -145,20 +145,25 @@ def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
 
 
 def store_at(place: str | Path, *, read_only: bool = True) -> Store:
-    """Return the store of Zarr's at a place, where files and objects are whole or absent."""
+    """Return the store of Zarr's at a place, where files and objects are whole or absent.
+
+    Its documents are checked as they are read, see :class:`CheckedStore`.
+    """
     text = place_text(place)
     import_extra("zarr.storage", "store")
     from zarr import storage
 
+    from flowtex.sources.inspection.zarr_stores import CheckedStore
+
     if not is_remote(text):
-        return storage.LocalStore(text, read_only=read_only)
+        return CheckedStore(storage.LocalStore(text, read_only=read_only))
     if read_only:
-        return storage.ObjectStore(objects_at(text), read_only=True)
+        return CheckedStore(storage.ObjectStore(objects_at(text), read_only=True))
     if text.lower().startswith(_WEB):
         raise PyramidError(
             f"{text} is read-only; build in a folder or in object storage such as s3://"
         )
-    return storage.ObjectStore(objects_at(text, patient=True))
+    return CheckedStore(storage.ObjectStore(objects_at(text, patient=True)))
 
 
 def sync(coroutine: Coroutine[Any, Any, T]) -> T:

@@ -240,8 +240,11 @@ def has_parts(place: object) -> bool:
     folder = Path(place_text(place))
     if not (folder.is_dir() and is_dataset_file(folder)):
         return False
+    zarr = import_extra("zarr", "xarray")
+    from flowtex.sources.inspection.zarr_stores import checked_folder
+
     try:
-        group = import_extra("zarr", "xarray").open_group(folder, mode="r")
+        group = zarr.open_group(checked_folder(folder), mode="r")
         shapes = [array.shape for _, array in group.arrays()]
     except (OSError, ValueError, KeyError, TypeError):  # the reader reports the fault
         return False
@@ -251,20 +254,26 @@ def has_parts(place: object) -> bool:
 
 def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     """Return the datasets of a store of others that have a velocity, the finest first."""
-    from flowtex.pyramid.objects import Objects
-
     xarray = import_extra("xarray", "xarray")
+    import_extra("zarr", "xarray")
+    from flowtex.pyramid.objects import Objects
+    from flowtex.sources.inspection.zarr_stores import check_arrays
+
     components = {name for name in two_names(options.vectors) if name}
     if not is_remote(place):
         with errors_of(place):
             inspect_file(Path(place))
     try:
         store = Objects(store_at(place), sparse=True)
+        if is_remote(place):
+            check_arrays(store)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
             groups = xarray.open_groups(store, engine="zarr", decode_timedelta=False)
     except (PyramidError, ModuleNotFoundError):
         raise
+    except FieldError as error:  # of the checks
+        raise FieldError(f"{place}: {error}") from None
     except Exception as error:
         words = str(error) if isinstance(error, ReadFault) else fault_words(error)
         raise PyramidError(

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from lying_files import zarr_of_a_size
+from range_server import range_server
 from store_contents import contents
 from strategies import property_test
 
@@ -257,6 +258,12 @@ def test_a_zarr_of_any_size_is_refused_as_a_source(
         with pytest.raises(FieldError, match=rf"the variable ({name}) declares \d+ TB"):
             read(path)
     assert not (tmp_path / "a").exists()
+
+
+def test_a_zarr_of_any_size_at_a_url_is_refused(tmp_path: Path) -> None:
+    zarr_of_a_size(tmp_path / "flow.zarr", 2, lat=[10**12], u=[10**12, 9], v=[10**12, 9])
+    with range_server(tmp_path) as server, pytest.raises(FieldError, match=r"declares \d+ TB"):
+        open_store(server.address + "flow.zarr")
 
 
 def test_zarr_of_an_impossible_shape_is_refused_as_a_source(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import struct
-import warnings
 from collections import Counter
 from functools import lru_cache
 from mmap import ACCESS_READ, mmap
@@ -34,8 +33,6 @@ GRIB_SUFFIXES = (".grib", ".grb")
 MOST_MEMBERS = 100_000
 #: Documents of a group, and of all arrays.
 DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
-#: Most bytes of a number.
-NUMBER_BYTES = 8
 GRIB_MAGIC = b"GRIB"
 #: Least value of a GRIB 1 length that counts units of several bytes.
 LONG_MESSAGE = 0x800000
@@ -114,15 +111,11 @@ def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
 
 
 def check_zarr(folder: Path) -> None:
-    """Raise a FieldError for a line of coordinates, or a chunk, that does not fit into memory."""
-    zarr = import_extra("zarr", "xarray")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of files beside the arrays
-        members = zarr.open_group(folder, mode="r").members(max_depth=None)
-    for name, array in members:
-        if isinstance(array, zarr.Array):
-            sizes = [math.prod(array.chunks)] + [math.prod(array.shape)] * (array.ndim < 2)
-            check_memory(max(sizes) * NUMBER_BYTES, f"the variable {name}")
+    """Raise a FieldError for a codec that is not listed, or an array that needs too much memory."""
+    import_extra("zarr", "xarray")
+    from flowtex.sources.inspection.zarr_stores import check_arrays, checked_folder
+
+    check_arrays(checked_folder(folder))
 
 
 def check_grib(data: Data) -> None:

@@ -325,17 +325,21 @@ def open_files(path: Path) -> Datasets:
             parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
             return Datasets(parts, _closers(parts))
         options: dict[str, Any] = {"decode_timedelta": False}
-        if path.is_dir():
+        place: Any = path
+        if path.is_dir() or suffix in ZARR:
             import_extra("zarr", "xarray")
-            options["engine"] = "zarr"
+            from flowtex.sources.inspection.zarr_stores import checked_folder
+
+            place, options["engine"] = checked_folder(path), "zarr"
         try:
-            ds = xarray.open_dataset(path, **options)
+            ds = xarray.open_dataset(place, **options)
         except ValueError:  # times that no calendar has stay numbers
             options["decode_times"] = False
-            ds = xarray.open_dataset(path, **options)
+            ds = xarray.open_dataset(place, **options)
+        ds.encoding["source"] = str(path)
         if not group and any(array.ndim for array in ds.data_vars.values()):
             return Datasets([ds], _closers([ds]))
-        tree = xarray.open_datatree(path, **options)
+        tree = xarray.open_datatree(place, **options)
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")

@@ -1,0 +1,144 @@
+"""Checks of Zarr stores: the codecs that their documents name, and the sizes of their arrays.
+
+A codec of a store is a Python class that decodes its chunks, and one of them unpickles, so a store
+could execute code. A store is opened only through :class:`CheckedStore`, which refuses all codecs
+but those of a list, in every document that Zarr reads.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import zarr
+from zarr.abc.store import ByteRequest, Store
+from zarr.core.buffer import Buffer, BufferPrototype
+from zarr.storage import LocalStore, WrapperStore
+
+from flowtex.errors import FieldError
+from flowtex.sources.reader_errors import check_memory
+
+#: Documents from which Zarr takes metadata of arrays, of both formats.
+DOCUMENTS = ("zarr.json", ".zarray", ".zgroup", ".zmetadata")
+#: Ending of documents, and of their names in others, that have attributes alone.
+ATTRIBUTES = ".zattrs"
+#: Codecs of bytes and numbers in Zarr 2; in Zarr 3 their names begin with ``numcodecs.``.
+NUMBER_CODECS = frozenset(
+    (
+        *("blosc", "bz2", "gzip", "lz4", "lzma", "zlib", "zstd"),
+        *("astype", "bitround", "delta", "fixedscaleoffset", "packbits", "quantize", "shuffle"),
+        *("adler32", "crc32", "crc32c", "fletcher32", "jenkins_lookup3"),
+        *("pcodec", "zfpy"),
+    )
+)
+#: Codecs of texts and bytes of any length.
+TEXT_CODECS = frozenset(("vlen-bytes", "vlen-utf8"))
+#: Codecs of Zarr 2.
+OLD_CODECS = NUMBER_CODECS | TEXT_CODECS | {"categorize"}
+#: Codecs of Zarr 3.
+CODECS = TEXT_CODECS | {
+    *("blosc", "bytes", "cast_value", "crc32c", "endian", "gzip", "scale_offset"),
+    *("sharding_indexed", "transpose", "zstd"),
+    *(f"numcodecs.{name}" for name in NUMBER_CODECS),
+}
+#: Most bytes of a number.
+NUMBER_BYTES = 8
+
+
+class CheckedStore(WrapperStore[Store]):
+    """A store of Zarr's that raises a FieldError for a document with a codec that is not listed."""
+
+    async def get(
+        self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
+    ) -> Buffer | None:
+        """Return an object or a part of it, ``None`` for a missing one."""
+        result = await self._store.get(key, prototype, byte_range)
+        folder, _, name = key.rpartition("/")
+        if result is not None and name in DOCUMENTS:
+            check_document(result.to_bytes(), folder)
+        return result
+
+
+def checked_folder(folder: Path) -> CheckedStore:
+    """Return the store of Zarr's in a folder, to read."""
+    return CheckedStore(LocalStore(folder, read_only=True))
+
+
+def check_document(data: bytes, folder: str) -> None:
+    """Raise a FieldError for metadata, of a node in a folder, with a codec that is not listed."""
+    try:
+        document = json.loads(data)
+    except (ValueError, RecursionError):  # Zarr cannot read it either
+        return
+    _check_node(document, folder)
+
+
+def _check_node(node: Any, name: str) -> None:
+    if not isinstance(node, dict):
+        return
+    for codec, known in _codecs(node):
+        if not (isinstance(codec, str) and codec in known):
+            expected = ", ".join(sorted(known))
+            raise FieldError(
+                f"the array {name or 'at the root'} has the codec {str(codec)[:40]!r}, which is "
+                f"refused, because a codec may run any program; expected {expected}. Write the "
+                "array without it, or open the store with xarray and pass the dataset"
+            )
+    for holder in (node, node.get("consolidated_metadata")):
+        members = holder.get("metadata") if isinstance(holder, dict) else None
+        if isinstance(members, dict):
+            for key, member in members.items():
+                if not key.endswith(ATTRIBUTES):
+                    _check_node(member, key.removesuffix("/.zarray"))
+
+
+def _codecs(node: dict[str, Any]) -> Iterator[tuple[Any, frozenset[str]]]:
+    """Yield the name of each codec in the metadata of an array, with the names that are allowed.
+
+    A document may have entries of both formats, so all of them count.
+    """
+    for entry in (*_entries(node.get("filters")), *_entries(node.get("compressor"))):
+        yield _name(entry, "id"), OLD_CODECS
+    waiting = _entries(node.get("codecs"))
+    while waiting:
+        entry = waiting.pop()
+        yield _name(entry, "name"), CODECS
+        inner = entry.get("configuration") if isinstance(entry, dict) else None
+        if isinstance(inner, dict):  # of shards
+            waiting += _entries(inner.get("codecs"))
+            waiting += _entries(inner.get("index_codecs"))
+
+
+def _entries(value: Any) -> list[Any]:
+    if value is None:
+        return []
+    if isinstance(value, list):
+        return [*value]
+    return [value]
+
+
+def _name(entry: Any, key: str) -> Any:
+    if isinstance(entry, dict):
+        return entry.get(key)
+    return entry
+
+
+def check_arrays(store: Store) -> None:
+    """Raise a FieldError for a line of coordinates, or a chunk, that does not fit into memory.
+
+    ``store`` is, or wraps, a :class:`CheckedStore`, which checks the codecs of its arrays.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of files beside the arrays
+        members = zarr.open_group(store, mode="r").members(max_depth=None)
+    for name, array in members:
+        if not isinstance(array, zarr.Array):
+            continue
+        count = math.prod(array.chunks)
+        if array.ndim < 2:
+            count = max(count, math.prod(array.shape))
+        check_memory(count * NUMBER_BYTES, f"the variable {name}")
