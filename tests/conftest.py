@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
     from webgl_page import ClientPage
 
-pytest_plugins = ["small_pages", "small_tiles"]
+pytest_plugins = ["case_counts", "small_pages", "small_tiles"]
 
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()

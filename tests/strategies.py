@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
 from typing import Any
 
 import hypothesis
@@ -33,10 +32,11 @@ MISSING = [np.nan, np.nan, np.nan, np.inf, 0.0]
 BAD = [np.nan, np.inf, -np.inf, 1e300, -1e30, 9.96921e36, 0.0]
 
 
-def property_test(examples: int, *, fuzz: int = 0) -> Callable[[Any], Any]:
+def property_test(examples: int, *, fuzz: int = 0, steps: int = 50) -> hypothesis.settings:
     """Return the decorator of a test that takes half as many examples in the suite.
 
-    ``make fuzz`` multiplies them, or ``fuzz`` where the suite has time for few.
+    ``make fuzz`` multiplies them, or ``fuzz`` where the suite has time for few. ``steps`` is the
+    greatest number of steps of a state machine. See ``case_counts.py`` for counting the cases.
     """
     return hypothesis.settings(
         max_examples=max(examples, fuzz) * FACTOR or (examples + 1) // 2,
@@ -46,6 +46,7 @@ def property_test(examples: int, *, fuzz: int = 0) -> Callable[[Any], Any]:
         print_blob=bool(FACTOR),
         phases=[Phase.explicit, Phase.generate, Phase.shrink],
         suppress_health_check=list(HealthCheck),
+        stateful_step_count=steps,
     )
 
 
