@@ -135,9 +135,9 @@ class FlowApp:
         """The flow shown."""
         return self.viewport.field
 
-    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+    def show(self, field: FlowField, **keep: bool) -> None:
         """Show another flow, as :meth:`flowtex.app.FlowArea.show` does."""
-        self.context.show(field, keep_view=keep_view, keep_range=keep_range)
+        self.context.show(field, **keep)
 
     def restore(self, state: State) -> None:
         """Show the state of a link."""

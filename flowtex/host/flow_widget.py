@@ -414,7 +414,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         if kind == "appearance" and isinstance(message.get("changes"), dict):
             chosen = {n: value for n, value in message["changes"].items() if n in CHOSEN}
             with suppress(ValueError, KeyError, TypeError):
-                self.scene.appearance = self.scene.appearance.changed(**chosen)
+                self.scene.change(chosen)
         is_known = isinstance(number, int) and 0 <= number < len(self._feeds)
         if is_known and isinstance(request, str):
             feed = self._feeds[number]

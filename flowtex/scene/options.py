@@ -229,9 +229,7 @@ def _attribute(name: str) -> property:
         return getattr(self.scene.appearance, name)
 
     def change(self: AppearanceAttributes, value: Any) -> None:
-        if name == "clim":
-            self.scene.fit_range()
-        self.scene.appearance = self.scene.appearance.changed(**{name: value})
+        self.scene.change({name: value})
 
     return property(get, change, doc=Appearance.__dataclass_fields__[name].metadata["text"])
 

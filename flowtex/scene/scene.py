@@ -328,9 +328,14 @@ class Scene:
             low, high = float(norm.vmin), float(norm.vmax)
         return low, high
 
-    def fit_range(self) -> None:
-        """Colour by the range of the data from now on, unless the appearance has limits."""
-        self._kept = {}
+    def change(self, changes: Mapping[str, Any]) -> None:
+        """Change fields of the appearance; a ``clim`` of ``None`` alone fits the present data.
+
+        Raises the errors of the constructor, and then nothing changes.
+        """
+        if "clim" in changes and "scalars" not in changes:
+            self._kept = {}
+        self.appearance = self.appearance.changed(**changes)
 
     def _check_colours(self, appearance: Appearance) -> None:
         """Raise a FieldError if the scalar does not exist, or has no logarithm."""
@@ -420,20 +425,34 @@ class Scene:
         )
         return scene
 
-    def showing(self, field: FlowField, own: dict[str, Any] | None = None) -> Scene:
+    def showing(
+        self,
+        field: FlowField,
+        own: dict[str, Any] | None = None,
+        *,
+        keep_range: bool = True,
+        same_data: bool = False,
+    ) -> Scene:
         """Return a scene of another flow that shares these settings and has this appearance.
 
-        Its time is the nearest one, and its colours keep their range. With ``own`` changes of the
-        appearance they fit its data, and scalars that the flow lacks are replaced by the speed.
-        Raises the errors of the constructor.
+        Its time is the nearest one. Its colours keep their range for ``keep_range``, except those
+        of a formula, whose range follows its parameters, and for another part of the ``same_data``
+        those whose range in the whole volume is known. With ``own`` changes of the appearance,
+        scalars that the flow lacks are replaced by the speed. Raises the errors of the constructor.
         """
         look = self._appearance if own is None else _look_beside(self, own, field)
         scene = Scene(field, self.settings, look, image=self.image)
-        if own is None:
-            ranges = {(name, robust): ends for (name, robust, _), ends in self._ranges.items()}
-            scene._kept = {**ranges, **self._kept}
+        if keep_range and field.formula is None:
+            known = field.volume_values if same_data else ()
+            kept = self._shown_ranges()
+            scene._kept = {key: ends for key, ends in kept.items() if key[0] not in known}
         scene._show_time(min(max(self._time, scene._time), float(field.times[-1])))
         return scene
+
+    def _shown_ranges(self) -> dict[tuple[str, bool], tuple[float, float]]:
+        """Return the ranges that colours have had, by scalar and whether they are robust."""
+        ranges = {(name, robust): ends for (name, robust, _), ends in self._ranges.items()}
+        return {**ranges, **self._kept}
 
     def follow(self, before: Scene) -> None:
         """Replace another scene, and notify its observers."""

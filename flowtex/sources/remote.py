@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.child import FORKS, Child, ChildError, fork_server
 from flowtex._util.child.worker import Answer
@@ -47,6 +49,8 @@ VALUES = (
     *("periodic", "name", "length_unit", "time_unit", "velocity_unit", "vectors", "sign_free"),
     *("units", "long_names", "uncertainty", "on_cells"),
 )
+#: Attributes of a field that are arrays by name.
+NAMED_ARRAYS = ("scalars", "volume_values")
 #: Attributes of a source.
 CHOICES = (
     *("name", "vectors", "dimensions", "blocks", "block_vectors", "block_word"),
@@ -128,7 +132,8 @@ def pack_field(
 
     value: dict[str, Any] = {name: getattr(field, name) for name in VALUES}
     value["arrays"] = {name: packed(getattr(field, name)) for name in ARRAYS}
-    value["scalars"] = {name: packed(array) for name, array in field.scalars.items()}
+    for group in NAMED_ARRAYS:
+        value[group] = {name: packed(array) for name, array in getattr(field, group).items()}
     value["start"] = written_date(field.start)
     value["projection"] = field.projection and field.projection.written
     return value, arrays
@@ -147,10 +152,11 @@ def unpack_field(
     values = {name: value[name] for name in VALUES}
     values["on_cells"] = tuple(value["on_cells"])
     values["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
+    for group in NAMED_ARRAYS:
+        values[group] = {name: unpacked(packed) for name, packed in value[group].items()}
     field = FlowField(
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
         **values,
-        scalars={name: unpacked(packed) for name, packed in value["scalars"].items()},
         start=date_of(value["start"]),
         projection=Projection.of(value["projection"]),
     )
@@ -175,6 +181,9 @@ def _check(field: FlowField) -> None:
     for name, array in field.scalars.items():
         count = len(corners) if corners is not None and name in field.on_cells else columns
         shapes[name] = (array, (len(array), rows, count), "biuf")
+    for name, sample in field.volume_values.items():
+        if not isinstance(sample, np.ndarray) or sample.ndim != 1 or sample.dtype.kind != "f":
+            raise ValueError(f"the values of {name} in the volume are no row of numbers")
     for name, (array, shape, kinds) in shapes.items():
         if isinstance(array, LazySteps):
             if len(array) != shape[0]:

@@ -11,6 +11,7 @@ import pytest
 import pyvista as pv
 from scipy.spatial import KDTree
 
+import flowtex
 from flowtex.scene.scene import Scene
 
 pytestmark = [
@@ -249,3 +250,17 @@ def test_mesh_that_is_changed_in_place_is_drawn_again(window: Any, what: str) ->
     mesh["U"][:] = np.nan
     with pytest.warns(UserWarning, match="the mesh has changed and cannot be drawn, so the image"):
         window.render()
+
+
+def test_colours_follow_the_parameter_of_a_formula(window: Any) -> None:
+    """They would all be the highest colour in the range of another parameter."""
+    handle = window.flowtex.add(flowtex.formula("pendulum", b=0.2, resolution=65), **PLAIN)
+    for b in (2.0, 0.0):
+        field = flowtex.formula("pendulum", b=b, resolution=65)
+        handle.set_surface(field)
+        assert handle.scene.scalar_limits == Scene.of(field).scalar_limits
+        bar = window.scalar_bars[next(iter(window.scalar_bars.keys()))].GetLookupTable()
+        assert bar.GetRange() == pytest.approx(handle.scene.scalar_limits)
+    handle.clim = (0.0, 3.0)
+    handle.set_surface(flowtex.formula("pendulum", b=1.0, resolution=65))
+    assert handle.scene.scalar_limits == (0.0, 3.0)

@@ -46,10 +46,10 @@ class Context:
         """Show an error on the page."""
         self.state.send(problem=shortened(str(problem)))
 
-    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+    def show(self, field: FlowField, **keep: bool) -> None:
         """Show another flow; :meth:`Viewport.show` has the parameters."""
         playing = self.area.player.playing
-        self.area.show(field, keep_view=keep_view, keep_range=keep_range)
+        self.area.show(field, **keep)
         self.field_changed.emit()
         self.area.player.playing = playing
 

@@ -12,8 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from flowtex.app.controllers.context import (
     Context,
     FlowOpener,
@@ -25,10 +23,10 @@ from flowtex.app.controllers.context import (
 from flowtex.app.controllers.library import Choice
 from flowtex.app.server.files import Uploads
 from flowtex.app.server.page import clipped, name_among
-from flowtex.app.streaming.viewport import time_in
+from flowtex.app.streaming.viewport import first_time, time_in
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.formula.make import is_line, with_parameter
+from flowtex.field.formula.make import is_line, same_formula, with_parameter
 from flowtex.sources.open_source import FlowSource
 
 
@@ -120,15 +118,25 @@ class Data(FlowOpener):
         self._begin(LoadRequest(name, choice, then), follows=is_similar and then is None)
 
     async def _open(self, request: LoadRequest) -> None:
-        flow = await self._read(request, self._first_time)
+        def time(field: FlowField) -> float:
+            keep = self._has_same_velocity(request.name, request.choice, field)
+            return first_time(self.area.scene, field, keep=keep)
+
+        flow = await self._read(request, time)
         self._show(flow, request)
         if request.then is not None and self._is_latest(request):
             request.then()
 
-    def _first_time(self, field: FlowField) -> float:
-        """Return the time of another flow that is shown: the same, for a part of the same data."""
-        same = np.array_equal(field.times, self.viewport.field.times)
-        return self.viewport.handle.time if same else float(field.times[0])
+    def _has_same_velocity(self, name: str, choice: Choice, field: FlowField) -> bool:
+        """Return whether a flow is another part of the file shown, or only differs in parameters.
+
+        Values of its velocity compare with those on the page, on any plane and in any block.
+        """
+        if same_formula(field, self._current.field):
+            return True
+        present = self._current.source.part(self.choice.block or None).vectors
+        vectors = choice.vectors or next(iter(present), "")
+        return (name, vectors) == (self.name, self.choice.vectors or next(iter(present), ""))
 
     def _fail(self) -> None:
         self._goal = (self.name, self.choice)
@@ -138,18 +146,15 @@ class Data(FlowOpener):
         """Replace the flow by another one; if that fails, it stays."""
         before = self._current, self._goal
         new, old = flow.choice, self.choice
-        same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
-        # Two flows of one formula differ only in the values of parameters.
-        a, b = flow.field.formula, self._current.field.formula
-        same |= a is not None and b is not None and (a.texts, a.ranges) == (b.texts, b.ranges)
-        keep = same and _axis(new.plane) == _axis(old.plane)
+        same = self._has_same_velocity(flow.name, new, flow.field)
+        keep = same and (new.block, _axis(new.plane)) == (old.block, _axis(old.plane))
         # A file that has changed has other values.
-        same = same and flow.source.identity == self._current.source.identity
+        same_values = same and flow.source.identity == self._current.source.identity
         self._current = flow
         if self._is_latest(request):
             self._goal = (flow.name, new)
         try:
-            self.context.show(flow.field, keep_view=keep, keep_range=same)
+            self.context.show(flow.field, keep_view=keep, keep_range=same_values, keep_time=same)
             if not keep:
                 zoom, focus = self.library.look(flow.name)
                 self.viewport.home(zoom=zoom, focus=focus)

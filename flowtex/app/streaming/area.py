@@ -141,7 +141,7 @@ class FlowArea(AppearanceAttributes):
     @field.setter
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
-        self.show(read_field(mesh, reading), keep_view=True, keep_range=True)
+        self.show(read_field(mesh, reading), keep_view=True, keep_range=True, keep_time=True)
 
     def ui(self, **attributes: Any) -> Any:
         """Add the view to the open layout; ``attributes`` are those of the element."""
@@ -168,7 +168,14 @@ class FlowArea(AppearanceAttributes):
             **attributes,
         )
 
-    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+    def show(
+        self,
+        field: FlowField,
+        *,
+        keep_view: bool = False,
+        keep_range: bool = False,
+        keep_time: bool = False,
+    ) -> None:
         """Show another flow with the same settings.
 
         Parameters
@@ -178,9 +185,11 @@ class FlowArea(AppearanceAttributes):
         keep_view
             Whether the camera stays where it is.
         keep_range
-            Whether a chosen colour range and the time shown stay.
+            Whether the colour range stays, as for another part of the same data.
+        keep_time
+            Whether the time stays, as far as the flow has it.
         """
-        self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
+        self.viewport.show(field, keep_view=keep_view, keep_range=keep_range, keep_time=keep_time)
         self.changed()
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
@@ -376,7 +385,7 @@ class FlowArea(AppearanceAttributes):
         changes = {name: value for name, value in mapping(choice).items() if name in CHOSEN}
         scene = self.viewport.scene
         with self._changed_by(""), suppress(KeyError, TypeError):
-            scene.appearance = scene.appearance.changed(**changes)
+            scene.change(changes)
 
     def _scene_changed(self, affects: Change) -> None:
         if affects == "appearance":
@@ -398,4 +407,5 @@ def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
     baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
-    return (*built, *baked, scene.field, scene.appearance, id(scene.image))
+    look = scene.appearance, scene.scalar_limits
+    return (*built, *baked, scene.field, *look, id(scene.image))

@@ -149,19 +149,29 @@ class Viewport:
         other.clock = self.clock
         return other
 
-    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+    def show(
+        self,
+        field: FlowField,
+        *,
+        keep_view: bool = False,
+        keep_range: bool = False,
+        keep_time: bool = False,
+    ) -> None:
         """Show another flow with the same settings, and with the same camera for ``keep_view``.
 
-        With ``keep_range``, for another part of the same data, a chosen range of colours stays, and
-        the time shown if the flow has the same times.
+        With ``keep_range``, for another part of the same data, the range of colours stays. One that
+        was not chosen is that of the volume where the flow knows it, or else the present one. With
+        ``keep_time`` the time stays as far as the flow has it.
         """
-        camera, flat, times, time = self.camera, self.flat, self.field.times, self.handle.time
+        camera, flat = self.camera, self.flat
+        time = first_time(self.scene, field, keep=keep_time)
         changes: dict[str, Any] = {} if keep_range else {"clim": None}
         flows = [field, self.differences.get("field", field)]
         scenes: list[Scene] = []
         try:
             for pane, flow in zip(self.panes, flows, strict=False):
-                scenes.append(_fitting(pane.scene, partial(pane.scene.showing, flow), changes))
+                make = partial(pane.scene.showing, flow, keep_range=keep_range, same_data=True)
+                scenes.append(_fitting(pane.scene, make, changes))
                 _ = scenes[-1].textures  # tracing may fail
         except BaseException:
             for scene in scenes:
@@ -169,8 +179,7 @@ class Viewport:
             raise
         for pane, scene in zip(self.panes, scenes, strict=True):
             pane.show_scene(scene)
-        same = keep_range and np.array_equal(times, field.times)
-        self.set_time(time if same else float(field.times[0]))
+        self.set_time(time)
         self.home()
         if keep_view and flat == self.flat:
             self.camera = camera
@@ -387,6 +396,14 @@ def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
         return time_in(first, changes["field"])
     earliest, latest = first.field.times[[0, -1]]
     return float(np.clip(changes.get("time", first.time), earliest, latest))
+
+
+def first_time(scene: Scene, field: FlowField, *, keep: bool) -> float:
+    """Return the time at which another flow is shown first: its first, or the nearest to keep."""
+    first = float(field.times[0])
+    if not keep:
+        return first
+    return min(max(scene.time, first), float(field.times[-1]))
 
 
 def time_in(scene: Scene, field: FlowField) -> float:

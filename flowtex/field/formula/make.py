@@ -233,6 +233,14 @@ def line_field(line: str) -> FlowField:
     return formula(*expressions, **named)
 
 
+def same_formula(first: FlowField, second: FlowField) -> bool:
+    """Return whether two flows come from one formula, perhaps with other values of parameters."""
+    one, other = first.formula, second.formula
+    if one is None or other is None:
+        return False
+    return (one.texts, one.ranges) == (other.texts, other.ranges)
+
+
 def with_parameter(line: str, field: FlowField, name: str, value: float) -> str:
     """Return the line of a flow with another value of a parameter, whose slider stays."""
     if field.formula is None or name not in field.formula.parameters:

@@ -356,7 +356,7 @@ class FlowImage(AxesImage):
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
         before, self._scales = self._scene, scales
-        self._scene = before.showing(flow, {})
+        self._scene = before.showing(flow, {}, keep_range=False)
         before.close()
         self._frame = _frame(self._scene.whole.surface)
 
