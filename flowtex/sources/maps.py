@@ -63,8 +63,6 @@ COARSE_NODES = 20_000
 STEP = 0.02
 #: Latitudes where the edge of a map is looked for.
 EDGE_LATITUDES = np.linspace(-75.0, 75.0, 31)
-#: Degrees from a pole at which a node is on it.
-AT_POLE = 1e-3
 
 
 @dataclass(eq=False)
@@ -76,6 +74,10 @@ class PlaneNodes:
 
     def at(self, values: Floats) -> Floats:
         """Return values as they are."""
+        return values
+
+    def components(self, values: Floats) -> Floats:
+        """Return components, (2, ...), as they are."""
         return values
 
     def vectors(self, u: Floats, v: Floats) -> Floats:
@@ -119,6 +121,11 @@ class MapNodes:
         for chosen in self.choices:
             values = chosen(values)
         return values
+
+    def components(self, values: Floats) -> Floats:
+        """Return eastward and northward components at the nodes, (2, J, I), from the grid's."""
+        east, north = values
+        return np.stack([self.at(east), self.at(north)])
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
         """Return vectors (J, I, 3) of components at the nodes in m/s."""
@@ -445,6 +452,19 @@ class MeshMap:
         one, other = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
         return np.asarray((1 - self.share) * one + self.share * other)
 
+    def components(self, values: Floats) -> Floats:
+        """Return eastward and northward components, (2, P), from those at the mesh's nodes, (2, N).
+
+        Between two nodes vectors are interpolated in space, as near a pole directions differ.
+        """
+        (one, other), share = self.nodes.T, self.share[:, None]
+        lon, lat = self.lon[: values.shape[1]], self.lat[: values.shape[1]]
+        globe = Projection(GLOBE)
+        vectors = globe.vectors(lon, lat, *values)
+        between_nodes = (1 - share) * vectors[one] + share * vectors[other]
+        moved = np.stack(globe.components(self.lon, self.lat, between_nodes))
+        return np.where(self.share > 0, moved, values[:, one])
+
     def vectors(self, east: Floats, north: Floats) -> Floats:
         """Return vectors (P, 3) of components (P,) in m/s."""
         return self.projection.vectors(self.lon, self.lat, east, north)
@@ -471,10 +491,8 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     one, other = np.moveaxis(np.stack([lon, lat], axis=-1)[pairs], 1, 0)
     torn, *shares = tears(projection, one, other, straight=True)
     more = [between(one[torn], other[torn], part, straight=True).T for part in shares]
-    # East and north have no meaning at a pole.
-    poles = np.abs(lat[pairs[torn]]) > 90 - AT_POLE
-    near = np.where(poles, pairs[torn, ::-1], pairs[torn])
-    nodes, share = np.concatenate([nodes, near, near]), np.concatenate([share, *shares])
+    nodes = np.concatenate([nodes, pairs[torn], pairs[torn]])
+    share = np.concatenate([share, *shares])
     # The number of the tear of each side.
     tear = np.full(triangles.shape, -1)
     tear[far] = np.where(torn, np.cumsum(torn) - 1, -1)[number.reshape(-1)]

@@ -8,24 +8,32 @@ sphere as on a crooked grid, and no term for the curvature of coordinates is nee
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.earth import GLOBE, Projection
-from flowtex.field.grids.poles import find_poles
+from flowtex.field.grids.grid_surface import GridSurface
+from flowtex.field.grids.poles import SAME_POINT_SHARE
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.validation import finite_nodes
 
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
+#: Below this share of the lengths beside it a cell has no length to divide by.
+COLLAPSED_LENGTH = 1e-3
+WIDEST_GAP = 0.5 * np.pi  #: Widest gap between nodes around a pole, as an angle.
+AT_POLE = 1e-3  #: Degrees from a pole at which a node of a flat map is on it.
+NEEDED_RING = 0.75  #: Least share of the circle around a pole with values.
 QUADRATIC_NEIGHBOURS = 5  #: Least number of neighbours for a quadratic fit.
 REGULARISATION = 1e-12  #: Regularisation of a fit, as a share of the largest entry.
-LEAST_INDEPENDENCE = 1e-9  #: Determinant of the correlations of the terms of a fit, at least.
+#: Least eigenvalue of the correlations of the terms of a fit; nodes nearly on two lines have less.
+LEAST_INDEPENDENCE = 1e-7
+SUSPECT_INDEPENDENCE = 1e-5  #: Determinant of these correlations from which on it is computed.
 
 
 def true_positions(points: Floats, projection: Projection | None) -> Floats:
@@ -52,11 +60,38 @@ def node_gradient(
     """
     points, valid = true_positions(surface.points, projection), surface.valid
     valid = valid if known is None else valid & known
+    is_flat_map = points is not surface.points
+    if is_flat_map and projection is not None:
+        valid = valid & _has_vectors(points, projection, poles=isinstance(surface, GridSurface))
     if isinstance(surface, TriangleSurface):
-        return _triangle_gradient(surface, points, valid)
+        gradient = _triangle_gradient(surface, points, valid)
+        return _on_sphere(gradient, points, projection)
     # On the sphere one turn leads to the same place.
-    offset = surface.offset if points is surface.points else np.zeros((2, 3))
-    return _grid_gradient(points, valid, surface.periodic, offset)
+    offset = np.zeros((2, 3)) if is_flat_map else surface.offset
+    gradient = _grid_gradient(points, valid, surface.periodic, offset, apart=is_flat_map)
+    return _on_sphere(gradient, points, projection)
+
+
+def _has_vectors(points: Floats, projection: Projection, *, poles: bool) -> Bools:
+    """Return which positions (J, I, 3) on the Earth have vectors on a flat map.
+
+    At poles they do not, and the nodes of a pole may lie apart; ``poles`` includes these.
+    """
+    lon, lat = Projection(GLOBE).lonlat(points)
+    has_vectors = projection.has_directions(lon, lat)
+    if not poles:
+        has_vectors &= np.abs(lat) < 90 - AT_POLE
+    return has_vectors
+
+
+def _on_sphere(
+    gradient: NodeGradient, points: Floats, projection: Projection | None
+) -> NodeGradient:
+    """Return a gradient at positions (J, I, 3) on the Earth with its exact normals."""
+    if projection is None:
+        return gradient
+    parts = np.moveaxis(points, -1, 0)
+    return replace(gradient, normal=parts / np.sqrt(_dot(parts, parts)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,42 +106,111 @@ class NodeGradient:
 
     directions: Floats
     derivative: Callable[[Floats], Floats]
-    poles: tuple[tuple[int, int], ...] = ()
+    poles: tuple[PointLine, ...] = ()
+    #: Normal of the surface where it is known exactly, as that of the Earth, (3, J, I).
+    normal: Floats | None = None
 
     def with_poles(self, nodal: Floats) -> Floats:
-        """Set nodes of poles, whose directions differ, to the mean beside them, in place."""
-        for axis, line in self.poles:
-            lines = np.moveaxis(nodal, axis, 0)
-            beside = lines[abs(line - 1), :-1]  # the first or the last line but one
-            finite = np.isfinite(beside)
-            lines[line] = beside[finite].mean() if finite.any() else np.nan
+        """Set nodes of poles, whose directions differ, to the mean around them, in place.
+
+        It is NaN where the nodes beside them do not lie all around.
+        """
+        for pole in self.poles:
+            lines = np.moveaxis(nodal, pole.axis, 0)
+            ring = lines[pole.beside]
+            finite = np.isfinite(ring)
+            share = pole.weights[finite].sum()
+            lines[pole.line] = np.nan
+            if share >= NEEDED_RING:
+                lines[pole.line] = pole.weights[finite] @ ring[finite] / share
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
         """Return the change of component m along direction n, (2, 2, J, I), of (J, I, 3)."""
         one, two = self.directions
         parts = np.moveaxis(vectors, -1, 0)
-        along = _dot(parts, one) * one
-        along += _dot(parts, two) * two
+        if self.normal is None:
+            along = _dot(parts, one) * one
+            along += _dot(parts, two) * two
+        else:
+            along = parts - _dot(parts, self.normal) * self.normal
         change = self.derivative(along)
         return np.asarray([[_dot(d, part) for part in change] for d in (one, two)])
 
 
+class PointLine(NamedTuple):
+    """A first or last line of nodes, all at one point: a pole, or the tip of a wedge."""
+
+    axis: int  #: Axis of the lines.
+    line: int  #: Its number, 0 or -1.
+    beside: int  #: Number of the line beside it.
+    weights: Floats  #: Shares of the nodes beside it in the mean around it; 0 at a tip.
+
+
+def point_lines(points: Floats) -> tuple[PointLine, ...]:
+    """Return the first and last lines of nodes (J, I, 3) that lie at one point."""
+    found = []
+    for axis in (0, 1):
+        lines = np.moveaxis(points, axis, 0)
+        for line, beside in ((0, 1), (-1, -2)) if len(lines) > 2 else ():
+            weights = _weights_around(lines[line], lines[beside])
+            if weights is not None:
+                found.append(PointLine(axis, line, beside, weights))
+    return tuple(found)
+
+
+def _weights_around(line: Floats, ring: Floats) -> Floats | None:
+    """Return shares of nodes (N, 3) in the mean around a line; ``None`` if that is no point.
+
+    They are 0 if the nodes do not lie all around it.
+    """
+    has_ring, weights = finite_nodes(ring), np.zeros(len(ring))
+    ends = line[finite_nodes(line)]
+    if len(ends) < 3 or has_ring.sum() < 3:
+        return None
+    middle = ends.mean(axis=0)
+    spokes = ring[has_ring] - middle
+    size = np.linalg.norm(spokes, axis=-1).min()
+    if np.linalg.norm(ends - middle, axis=-1).max() > SAME_POINT_SHARE * size:
+        return None
+    across = np.linalg.svd(spokes, full_matrices=False)[2][:2]
+    angles = np.arctan2(*(spokes @ across.T).T)
+    order = np.argsort(angles, kind="stable")
+    gaps = np.diff(angles[order], append=angles[order[0]] + 2 * np.pi)
+    if gaps.max() <= WIDEST_GAP:
+        weights[np.flatnonzero(has_ring)[order]] = (gaps + np.roll(gaps, 1)) / (4 * np.pi)
+    return weights
+
+
+def _has_no_length(difference: Floats) -> Bools:
+    """Return where differences (3, J, I) nearly vanish, unlike those beside them."""
+    square = np.nan_to_num(_dot(difference, difference))
+    beside = scipy.ndimage.maximum_filter(square, size=3)
+    return np.asarray(square < COLLAPSED_LENGTH**2 * beside)
+
+
 def _grid_gradient(
-    points: Floats, valid: Bools, periodic: tuple[bool, bool], offset: Floats
+    points: Floats, valid: Bools, periodic: tuple[bool, bool], offset: Floats, *, apart: bool
 ) -> NodeGradient:
-    """Return differences between the nodes of a structured surface; axes are turned by offsets."""
-    known = finite_nodes(points)
-    found = find_poles(points, known, known, periodic)
-    poles = tuple((1 - pole.component, pole.line) for pole in found or ())
+    """Return differences between the nodes of a structured surface; axes are turned by offsets.
+
+    With ``apart``, nodes at a pole are not used, as on a map their vectors have no direction.
+    """
+    poles = point_lines(points)
     points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
+    if apart:
+        valid = valid.copy()
+        for pole in poles:
+            np.moveaxis(valid, pole.axis, 0)[pole.line] = False
 
     turns = [turn if is_closed else None for turn, is_closed in zip(offset, periodic, strict=True)]
     p_i, p_j = (_difference(points, valid, axis, turns[axis]) for axis in (1, 0))
-    for axis, line in poles:  # a pole has the directions of the line beside it
-        lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
-        lines[line] = lines[abs(line - 1)]
+    for pole in poles:  # it has the directions of the line beside it
+        lines = np.moveaxis((p_i, p_j)[pole.axis], pole.axis + 1, 0)
+        lines[pole.line] = lines[pole.beside]
     with np.errstate(invalid="ignore", divide="ignore"):
+        for difference in (p_i, p_j):
+            difference[:, _has_no_length(difference)] = np.nan
         length = np.sqrt(_dot(p_i, p_i))
         one = p_i / length
         skew = _dot(p_j, one)
@@ -214,7 +318,7 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
             normal[:, b, a] = normal[:, a, b]
     # Nodes on two lines only leave the quadratic terms open, and with them the linear ones.
     scale = np.sqrt(np.maximum(np.einsum("nkk->nk", normal), 1e-300))
-    alike = np.linalg.det(normal / (scale[:, :, None] * scale[:, None])) < LEAST_INDEPENDENCE
+    alike = _are_alike(normal / (scale[:, :, None] * scale[:, None]))
     normal[alike, 2:] = normal[alike, :, 2:] = 0.0
     largest = normal.max(axis=(1, 2))
     normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
@@ -230,6 +334,14 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
 
     directions = np.stack([one, two]).transpose(0, 2, 1)[:, :, None]
     return NodeGradient(directions, partial(_applied, operators))
+
+
+def _are_alike(correlations: Floats) -> Bools:
+    """Return whether terms with these correlations, (N, K, K), depend on each other, (N,)."""
+    alike = np.linalg.det(correlations) < SUSPECT_INDEPENDENCE
+    least = np.linalg.eigvalsh(correlations[alike])[:, 0]
+    alike[alike] = least < LEAST_INDEPENDENCE
+    return alike
 
 
 def _applied(operators: list[Any], nodal: Floats) -> Floats:

@@ -59,6 +59,8 @@ BENT = 0.05  #: A piece may be torn if it bends by more than this share of its l
 MOST_BENT = 0.2  #: Share beyond which it is torn, as along the outline of a map.
 LEAST_TEAR = 0.02  #: Share of a torn piece that its tear is wide, at least.
 MOST_STRETCHED = 20.0  #: Scale beyond which a map has no lines: they go to infinity, as at a pole.
+#: Ratio of the scales of a map along two directions beyond which it tears a point open.
+MOST_SHEARED = 1e3
 #: Least length of a thinned line in spacings: islands of that length are some pixels wide.
 FEWEST_SPACINGS = 4
 HALVINGS = 14  #: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
@@ -217,6 +219,14 @@ class Projection:
         ee, en, nn = dot(to_east, to_east), dot(to_east, to_north), dot(to_north, to_north)
         area = ee * nn - en * en
         return (east * nn - north * en) / area, (north * ee - east * en) / area
+
+    def has_directions(self, lon: Floats, lat: Floats) -> Bools:
+        """Return where a map keeps directions apart, (...): not where it tears a point open."""
+        east, north = self._directions(lon, lat)
+        area = np.linalg.norm(np.cross(east, north), axis=-1)
+        longest = np.maximum(dot(east, east), dot(north, north))
+        with np.errstate(invalid="ignore"):
+            return np.asarray(longest < MOST_SHEARED * area)
 
     def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
         """Return the change of position for a metre eastward and a metre northward."""

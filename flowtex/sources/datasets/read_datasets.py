@@ -149,11 +149,11 @@ def _whole(
 
 
 def _speed(nodes: Placed, components: Floats) -> Floats:
-    return np.asarray(np.hypot(*map(nodes.at, components)))
+    return np.asarray(np.hypot(*nodes.components(components)))
 
 
 def _vectors(nodes: Placed, scale: float, components: Floats) -> Floats:
-    return nodes.vectors(*map(nodes.at, components)) * scale
+    return nodes.vectors(*nodes.components(components)) * scale
 
 
 def _note_rest(read: LazySteps, flow: Flow) -> None:
