@@ -116,17 +116,35 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     options, its ``jupyter_kwargs``, are further arguments of the :class:`flowtex.FlowWidget` that
     is returned. A warning lists what the browser does not draw. PyVista may use a backend found
     this way as the default if no other is installed: then it does what PyVista does without it.
+    PyVista also calls it in place of a missing backend; then the error names its package.
     """
+    named = _named_backend()
+    if named is None:
+        return _show_as_pyvista(plotter, screenshot, options)
+    if named != BACKEND:
+        raise ModuleNotFoundError(
+            f"jupyter_backend is {named!r}, which needs trame-pyvista, but that is missing; "
+            'install it with python -m pip install "pyvista[jupyter]", or choose '
+            f'jupyter_backend="{BACKEND}" or "static"',
+            name="trame_pyvista",
+        )
+    return _show_widget(plotter, screenshot, options)
+
+
+def _show_as_pyvista(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Any:
+    """Show a plotter with another backend, or as a still picture without one."""
+    import pyvista as pv
+    from pyvista.jupyter.notebook import show_static_image
+
+    for backend in pv.registered_jupyter_backends():
+        if backend.name != BACKEND:
+            return backend.handler(plotter, screenshot=screenshot, **options)
+    return show_static_image(plotter, screenshot)
+
+
+def _show_widget(plotter: Any, screenshot: Any, options: dict[str, Any]) -> FlowWidget:
     from flowtex.rendering.diagnostics import OpenGLMissingError, begin_trial, require_opengl
 
-    if not _is_requested():
-        import pyvista as pv
-        from pyvista.jupyter.notebook import show_static_image
-
-        for backend in pv.registered_jupyter_backends():
-            if backend.name != BACKEND:
-                return backend.handler(plotter, screenshot=screenshot, **options)
-        return show_static_image(plotter, screenshot)
     if screenshot:
         plotter.screenshot(screenshot)
     begin_trial()
@@ -141,12 +159,17 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     return widget
 
 
-def _is_requested() -> bool:
-    """Return whether the user has named this backend, which only frames of the caller tell."""
+def _named_backend() -> str | None:
+    """Return the backend that the user or the theme has named, which only frames of callers tell.
+
+    Without a ``plotter.show`` among the callers this backend was called by its name.
+    """
     frame = sys._getframe(1)
     while (caller := frame.f_back) is not None:
         frame = caller
         if frame.f_code.co_name == "show" and "jupyter_backend" in frame.f_locals:
             named = frame.f_locals["jupyter_backend"]
-            return named is not None and str(named).lower() == BACKEND
-    return True
+            if named is None:
+                return None
+            return str(named).lower()
+    return BACKEND

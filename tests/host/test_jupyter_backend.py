@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("anywidget")
 
 import pyvista as pv
+import pyvista.jupyter as registry
 from PIL import Image
 
 from flowtex import examples
@@ -25,6 +26,15 @@ def notebook(opengl: Any) -> Iterator[Any]:
     plotter: Any = pv.Plotter(notebook=True, window_size=[120, 80])
     yield plotter
     plotter.close()
+
+
+@pytest.fixture
+def only_flowtex(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have no other backend installed; PyVista then takes the first that it finds."""
+    pv.registered_jupyter_backends()
+    only = {"flowtex": registry._custom_backends["flowtex"]}
+    monkeypatch.setattr(registry, "_custom_backends", only)
+    monkeypatch.setattr("pyvista.jupyter.notebook._custom_backends", only)
 
 
 def add(plotter: Any, **options: Any) -> Any:
@@ -79,14 +89,8 @@ def test_without_a_flow_it_says_how_to_add_one(notebook: Any) -> None:
         shown(notebook, jupyter_backend="flowtex")
 
 
-def test_it_does_not_become_the_default(notebook: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    import pyvista.jupyter as registry
-
-    # As where no other backend is installed: PyVista then takes the first that it finds.
-    pv.registered_jupyter_backends()
-    only = {"flowtex": registry._custom_backends["flowtex"]}
-    monkeypatch.setattr(registry, "_custom_backends", only)
-    monkeypatch.setattr("pyvista.jupyter.notebook._custom_backends", only)
+@pytest.mark.usefixtures("only_flowtex")
+def test_it_does_not_become_the_default(notebook: Any) -> None:
     assert registry._resolve_backend() == "flowtex"
     add(notebook)
     picture = shown(notebook)
@@ -99,3 +103,14 @@ def test_the_theme_can_ask_for_it(notebook: Any, monkeypatch: pytest.MonkeyPatch
     widget = shown(notebook)
     assert isinstance(widget, FlowWidget)
     widget.close()
+
+
+@pytest.mark.usefixtures("only_flowtex")
+@pytest.mark.parametrize("name", ["trame", "client", "server", "html"])
+def test_a_named_backend_that_is_missing_is_an_error(notebook: Any, name: str) -> None:
+    add(notebook)
+    with (
+        pytest.warns(UserWarning, match="No handler registered"),
+        pytest.raises(ModuleNotFoundError, match=rf"'{name}', which needs trame-pyvista"),
+    ):
+        shown(notebook, jupyter_backend=name)
