@@ -1,60 +1,21 @@
-"""Colour bars of a plotter: the flows and meshes that share one, and where they are placed."""
+"""Colour bars of a plotter: the flows and meshes that share one."""
 
 from __future__ import annotations
 
-import weakref
-from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping
 from itertools import chain, count
 from typing import Any
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDataArray
-from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.array_types import Bytes
-from flowtex._util.colours import ZERO_SHARE, is_light, rounded_ends
+from flowtex._util.colours import ZERO_SHARE, rounded_ends
+from flowtex.plotting.bar_layout import END_LABELS, first_arguments, place_bar
 from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
-from flowtex.scene.annotations import OPACITY, round_values
 
-#: A bar at the left border of the window, as tall as those of PyVista.
-SCALAR_BAR: dict[str, Any] = {
-    "fmt": "%.10g",  # of round numbers
-    "vertical": True,  # labels of a level bar would hang over its ends
-    "width": 0.08,
-    "height": 0.45,
-    "position_x": 0.02,
-    "position_y": 0.04,
-    "title_font_size": 16,
-    "label_font_size": 14,
-    "unconstrained_font_size": True,
-}
-#: Arguments by which users set the position or size of a bar.
-BY_HAND = (
-    *("width", "height", "position_x", "position_y", "vertical", "interactive"),
-    *("title_font_size", "label_font_size"),
-)
-#: Arguments by which users set the background of a bar. The default are plates behind its texts:
-#: one behind the whole bar would cover as much as the title is wide.
-BEHIND = ("fill", "background_color", "color")
-#: Arguments of a bar that PyVista has made: it keeps its place and its labels.
-AS_IT_IS = {"position_x": None, "n_labels": None}
-TEXT_SHARE = 1 / 40  #: Height of the text as a share of the view's.
-TEXT_POINTS = (10, 18)  #: Limits of the height of the text, in points.
-TITLE_SHARE = 1.15  #: Height of a title over that of the text.
-HEIGHT_SHARE = 0.45  #: Height of a bar without its title, as a share of the view's.
-LEAST_LINES = 5  #: Least height of a bar without its title, in lines of text.
-THICKNESS = 1.6  #: Width of the colours, in heights of the text.
-TEXT_PAD = 0.4  #: Room around texts, in heights of the text.
 COMPARED = 64  #: Number of colours by which maps are compared.
 SAME_BYTES = 4  #: Difference of bytes up to which two colours are one.
-POINTS = 72  #: Points in an inch.
-#: Bars that are drawn here, with the arguments of users, and renderers that have some.
-_options: weakref.WeakKeyDictionary[Any, Mapping[str, Any]] = weakref.WeakKeyDictionary()
-_renderers: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 class FlowBar:
@@ -79,7 +40,7 @@ class FlowBar:
 
     def show(self, name: str, title: str) -> None:
         """Show the colours of a scalar, in the bar of others or in one of its own."""
-        arguments = {**SCALAR_BAR, **self._options}
+        arguments = first_arguments(self._options)
         if "title" in arguments:
             name = title = arguments.pop("title")
         if self._names == (name, title) and self._mapper in self._sharing:
@@ -97,10 +58,10 @@ class FlowBar:
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
         bar = self._bars[self.key]
         bar.SetTitle(title)
-        _options.setdefault(bar, self._options if len(self._sharing) == 1 else AS_IT_IS)
-        if self._renderer not in _renderers:
-            _renderers.add(self._renderer)
-            self._renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
+        if len(self._sharing) == 1:
+            place_bar(bar, self._renderer, self._options)
+        else:
+            place_bar(bar, self._renderer, None)
 
     def _fits(self, key: str, title: str) -> bool:
         """Return whether a bar has the same title and colours, in the same renderer."""
@@ -143,7 +104,8 @@ class FlowBar:
         self._shown = (table, *shown[1:])
         lows, highs = zip(*(_ends(mapper).values for mapper in sharing), strict=True)
         rounding = ZERO_SHARE * (max(highs) - min(lows))
-        below, above = limits[0] > min(lows) + rounding, limits[1] < max(highs) - rounding
+        below = limits[0] > min(lows) + rounding or "below_label" in self._options
+        above = limits[1] < max(highs) - rounding or "above_label" in self._options
         ends = own.below_range_color, own.above_range_color
         table.below_range_color = (ends[0] or table.values[0]) if below else None
         table.above_range_color = (ends[1] or table.values[-1]) if above else None
@@ -151,8 +113,10 @@ class FlowBar:
         bar.SetDrawAboveRangeSwatch(above)
         # Others are marks without a text; VTK writes them on the side without labels.
         has_marks = isinstance(own, NormTable)
-        bar.SetDrawAnnotations(has_marks)
-        bar.SetDrawTickLabels(not has_marks)
+        has_labels = self._options.get("n_labels", 1) >= 1
+        has_ends = any(name in self._options for name in END_LABELS)
+        bar.SetDrawAnnotations((has_marks and has_labels) or has_ends)
+        bar.SetDrawTickLabels(not has_marks and has_labels)
         bar.SetTextPosition(int(not has_marks))
 
     def remove(self) -> None:
@@ -182,88 +146,3 @@ def _same_colours(one: Any, other: Any) -> bool:
     )
     same = tables[0].log_scale == tables[1].log_scale
     return same and bool((np.abs(first - second) <= SAME_BYTES).all())
-
-
-def _arrange(renderer: Any) -> None:
-    """Place bars from left to right, and in a row above where there is no room."""
-    width, height = renderer.GetSize()
-    dpi = renderer.GetRenderWindow().GetDPI()
-    x = y = row = 0.0
-    for bar in renderer.GetViewProps():
-        if (options := _options.get(bar)) is None:
-            continue
-        labels = _write_labels(bar, renderer.GetBackground(), options)
-        if any(name in options for name in BY_HAND):
-            continue
-        points = float(np.clip(height * TEXT_SHARE * POINTS / dpi, *TEXT_POINTS))
-        wide, high, title = _fit(bar, labels, points, (width, height), dpi)
-        line = points * dpi / POINTS
-        gap = TEXT_PAD * line
-        if x and x + wide + 2 * gap > width:
-            x, y, row = 0.0, y + row + gap, 0.0
-        # The lowest label hangs over the end of the bar.
-        bar.SetPosition((x + gap) / width, (y + gap + line / 2) / height)
-        bar.SetWidth(wide / width)
-        bar.SetHeight((high + title) / height)
-        # VTK keeps room for the title in the bar, and yet writes it above.
-        x, row = x + gap + wide, max(row, high + 2 * title + line / 2)
-
-
-def _write_labels(
-    bar: vtkScalarBarActor, background: Sequence[float], options: Mapping[str, Any]
-) -> list[str]:
-    """Give a bar round labels, readable on a background; return them."""
-    ink, plate = ((0.0,) * 3, (1.0,) * 3) if is_light(background) else ((1.0,) * 3, (0.0,) * 3)
-    texts = bar.GetTitleTextProperty(), bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()
-    for text in texts:
-        if not any(name in options for name in BEHIND):
-            text.SetColor(*ink)
-            text.SetBackgroundColor(*plate)
-            text.SetBackgroundOpacity(OPACITY)
-    table = bar.GetLookupTable()
-    values = _round_labels(*table.GetRange(), log_scale=table.UsingLogScale())
-    if "n_labels" not in options:
-        bar.SetCustomLabels(values)
-        bar.UseCustomLabelsOn()
-    form, marks = bar.GetLabelFormat(), list(table.annotations.values())
-    if marks:
-        return marks
-    return [form % v if "%" in form else form.format(v) for v in vtk_to_numpy(values)]
-
-
-@lru_cache(16)
-def _round_labels(low: float, high: float, *, log_scale: bool) -> vtkDataArray:
-    values = round_values(low, high, log_scale=log_scale, steps=(1, 2, 5, 10))
-    clipped = np.clip(values, low, high)
-    # A value just beyond an end would be written with all digits of the end.
-    is_round = np.isclose(clipped, values, rtol=0, atol=1e-9 * (high - low))
-    return numpy_to_vtk(clipped[is_round] if is_round.sum() > 1 else clipped, deep=True)
-
-
-def _fit(
-    bar: vtkScalarBarActor, labels: Sequence[str], points: float, view: tuple[int, int], dpi: int
-) -> tuple[float, float, float]:
-    """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
-    title, label = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
-    label.SetFontSize(round(points))
-    bar.GetAnnotationTextProperty().SetFontSize(round(points))
-    title.SetFontSize(round(TITLE_SHARE * points))
-    em = points * dpi / POINTS
-    pad = round(TEXT_PAD * em)
-    room = view[0] - 6 * pad
-    title_width, title_height = _size(title, bar.GetTitle(), dpi)
-    if title_width > room:
-        title.SetFontSize(max(int(title.GetFontSize() * room / title_width), 1))
-        title_width, title_height = _size(title, bar.GetTitle(), dpi)
-    label_width = max(_size(label, text, dpi)[0] for text in labels)
-    thick = THICKNESS * em
-    bar_width = max(title_width, thick + label_width + 2 * pad) + 2 * pad
-    bar.SetTextPad(pad)
-    bar.SetBarRatio(thick / bar_width)
-    return bar_width, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), title_height
-
-
-def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:
-    box = [0, 0, 0, 0]
-    vtkTextRenderer.GetInstance().GetBoundingBox(text, words, box, dpi)
-    return box[1] - box[0] + 1, box[3] - box[2] + 1

@@ -75,7 +75,8 @@ class FlowtexComponent:
             PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or
             path of a file.
         scalar_bar_args
-            As for ``plotter.add_mesh``.
+            As for ``plotter.add_mesh``, without arguments for the colours. Sizes, places and fonts
+            that are not given follow from the size of the view, those of horizontal bars too.
         reset_camera
             Whether to move the camera so that it shows everything; by default for the first mesh
             only.
@@ -91,7 +92,7 @@ class FlowtexComponent:
         Raises
         ------
         FieldError
-            When the mesh does not contain a flow.
+            When the mesh does not contain a flow, or an argument of the bar is unknown.
         SettingsError
             When a setting is unknown or out of range.
         ImageError

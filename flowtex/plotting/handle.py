@@ -12,6 +12,7 @@ import pyvista as pv
 from flowtex._util.arguments import checked_number
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
+from flowtex.plotting.bar_layout import checked_bar_options
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.shaders import const
@@ -79,6 +80,7 @@ class FlowHandle(AppearanceAttributes):
         scalar_bar_args: Mapping[str, Any] | None = None,
         **actor_options: Any,
     ) -> None:
+        bar_options = checked_bar_options(scalar_bar_args)
         mesh, renderer = surface_mesh(scene.textures), plotter.renderer
         actor = plotter.add_mesh(
             mesh,
@@ -87,7 +89,7 @@ class FlowHandle(AppearanceAttributes):
             reset_camera=False,
             **{"name": f"flowtex {next(_count)}", **actor_options},
         )
-        bar = FlowBar(plotter, use_flow_mapper(actor, mesh), scalar_bar_args or {})
+        bar = FlowBar(plotter, use_flow_mapper(actor, mesh), bar_options)
         surface = FlowSurface(actor, renderer, scene.textures, scene.settings, scene.pyramid)
         surface.set_moment(*scene.moment)
         end = scene.observe(self._changed)

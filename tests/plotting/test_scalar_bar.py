@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 import pyvista as pv
+from matplotlib.colors import BoundaryNorm
 
-from flowtex import FlowField
+from flowtex import FieldError, FlowField
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -17,6 +20,7 @@ TEXTS = ["GetTitleTextProperty", "GetLabelTextProperty"]
 SIZES = [(300, 200), (640, 400), (1600, 1000)]
 
 
+@cache
 def sheet(height: float = 0.0) -> FlowField:
     x, y = np.meshgrid(np.linspace(0, 4, 24), np.linspace(0, 2, 16))
     points = np.stack([x, y, np.full_like(x, height)], axis=-1)
@@ -75,16 +79,130 @@ def test_bars_move_when_the_view_changes_its_size() -> None:
     made.close()
 
 
-@pytest.mark.parametrize("options", [{"position_x": 0.5}, {"title_font_size": 30}, {"width": 0.2}])
-def test_a_bar_that_is_placed_by_hand_stays(options: dict[str, Any]) -> None:
-    made: Any = pv.Plotter(off_screen=True, window_size=[600, 400])
-    made.flowtex.add(sheet(), scalar_bar_args=options)
-    made.screenshot(return_img=True)
-    bar = made.scalar_bars["speed"]
-    assert bar.GetPosition()[0] == options.get("position_x", 0.02)
-    assert bar.GetWidth() == options.get("width", 0.08)
-    assert bar.GetTitleTextProperty().GetFontSize() == options.get("title_font_size", 16)
+def shown_bar(made: Any, **options: Any) -> Any:
+    """Return the only bar of a plotter after a frame."""
+    made.flowtex.add(sheet(), scalar_bar_args=options, opacity=0.0, samples=1)
+    made.render()
+    [bar] = made.scalar_bars.values()
+    return bar
+
+
+@pytest.fixture(scope="module")
+def shared_plotter() -> Iterator[Any]:
+    made: Any = pv.Plotter(off_screen=True)
+    made.set_background("gray")
+    yield made
     made.close()
+
+
+@pytest.fixture
+def plotter(shared_plotter: Any) -> Iterator[Any]:
+    """Yield a plotter without a flow; a new one would take most of the time of a test."""
+    shared_plotter.window_size = [450, 300]
+    yield shared_plotter
+    shared_plotter.flowtex.clear(render=False)
+
+
+@pytest.mark.parametrize("vertical", [True, False])
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"position_x": 0.5},
+        {"position_y": 0.3},
+        {"position_x": 0.1, "position_y": 0.2},
+        {"width": 0.2},
+        {"height": 0.3},
+        {"title_font_size": 22},
+        {"label_font_size": 9},
+    ],
+)
+def test_a_bar_keeps_what_is_given(plotter: Any, given: dict[str, Any], vertical: bool) -> None:
+    bar = shown_bar(plotter, **given, vertical=vertical)
+    plotter.window_size = [500, 300]
+    plotter.render()
+    x, y = bar.GetPosition()
+    title, label = (getattr(bar, name)().GetFontSize() for name in TEXTS)
+    found = {"position_x": x, "position_y": y, "width": bar.GetWidth(), "height": bar.GetHeight()}
+    found |= {"title_font_size": title, "label_font_size": label}
+    assert {name: found[name] for name in given} == pytest.approx(given)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_horizontal_bar_has_the_size_of_those_of_pyvista(size: tuple[int, int]) -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=list(size))
+    bar = shown_bar(made, vertical=False)
+    theme = pv.global_theme.colorbar_horizontal
+    assert bar.GetWidth() == pytest.approx(theme.width)
+    assert 0.5 * theme.height < bar.GetHeight() < 0.25
+    assert bar.GetOrientation() == 0
+    made.close()
+
+
+@pytest.mark.parametrize("vertical", [True, False])
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"title": LONG},
+        {"title": ""},
+        {"position_x": 0.7},
+        {"position_y": 0.6},
+        {"width": 0.15},
+        {"height": 0.2},
+        {"n_labels": 3},
+        {"n_labels": 0},
+        {"title_font_size": 20, "label_font_size": 18},
+        {"bold": True, "italic": True, "font_family": "times"},
+        {"below_label": "low", "above_label": "high"},
+    ],
+)
+def test_a_bar_is_whole_with_any_arguments(
+    plotter: Any, given: dict[str, Any], vertical: bool
+) -> None:
+    shown_bar(plotter, **given, vertical=vertical)
+    shot = plotter.screenshot(return_img=True).astype(int)
+    ink = (np.abs(shot - shot[0, 0]) > 8).any(axis=-1)
+    assert ink.any()
+    for line in (ink[0], ink[-1], ink[:, 0], ink[:, -1]):
+        assert not line.any()
+
+
+def test_two_horizontal_bars_are_in_two_rows() -> None:
+    _, boxes = pixels((600, 400), ("speed", "height"), scalar_bar_args={"vertical": False})
+    (_, y, _, height), (_, y2, _, _) = boxes
+    assert y2 > y + height
+
+
+def test_arguments_of_a_bar_stay_when_the_handle_changes(plotter: Any) -> None:
+    given = {"vertical": False, "position_x": 0.1, "n_labels": 3, "width": 0.4}
+    handle = plotter.flowtex.add(sheet(), scalar_bar_args=given)
+    for change in ({"scalars": "height"}, {"cmap": "magma"}, {"clim": (0.0, 3.0)}):
+        for name, value in change.items():
+            setattr(handle, name, value)
+        plotter.render()
+        [bar] = plotter.scalar_bars.values()
+        assert (bar.GetOrientation(), bar.GetNumberOfLabels()) == (0, 3)
+        assert bar.GetPosition()[0] == pytest.approx(0.1)
+        assert bar.GetWidth() == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("name", ["tilte", "cmap", "unique_bar"])
+def test_an_argument_that_bars_lack_is_an_error(plotter: Any, name: str) -> None:
+    with pytest.raises(FieldError, match=rf"'{name}'; expected some of title"):
+        plotter.flowtex.add(sheet(), scalar_bar_args={name: 1})
+    assert not plotter.renderer.actors
+
+
+@pytest.mark.parametrize(
+    ("limits", "digits"), [((0.0, 1 / 3), 3), ((1000.0, 1001.0), 6), ((-2e-7, 1e-7), 3)]
+)
+def test_a_number_of_labels_is_written_with_few_digits(
+    plotter: Any, limits: tuple[float, float], digits: int
+) -> None:
+    plotter.flowtex.add(sheet(), clim=limits, scalar_bar_args={"n_labels": 3})
+    plotter.render()
+    [bar] = plotter.scalar_bars.values()
+    assert bar.GetLabelFormat() in (f"%.{digits}g", f"{{:.{digits}g}}")
 
 
 @pytest.mark.parametrize(
@@ -129,3 +247,12 @@ def test_labels_are_readable_on_any_background(background: str) -> None:
             dark, light = np.sort(linear @ (0.2126, 0.7152, 0.0722))
             assert (light + 0.05) / (dark + 0.05) > 4.5  # as WCAG requires
     made.close()
+
+
+def test_a_bar_of_levels_with_values_beyond_them_is_placed(plotter: Any) -> None:
+    levels = BoundaryNorm([0.0, 1.0, 2.0], 256)  # of 4
+    plotter.flowtex.add(sheet(), scalars="height", norm=levels)
+    plotter.render()
+    [bar] = plotter.scalar_bars.values()
+    assert bar.GetWidth() != pytest.approx(0.08)  # which it has before
+    assert bar.GetDrawAboveRangeSwatch()
