@@ -166,6 +166,8 @@ class Flow:
     mesh: Mesh | None = None
     staggered: bool = False
     mean: Callable[[int], Floats] | None = None  #: Of the members of an ensemble.
+    members: tuple[Flow, ...] = ()  #: These, of which this is the mean.
+    member_dim: str = ""  #: Dimension of the members.
 
     def components(self, step: int) -> Floats:
         """Return the components eastward and northward, or along x and y, (2, ...)."""

@@ -194,15 +194,11 @@ def _averaged(
     drawn = members[0].drawn
     if axis_kind(u, dim) == TIME:
         drawn = replace(drawn, times=None)
-    # Other variables of the members are not averaged.
-    others = [
-        ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
-    ]
-    kept = Datasets(others, datasets.closers, recognised=True)
     changes: dict[str, Any] = {
         "mean": sums.map(itemgetter(slice(2))).step,
         "drawn": drawn,
-        "datasets": kept,
+        "members": tuple(members),
+        "member_dim": dim,
     }
     return replace(members[0], **changes), partial(_spread, sums)
 
@@ -295,13 +291,35 @@ def _scalars(flow: Flow) -> dict[str, _Scalar]:
             )
             if name in (*used, *scalars) or not numbers or of_mesh or array.ndim < flow.values.axes:
                 continue
-            part = flow.beside(array)
+            part = _member(flow).beside(array)
             if part is None:
                 flow.record("align", f"{name} lies at other positions or times, and is left out")
             else:
                 on_faces = flow.mesh is not None and horizontal_dims(part)[0] != NODES
-                scalars[str(name)] = _Scalar(part, partial(_scalar_step, flow, part), on_faces)
+                scalars[str(name)] = _Scalar(part, _reader(flow, array, part), on_faces)
     return scalars
+
+
+def _member(flow: Flow) -> Flow:
+    """Return the first member of an ensemble, or a single flow."""
+    if flow.members:
+        return flow.members[0]
+    return flow
+
+
+def _reader(flow: Flow, array: xr.DataArray, part: xr.DataArray) -> Callable[[int], Floats]:
+    """Return the reader of the steps of a variable; of an ensemble that of their means."""
+    if flow.member_dim not in array.dims:
+        return partial(_scalar_step, flow, part)
+    parts = [member.beside(array) for member in flow.members]
+    return partial(_mean_step, flow, [other for other in parts if other is not None])
+
+
+def _mean_step(flow: Flow, parts: Sequence[xr.DataArray], step: int) -> Floats:
+    total = np.zeros(())
+    for part in parts:
+        total = total + _scalar_step(flow, part, step)
+    return np.asarray(total / len(parts))
 
 
 def _scalar_step(flow: Flow, part: xr.DataArray, step: int) -> Floats:
