@@ -39,7 +39,7 @@ from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
 from flowtex.sources.datasets.values import Regions, read_step, region_lines
-from flowtex.sources.datasets.vertical import is_section, read_section
+from flowtex.sources.datasets.vertical import LONGEST_NAME, is_section, read_section
 from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
 
 #: Nodes on a map or in a plane.
 Placed: TypeAlias = MapNodes | MeshMap | PlaneNodes
-#: Longest name that fits beside a colour bar.
-LONGEST_NAME = 40
 #: Most values of an axis that are listed.
 MOST_VALUES = 8
 

@@ -21,11 +21,11 @@ from flowtex.field.earth import DEGREE
 from flowtex.field.field_arrays import GridArrays, SectionAxes
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
-from flowtex.sources.datasets import axes
+from flowtex.sources.datasets import axes, labels
 from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.select import two_names, variable, velocity_unit
-from flowtex.sources.datasets.values import Component, checked_component, numbers_in
+from flowtex.sources.datasets.values import Component, checked_component, numbers_in, read_step
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
+LONGEST_NAME = 40  #: Longest name that fits beside a colour bar.
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
 
 
@@ -73,12 +74,7 @@ def read_section(
             found = common(one, two, dim, lines[0], lines[1], record)
             one, two = one.isel({dim: found.one}), two.isel({dim: found.other})
     across, up = _coordinate(one, along), _coordinate(one, level)
-    flat = [
-        a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
-        .swap_dims({level: axes.SECTION[0], along: axes.SECTION[1]})
-        .transpose(..., *axes.SECTION)
-        for a in (one, two)
-    ]
+    flat = [_flat(array, level, along) for array in (one, two)]
     first, second = align(flat[0], flat[1], choice, record)
     drawn = axes.choose(first, choice, record)
     parts = drawn.of(first), drawn.of(second)
@@ -93,19 +89,76 @@ def read_section(
     velocities = LazySteps(count, partial(_velocity, along_u, along_v, metres * x_factor, y_factor))
     # The axes have different units, so a speed along both has none.
     speed = along_u.map(np.abs).map(partial(np.multiply, metres))
+    scalars = {"speed": speed, u: along_u, v: along_v}
+    scalar_units = {"speed": "m/s", u: unit, v: str(two.attrs["units"])}
+    long_names = {"speed": "speed along the section"}
+    for name_of, part in _others(datasets, one, (level, along), drawn, record).items():
+        if name_of not in scalars:
+            scalars[name_of] = LazySteps(count, partial(_plain_step, part, close))
+            scalar_units[name_of] = str(part.attrs.get("units", ""))
+            title = str(part.attrs.get("long_name", name_of))
+            if len(title) <= LONGEST_NAME:
+                long_names[name_of] = title
     return GridArrays(
         points=np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1),
         velocity=velocities if count > 1 else velocities[0],
         times=drawn.times,
         reading=record.reading,
-        scalars={"speed": speed, u: along_u, v: along_v},
+        scalars=scalars,
         name=name,
         time_unit="s",
-        units={"speed": "m/s", u: unit, v: str(two.attrs["units"])},
-        long_names={"speed": "speed along the section"},
+        units={key: text for key, text in scalar_units.items() if text},
+        long_names=long_names,
         periodic="",
         section=SectionAxes(x_text, y_text, downward=_is_downward(up)),
     )
+
+
+def _flat(array: xr.DataArray, level: str, along: str) -> xr.DataArray:
+    """Return a variable whose rows and columns are levels and places along a section."""
+    names = {level: axes.SECTION[0], along: axes.SECTION[1]}
+    dropped = [name for name in array.coords if {level, along} & set(array[name].dims)]
+    return array.drop_vars(dropped).swap_dims(names).transpose(..., *axes.SECTION)
+
+
+def _others(
+    datasets: Sequence[xr.Dataset],
+    like: xr.DataArray,
+    dims: tuple[str, str],
+    drawn: axes.Drawn,
+    record: Record,
+) -> dict[str, xr.DataArray]:
+    """Return other variables at the nodes of a section, by name, and record those elsewhere."""
+    found = {}
+    for ds in datasets:
+        for name, array in ds.data_vars.items():
+            if array.dtype.kind not in "fiu" or not {*dims} <= {*array.dims}:
+                continue
+            try:
+                found[str(name)] = drawn.of(_flat(_at_labels(array, like, dims), *dims))
+            except FieldError:
+                text = f"{name} lies at other positions or times, and is left out"
+                record("align", text)
+    return found
+
+
+def _at_labels(array: xr.DataArray, like: xr.DataArray, dims: tuple[str, str]) -> xr.DataArray:
+    """Return a variable at the labels of another one; a FieldError if it lacks some."""
+    for dim in dims:
+        own, wanted = axes.line_of(array, dim), axes.line_of(like, dim)
+        numbers = np.arange(array.sizes[dim])
+        if own is not None and wanted is not None:
+            numbers = labels.match(wanted, own).other
+        if len(numbers) != like.sizes[dim]:
+            raise FieldError(f"{array.name} has other labels along {dim} than {like.name}")
+        array = array.isel({dim: numbers})
+    return array
+
+
+def _plain_step(part: xr.DataArray, close: Callable[[], None], step: int) -> Floats:
+    values = read_step(part.variable, step)
+    close()
+    return values
 
 
 def _step(part: Component, close: Callable[[], None], step: int) -> Floats:

@@ -160,3 +160,29 @@ def test_components_of_a_section_are_paired_by_labels() -> None:
     assert "w: lat reversed to match v" in str(field.reading)
     with pytest.raises(FieldError, match="v and w have no level in common"):
         FlowField.from_xarray([ds[["v"]], turned.assign_coords(level=LEVELS + 10)], "v", "w")
+
+
+def test_other_variables_of_a_section_colour_it() -> None:
+    ds = section(OMEGA, HPA).expand_dims(time=np.arange(3.0))
+    ds["v"].attrs, ds["w"].attrs = section(OMEGA, HPA)["v"].attrs, OMEGA
+    grown = ds["lat"] + ds["level"] + 100 * ds["time"]
+    ds["t"] = grown.transpose("lat", "time", "level").assign_attrs(units="K", long_name="warmth")
+    ds["steady"] = ds["lat"] * ds["level"]
+    turned = (2 * grown).isel(level=slice(None, None, -1)).to_dataset(name="turned")
+    shorter = ds[["t"]].isel(lat=slice(3)).rename(t="shorter")
+    ground = (1 + ds["lat"]).to_dataset(name="ground")
+    data = [ds, turned, shorter, ground]
+    field = FlowField.from_xarray(data, "v", "w")
+    assert sorted(field.scalars) == ["speed", "steady", "t", "turned", "v", "w"]
+    assert (field.unit_of("t"), field.label_of("t")) == ("K", "warmth")
+    for step in range(3):
+        wanted = LAT + LEVELS[:, None] + 100 * step
+        np.testing.assert_array_equal(field.scalars["t"][step], wanted)
+        np.testing.assert_array_equal(field.scalars["turned"][step], 2 * wanted)
+        np.testing.assert_array_equal(field.scalars["steady"][step], LAT * LEVELS[:, None])
+    assert "shorter lies at other positions" in str(field.reading)
+    at = field.at(10.0, 700.0, time=0.5)
+    assert at is not None
+    assert at.scalars["t"] == pytest.approx(760.0)
+    steady = FlowField.from_xarray(data, "v", "w", isel={"time": 1})
+    np.testing.assert_array_equal(steady.scalars["t"][0], LAT + LEVELS[:, None] + 100)
