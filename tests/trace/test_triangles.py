@@ -332,6 +332,52 @@ def test_composed_paths_are_those_that_are_integrated(parameter: str) -> None:
         assert same.mean() > 0.95
 
 
+def graded_ring(growth: float, layers: int, width: float) -> tuple[Floats, Indices]:
+    """Rings of nodes around a hole, of which each is wider than the one before, as an ellipse."""
+    radius = 0.5 + np.concatenate([[0.0], np.cumsum(1e-3 * growth ** np.arange(layers))])
+    angle = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    points = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))], axis=-1)
+    node = np.arange(80 * len(radius)).reshape(len(radius), 80)
+    beside = np.roll(node, -1, axis=1)
+    first = np.stack([node[:-1], beside[:-1], beside[1:]], axis=-1)
+    second = np.stack([node[:-1], beside[1:], node[1:]], axis=-1)
+    triangles = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
+    return points.reshape(-1, 2) * [1, width], triangles
+
+
+def scattered_ring(count: int) -> tuple[Floats, Indices]:
+    """Random nodes, ever farther apart from the middle on."""
+    rng = np.random.default_rng(0)
+    angle = rng.uniform(0, 2 * np.pi, count)
+    radius = 0.5 * np.exp(rng.uniform(0, 3, count))
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    return points, Delaunay(points).simplices.astype(np.intp)
+
+
+@pytest.mark.parametrize(
+    ("points", "triangles"),
+    [graded_ring(1.1, 70, 1.0), graded_ring(1.1, 70, 0.2), scattered_ring(3000)],
+    ids=["circle", "ellipse", "scattered"],
+)
+def test_composed_paths_of_a_uniform_flow_are_straight_between_cells_of_all_sizes(
+    points: Floats, triangles: Indices
+) -> None:
+    field = FlowField.from_triangles(points, triangles, np.broadcast_to([0.6, 0.8], points.shape))
+    slices = SliceStore(field).at(0)
+    assert slices.forward is not None and slices.forward_reach is not None
+    unit = slices.unit[0, 0]
+    for moved, reach, side in (
+        (slices.displacement, slices.reach, -1),
+        (slices.forward, slices.forward_reach, 1),
+    ):
+        assert (reach < slices.lags[-1]).any()
+        for m, lag in enumerate(slices.lags):
+            going = reach[0, 0] > lag
+            straight = side * lag * unit * np.array([0.6, 0.8, 0.0])
+            error = np.linalg.norm(moved[0, m, 0][going] - straight, axis=-1)
+            assert error.max(initial=0.0) < 0.01 * lag * unit
+
+
 @property_test(25)
 @given(
     st.integers(3, 30),

@@ -33,8 +33,8 @@ LEAST_DIRECT = 2  #: Least number of slices that are integrated.
 DIRECT_STEPS = 75
 #: Paths that are continued together.
 PIECE_BLOCK = 32768
-#: Most edges crossed in search of a point: beyond a ridge no triangle may contain it.
-MOST_CROSSED = 24
+#: Most edges crossed in search of a point: beside a large cell may lie as many thin ones.
+MOST_CROSSED = 500
 #: Share of a triangle, and of a lag, by which rounding may miss it.
 ROUNDING = 1e-9
 #: Lags that stand for the reach of endless paths, so that a path ends only beside those that do.
@@ -225,7 +225,10 @@ class Composition:
         """Take the integrated paths of some nodes (n,)."""
         self._triangle[: self.direct, nodes] = paths.triangle
         self._shares[:, nodes], self._ahead[:, nodes] = paths.shares[-1], paths.ahead
-        self.reach[nodes] = paths.reach
+        # A step across a large triangle may find an end beyond the last integrated slice, where the
+        # particle has not come yet.
+        found = paths.reach <= self.lags[self.direct - 1]
+        self.reach[nodes] = np.where(found, paths.reach, np.inf)
 
     def complete(self, nodes: Indices, run: Map) -> None:
         """Fill the long slices at the nodes (n,) that are followed."""
@@ -266,22 +269,31 @@ class Composition:
         """Continue the paths of some nodes, piece by piece, to lag m from the one before."""
         triangle, shares = self._triangle[m - 1, nodes], self._shares[:, nodes]
         lag, pieces = np.full(len(nodes), self.lags[m - 1]), 0
+        most = np.full(len(nodes), m)
         while len(nodes):
             left = (self.lags[m] - lag) * (1 + ROUNDING)
             number = np.searchsorted(self.lags, left, side="right") - 1
             if pieces < MOST_PIECES:
                 number = np.minimum(number, self._longest[triangle])
+            number = np.minimum(number, most)
             pieces += 1
             begin, target, ends = self._piece(m, nodes, number, triangle, shares)
-            triangle, shares, outside = search.find(begin, target)
-            self._triangle[m, nodes], self._shares[:, nodes] = triangle, shares
-            # Beside a border that bends, the chord of paths that continue may lie outside.
+            found, at, outside = search.find(begin, target)
             span = self.lags[number]
-            ended = (ends <= span) | (outside & np.isfinite(ends))
+            # Beside a border that bends, the chord of paths that continue may lie outside, as it
+            # does where a path ends that its neighbours pass: a shorter piece shows which.
+            unclear = outside & np.isfinite(ends)
+            again = unclear & (ends > span) & (number > 0) & (pieces < MOST_PIECES)
+            most = np.where(again, number - 1, m)
+            triangle = np.where(again, triangle, found)
+            shares = np.where(again, shares, at)
+            self._triangle[m, nodes], self._shares[:, nodes] = triangle, shares
+            ended = ~again & ((ends <= span) | unclear)
             self.reach[nodes[ended]] = (lag + np.minimum(ends, span))[ended]
-            lag += span
+            lag += np.where(again, 0.0, span)
             on = ~ended & (lag < self.lags[m] * (1 - ROUNDING))
             nodes, triangle, shares, lag = nodes[on], triangle[on], shares[:, on], lag[on]
+            most = most[on]
 
     def _piece(
         self, m: int, nodes: Indices, number: Indices, triangle: Indices, shares: Floats
@@ -341,7 +353,11 @@ class _Search:
         """
         result, outside = triangle.copy(), np.zeros(len(triangle), dtype=bool)
         shares, which, before = np.empty((3, len(triangle))), np.arange(len(triangle)), triangle
-        for _ in range(MOST_CROSSED):
+        # Triangles in which the search was at a power of two of rounds.
+        mark = triangle
+        for crossed in range(MOST_CROSSED):
+            if crossed & (crossed - 1) == 0:
+                mark = triangle
             row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
             away = place - row[:3]
             second, third = (np.einsum("cn,cn->n", row[k : k + 3], away) for k in (3, 6))
@@ -350,9 +366,12 @@ class _Search:
             out = np.flatnonzero(np.minimum(np.minimum(*current[:2]), current[2]) < -ROUNDING)
             code = self._across[3 * triangle[out] + current[:, out].argmin(axis=0)]
             outside[which[out[code < 0]]] = True
-            # Over a ridge the search would go to and fro.
-            on = (code >= 0) & (code >> 3 != before[out])
-            out, before = out[on], triangle[out[on]]
+            # Over a ridge the search would go to and fro, and about a corner round and round.
+            ahead = code >> 3
+            on = (code >= 0) & (ahead != before[out]) & (ahead != mark[out])
+            out = out[on]
+            before = triangle[out]
+            mark = mark[out]
             which, triangle, place = which[out], code[on] >> 3, place[:, out]
             if not len(which):
                 break
