@@ -13,7 +13,6 @@ from functools import partial
 from importlib import import_module
 from operator import attrgetter
 from pathlib import Path
-from pydoc import locate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -273,12 +272,28 @@ def test_the_tables_of_what_pyramids_cost_are_those_of_the_benchmark() -> None:
 MODULES = ("", ".app", ".examples", ".pyramid", ".scene.probe", ".xarray")
 
 
+def public_object(name: str) -> object:
+    """Return the object that a user gets by ``flowtex.name``, after importing its module.
+
+    ``pydoc.locate`` prefers modules since Python 3.12: ``flowtex.trace`` is the folder there,
+    not the function.
+    """
+    found: object = flowtex
+    path = "flowtex"
+    for part in name.split("."):
+        path = f"{path}.{part}"
+        if not hasattr(found, part):
+            import_module(path)
+        found = getattr(found, part)
+    return found
+
+
 def test_the_reference_has_every_public_name_and_each_an_example() -> None:
     pages = (ROOT / "docs" / "reference").glob("*.md")
     text = "\n".join(page.read_text() for page in pages)
     rooms = [import_module(f"flowtex{name}") for name in MODULES]
     names = re.findall(r"^   flowtex\.([\w.]+)$", text, re.MULTILINE)
-    named = {name: locate(f"flowtex.{name}") for name in names}
+    named = {name: public_object(name) for name in names}
     public = [getattr(room, name) for room in rooms for name in room.__all__]
     known = [id(thing) for thing in named.values()]
     assert [thing for thing in public if callable(thing) and id(thing) not in known] == []

@@ -12,6 +12,7 @@ import math
 import re
 import weakref
 import zlib
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -77,6 +78,27 @@ class Objects(WrapperStore[Store]):
                 self._kept.put(name, piece)
             return piece.buffer
 
+    async def get_ranges(
+        self,
+        key: str,
+        byte_ranges: Sequence[ByteRequest | None],
+        *,
+        prototype: BufferPrototype,
+        **limits: int | None,
+    ) -> AsyncIterator[Sequence[tuple[int, Buffer | None]]]:
+        """Yield parts of an object with their positions in ``byte_ranges``.
+
+        Zarr 3.2 and later read the chunks of a shard by this method. That of ``WrapperStore`` would
+        ask the wrapped store, without what is kept here and without errors for missing objects.
+        """
+        reads = [self.get(key, prototype, byte_range) for byte_range in byte_ranges]
+        yield list(enumerate(await asyncio.gather(*reads)))
+
+    @property
+    def _supports_sync_io(self) -> bool:
+        """Whether Zarr may read by ``get_sync``, which would go past :meth:`get`."""
+        return False
+
     async def _read(
         self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None
     ) -> Buffer | None:
@@ -119,14 +141,14 @@ class _BoundedGzip(GzipCodec):
 class _BoundedBlosc(BloscCodec):
     """Blosc for chunks whose header declares as many bytes as they decompress to."""
 
-    async def _decode_single(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
+    def _decode_sync(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
         size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
         # Blosc writes the size into bytes 4 to 8 of a chunk, and unpacks to no more.
         if int.from_bytes(chunk_bytes.to_bytes()[4:8], "little") != size:
             raise ValueError(
                 f"a chunk does not unpack to the {size:,} bytes that its array declares"
             )
-        return await super()._decode_single(chunk_bytes, chunk_spec)
+        return super()._decode_sync(chunk_bytes, chunk_spec)
 
 
 def bounded(metadata: ArrayV3Metadata, store: Store, path: str) -> AsyncArray[ArrayV3Metadata]:

@@ -391,7 +391,8 @@ def projection_of(places: Places, name: str | None) -> Projection:
         lon = places.a
         edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
         steps = np.diff(edge[np.isfinite(edge)])
-        has_pole = abs(((steps + 180.0) % 360.0 - 180.0).sum()) > 180.0  # inside the edge
+        turn = ((steps + 180.0) % 360.0 - 180.0).sum()
+        has_pole = bool(abs(turn) > 180.0)  # inside the edge
         polar = not around or not places.is_line
         polar = polar and (abs(low + high) / 2 > POLAR or (low * high > 0 and has_pole))
         name = FLAT if not polar else "north" if low + high > 0 else "south"

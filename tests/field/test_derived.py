@@ -62,12 +62,14 @@ def rossby_wave(lon: Floats, lat: Floats) -> tuple[Floats, Floats, Floats]:
 
 def on_map(name: str) -> Callable[[int], Made]:
     def make(n: int) -> Made:
-        lat = (
-            np.linspace(-90, 90, 2 * n + 1) if name == "globe" else np.linspace(-80, 80, 2 * n + 1)
-        )
-        lon, lat = np.meshgrid(np.linspace(-170, 170, 4 * n + 1), lat)
+        east_end = 170
+        north_end = 80
         if name == "globe":
-            lon = np.broadcast_to(np.linspace(-180, 180, 4 * n + 1), lat.shape)
+            east_end = 180
+            north_end = 90
+        longitudes = np.linspace(-east_end, east_end, 4 * n + 1)
+        latitudes = np.linspace(-north_end, north_end, 2 * n + 1)
+        lon, lat = np.meshgrid(longitudes, latitudes)
         east, north, vorticity = rossby_wave(lon, lat)
         there = Projection(name)
         velocity = there.vectors(lon, lat, EARTH_RADIUS * east, EARTH_RADIUS * north)

@@ -56,7 +56,7 @@ def test_dates_are_seconds_since_the_first(unit: str) -> None:
     months = np.array(["2002-01", "2002-02"], dtype="datetime64[M]")
     field = FlowField.from_arrays(points, velocity, times=months)
     assert field.times.tolist() == [0.0, 31 * 86400.0]
-    dates[1] = np.datetime64("NaT")
+    dates[1] = np.array("NaT", dates.dtype)
     with pytest.raises(FieldError, match=r"times\[1\] is nan; expected a finite number"):
         FlowField.from_arrays(points, velocity, times=dates)
 

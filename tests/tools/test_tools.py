@@ -79,3 +79,13 @@ def test_help_lists_every_target() -> None:
     said = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True)
     targets = (ROOT / "Makefile").read_text().split(".PHONY: ")[1].split("\n")[0].split()
     assert [name for name in targets if f"  make {name} " not in said.stdout] == []
+
+
+@pytest.mark.parametrize("which", ["oldest", "newest"])
+def test_pythons_names_an_interpreter_that_is_supported(which: str) -> None:
+    command = ["sh", "tools/pythons.sh", which]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    question = "import sys; print(sys.version_info >= (3, 11))"
+    asked = [done.stdout.strip(), "-c", question]
+    answer = subprocess.run(asked, capture_output=True, text=True, check=True)
+    assert answer.stdout == "True\n"

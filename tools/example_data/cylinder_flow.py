@@ -103,8 +103,8 @@ class _Tridiagonal:
         below, above = self._lower.copy(), self._upper.copy()
         below[:, 0] = 0.0
         above[:, -1] = 0.0
-        *self._factors, info = lapack.dgttrf(
-            below.ravel()[1:], diagonal.ravel(), above.ravel()[:-1]
+        self._below, self._diagonal, self._above, self._second_above, self._pivots, info = (
+            lapack.dgttrf(below.ravel()[1:], diagonal.ravel(), above.ravel()[:-1])
         )
         if info != 0:
             message = f"the tridiagonal system is singular at row {info}; use a smaller spacing"
@@ -119,7 +119,9 @@ class _Tridiagonal:
         right[:, 0] -= self._lower[:, 0] * result[:, 0]
         right[:, -1] -= self._upper[:, -1] * result[:, -1]
         both = np.stack([right.real.ravel(), right.imag.ravel()], axis=1)
-        solved, _ = lapack.dgttrs(*self._factors, both)
+        solved, _ = lapack.dgttrs(
+            self._below, self._diagonal, self._above, self._second_above, self._pivots, both
+        )
         result[:, 1:-1] = (solved[:, 0] + 1j * solved[:, 1]).reshape(right.shape)
         return result
 

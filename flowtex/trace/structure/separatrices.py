@@ -254,7 +254,9 @@ def _followed(
         def within(index: Floats) -> Bools:
             # Paths go on beyond a seam.
             index = field.surface.wrap(index.T)
-            return np.isinf(near.query(index, distance_upper_bound=REST_CELLS)[0])
+            distances, _ = near.query(index, distance_upper_bound=REST_CELLS)
+            is_far: Bools = np.isinf(np.asarray(distances, dtype=float))
+            return is_far
 
         left = lags[FIRST_POINTS:] - lags[FIRST_POINTS - 1]
         later = follow(first.positions[-1, away], left, within=within)

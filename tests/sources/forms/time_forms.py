@@ -83,7 +83,7 @@ def times_that_repeat() -> Any:
 def a_missing_time() -> Any:
     ds = earth(LON, LAT, FOUR)
     times = ds.time.values.copy()
-    times[3] = np.datetime64("NaT")
+    times[3] = np.datetime64("NaT", "ns")
     return retimed(ds, times), on_earth(LON, LAT, FOUR[:3])
 
 
@@ -91,7 +91,7 @@ def a_missing_time() -> Any:
 def a_missing_time_between() -> Any:
     ds = earth(LON, LAT, FOUR)
     times = ds.time.values.copy()
-    times[1] = np.datetime64("NaT")
+    times[1] = np.datetime64("NaT", "ns")
     return retimed(ds, times), on_earth(LON, LAT, FOUR[[0, 2, 3]])
 
 
