@@ -29,8 +29,6 @@ export interface Explainer {
 export interface Reading {
   point: Point;
   path?: PointPath;
-  /** Whether the path is that of one view alone, whose flow is another one. */
-  alone?: boolean;
 }
 
 /** Reads a point: at a place of the view from -1 to 1, or one that was found. */

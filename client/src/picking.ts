@@ -55,11 +55,13 @@ function placeAmong({ rows, columns, shape }: Geometry, u: number, v: number): [
 
 /** Place between the nodes of the whole surface, of one in a layer. */
 function wholeIndex(header: Header, { key }: Layer, [i, j]: [number, number]): [number, number] {
-  const { pyramid, geometry, mesh } = header;
+  const { pyramid, geometry, mesh, formula } = header;
   const [level, row, column] = key;
   const [rows, columns] = pyramid?.shapes[0] ?? geometry.shape;
   const side = mesh.tileCells * (pyramid?.tileBlocks ?? 0);
-  const at = (n: number, tile: number, nodes: number) => fullIndex(n + tile * side, level, nodes);
+  // A formula has no finest level: its nodes are those of the grid in Python.
+  const finer = formula ? 2 ** (pyramid?.depth ?? 0) : 1;
+  const at = (n: number, tile: number, nodes: number) => fullIndex(n + tile * side, level, nodes) / finer;
   return [at(i, column, columns), at(j, row, rows)];
 }
 

@@ -73,6 +73,8 @@ export class PointCard {
   private read: Point | null = null;
   private asked = 0;
   private later: Timer | null = null;
+  /** Whether the numbers are shown here: in the view that was clicked. */
+  private hasNumbers = true;
   /** The path that is drawn, and its point. */
   private drawn: { path: PointPath; point: Vector; samples: Sample[] } | null = null;
 
@@ -85,29 +87,37 @@ export class PointCard {
     this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.list);
   }
 
-  /** Show the path through what is at (x, y), from -1 to 1, right and up, or none. */
+  /** Show the path through what is at (x, y), from -1 to 1, right and up, in all views, or none. */
   choose(x: number, y: number, until = performance.now() + PATIENCE_MS): Point | null {
-    const { lifetime, canPick, options } = this.host;
+    const { lifetime, canPick, options, together } = this.host;
     lifetime.cancel(this.later);
-    if (options.streamed) {
-      this.close();
-      void this.ask({ place: [x, y] });
-      return null;
-    }
-    if (!canPick && performance.now() < until) {
+    if (!options.streamed && !canPick && performance.now() < until) {
       // The program that finds points is still being compiled.
       this.later = lifetime.later(() => this.choose(x, y, until), RETRY_MS);
       return null;
     }
-    const found = this.host.find(x, y);
-    if (found) this.host.options.onPoint?.(found.point);
     this.close();
-    if (found && options.reader) void this.ask(found.point);
+    for (const { card } of together) if (card !== this) card.begin(x, y, false);
+    return this.begin(x, y, true)?.point ?? null;
+  }
+
+  /** Show this view's own path through what is at (x, y), perhaps with its numbers. */
+  private begin(x: number, y: number, hasNumbers: boolean): Found | null {
+    const { options } = this.host;
+    this.hasNumbers = hasNumbers;
+    if (options.streamed) {
+      void this.ask({ place: [x, y] });
+      return null;
+    }
+    const found = this.host.find(x, y);
+    if (!found) return null;
+    if (hasNumbers) options.onPoint?.(found.point);
+    if (options.reader) void this.ask(found.point);
     else {
       this.chosen = found;
       this.update();
     }
-    return found?.point ?? null;
+    return found;
   }
 
   /** Show the path that a host reads. */
@@ -117,20 +127,17 @@ export class PointCard {
     const found = await options.reader?.(at, true).catch(() => null);
     const { camera } = this.host;
     if (number !== this.asked || header !== this.host.header || !header || !camera) return;
-    if (!found?.path) return this.close();
-    if ("place" in at) options.onPoint?.(found.point);
+    if (!found?.path) return this.hasNumbers ? this.close() : this.clear();
+    if ("place" in at && this.hasNumbers) options.onPoint?.(found.point);
     this.read = found.point;
     const { point, path } = found;
     this.tell(point, path, header, camera);
-    this.share(path, point.position as Vector, [], found.alone ? [{ card: this }] : this.host.together);
+    this.show(path, point.position as Vector, []);
   }
 
-  /** Draw a path in views, by default in all. */
-  private share(path: PointPath, point: Vector, samples: Sample[], views: readonly { card: PointCard }[] = this.host.together): void {
-    for (const { card } of views) {
-      card.drawn = { path, point, samples };
-      card.draw();
-    }
+  private show(path: PointPath, point: Vector, samples: Sample[]): void {
+    this.drawn = { path, point, samples };
+    this.draw();
   }
 
   /** Show no path, in no view. */
@@ -140,11 +147,17 @@ export class PointCard {
 
   private clear(): void {
     this.host.lifetime.cancel(this.later);
-    this.chosen = this.drawn = this.read = null;
+    this.chosen = this.read = null;
     this.asked += 1;
+    this.hide();
+    this.host.options.explainer?.clear();
+  }
+
+  /** Show nothing of the chosen point until the next update. */
+  hide(): void {
+    this.drawn = null;
     this.element.hidden = true;
     this.overlay.replaceChildren();
-    this.host.options.explainer?.clear();
   }
 
   /** Show the path as things are now; where the point's tile has gone it stays as it was. */
@@ -161,15 +174,25 @@ export class PointCard {
       if (!exact) return;
       const now = { ...exact, sampled: [], directed: true };
       this.tell({ ...point, values: {} }, now, header, camera);
-      return this.share(now, position, []);
+      return this.show(now, position, []);
     }
     const at = { scene, moment: shown, place, position };
     const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
     const eastNorth = velocityOnEarth(at, this.host.parts.get("lonlat")) ?? undefined;
-    this.tell({ ...point, values: valuesAt(scene, shown, place), eastNorth }, path, header, camera);
+    const now = { ...point, values: valuesAt(scene, shown, place), eastNorth };
+    this.report(now);
+    this.tell(now, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
-    this.share(path, position, samples);
+    this.show(path, position, samples);
+  }
+
+  /** Tell the host of the chosen point with other values than before. */
+  private report(point: Point): void {
+    const { chosen } = this;
+    if (!chosen || !this.hasNumbers || JSON.stringify(chosen.point.values) === JSON.stringify(point.values)) return;
+    this.chosen = { ...chosen, point: { ...chosen.point, values: point.values } };
+    this.host.options.onPoint?.(this.chosen.point);
   }
 
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
@@ -199,7 +222,7 @@ export class PointCard {
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );
-    this.element.hidden = this.host.options.explainer !== undefined;
+    this.element.hidden = !this.hasNumbers || this.host.options.explainer !== undefined;
   }
 
   /** Draw the path where the camera sees it. */

@@ -44,6 +44,8 @@ export class Pointers {
   private press = { x: 0, y: 0, time: 0, isDrag: false };
   private lastLook = 0;
   private look: Timer | null = null;
+  /** Where the pointer rests on the picture. */
+  private pointed: Place | null = null;
   private lastPointed = -Infinity;
 
   constructor(viewer: Viewer) {
@@ -57,7 +59,7 @@ export class Pointers {
     listen("pointermove", (event: PointerEvent) => this.onMove(event));
     listen("pointerup", (event: PointerEvent) => this.onUp(event));
     listen("pointercancel", (event: PointerEvent) => this.onUp(event));
-    listen("pointerleave", () => viewer.panel.read(null));
+    listen("pointerleave", () => this.leave());
     listen("contextmenu", (event) => event.preventDefault());
     listen("wheel", (event: WheelEvent) => this.onWheel(event));
     listen("dblclick", (event: MouseEvent) => {
@@ -111,7 +113,7 @@ export class Pointers {
   }
 
   private onMove(event: PointerEvent): void {
-    const { camera, panel } = this.viewer;
+    const { camera } = this.viewer;
     if (!camera) return;
     const place = this.place(event);
     const old = this.down.get(event.pointerId);
@@ -132,8 +134,27 @@ export class Pointers {
     } else {
       camera.pan(old.x - place.x, old.y - place.y);
     }
-    panel.read(null);
+    this.leave();
     this.viewer.reportCamera();
+  }
+
+  /** Read nothing off any more. */
+  private leave(): void {
+    this.pointed = this.asked = null;
+    this.viewer.lifetime.cancel(this.look);
+    this.viewer.panel.read(null);
+  }
+
+  /** What was read off has changed: show nothing of it until it is read again. */
+  outdate(): void {
+    if (!this.pointed) return;
+    this.asked = null;
+    this.viewer.panel.read(null);
+  }
+
+  /** Read again what is under the pointer. */
+  again(): void {
+    if (this.pointed && !this.down.size) this.hover(this.pointed);
   }
 
   /** Middle of the pointers that are down, and how far they are apart. */
@@ -153,6 +174,7 @@ export class Pointers {
     this.hold(true);
     const isQuick = event.timeStamp - this.press.time < CLICK_MS;
     if (!place || this.press.isDrag || !isQuick || event.button !== 0) return;
+    this.pointed = place;
     this.viewer.panel.read(this.viewer.card.choose(place.x, place.y));
   }
 
@@ -178,6 +200,7 @@ export class Pointers {
   /** Read off what is under the pointer, now and then. */
   private hover(place: Place): void {
     const { viewer } = this;
+    this.pointed = place;
     viewer.lifetime.cancel(this.look);
     const rest = HOVER_MS - (performance.now() - this.lastLook);
     const look = () => {

@@ -61,6 +61,8 @@ export class Scene {
   private most: Int8Array | null = null;
   /** Slices that are being traced, by their key, and what stands in it for parts without a digest. */
   private tracing = "";
+  /** Steps whose slices are made, perhaps while those of others are shown. */
+  private wanted: number[] = [];
   readonly number = (count += 1);
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>, tile: TileKey | null = null) {
@@ -151,6 +153,7 @@ export class Scene {
     if (!geometry.planar && !trace.parts.includes("normal")) {
       this.put("normal", digest("normal"), () => normalOf(padded, trace, geometry.shape));
     }
+    this.wanted = steps;
     return steps.every((step) => this.trace(step, until));
   }
 
@@ -224,7 +227,9 @@ export class Scene {
     }
     if (BODY_PARTS.includes(kind)) this.bodies.dispose();
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
-    if (SOURCES.includes(kind)) this.dropSlices(NaN, NaN);
+    if (!SOURCES.includes(kind)) return;
+    this.wanted = [];
+    this.dropSlices(NaN, NaN);
   }
 
   private drop(name: string): void {
@@ -472,12 +477,12 @@ export class Scene {
     if (levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
   }
 
-  /** Drop the slices of steps that are neither shown nor next. */
+  /** Drop the slices of steps that are neither shown, nor next, nor made while others are shown. */
   private dropSlices(before: number, after: number): void {
     const next = after + 1 < this.header.slices.steps ? after + 1 : 0;
+    const kept = [before, after, next, after + 1, ...this.wanted];
     for (const name of [...this.resources.keys()]) {
-      if (!name.startsWith("slices/")) continue;
-      if (![before, after, next, after + 1].includes(stepOf(name))) this.drop(name);
+      if (name.startsWith("slices/") && !kept.includes(stepOf(name))) this.drop(name);
     }
   }
 

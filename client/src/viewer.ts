@@ -28,6 +28,8 @@ import { WebGL2Painter } from "./webgl2painter.ts";
 const [STILL_MS, STEADY_MS] = [160, 400];
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
+/** Where the nodes of a surface lie, as far as a header says. */
+const placeOf = ({ geometry: { center, extent, shape } }: Header) => [center, extent, shape];
 
 export class Viewer extends SceneView {
   readonly options: Options;
@@ -51,6 +53,8 @@ export class Viewer extends SceneView {
   /** Whether the picture has the ground of the page. */
   private isOnPage = false;
   private busyUntil = 0;
+  /** The moment of which the chosen point was shown last. */
+  private toldMoment = "";
   /** The camera that the scene came with, and the one that looks at it where that is another one. */
   private firstCamera: CameraState | null = null;
   private keptCamera: CameraState | null = null;
@@ -124,6 +128,9 @@ export class Viewer extends SceneView {
     this.requests.setHeader(header);
     this.painter.open?.(header);
     const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
+    const isOther = old && !isEqual(placeOf(old), placeOf(header));
+    // A host reads the point of another surface.
+    if (isOther && (isElsewhere || !this.options.reader)) this.card.close();
     if (isElsewhere) {
       this.keptCamera = old && keepsCamera ? this.cameraState : null;
       [this.firstCamera, this.camera] = [this.keptCamera ? null : header.camera, null];
@@ -352,6 +359,7 @@ export class Viewer extends SceneView {
     const parts = this.camera && this.requests.formula?.look(this.camera, this.parts.keys());
     for (const part of parts ?? []) this.setPart(part);
     this.painter.restart?.(cameraOnly);
+    if (!cameraOnly) this.pointers.outdate();
     this.card.draw();
     this.panel.showAxes();
     this.setSharp(false);
@@ -378,11 +386,19 @@ export class Viewer extends SceneView {
       this.root.dataset.frames = String(this.frames);
       this.panel.clear();
     }
-    // A host that reads paths would be asked at every picture.
-    const changes = this.playing && (this.header?.slices.times.length ?? 1) > 1;
-    if (changes && !this.options.reader) this.card.update();
+    this.followMoment();
     this.setSharp(isComplete && !this.playing);
     if (!this.sharp) this.request();
+  }
+
+  /** Show of the chosen point what the picture shows, as soon as it shows another moment. */
+  private followMoment(): void {
+    const moment = String(this.shown);
+    if (moment === this.toldMoment) return;
+    this.toldMoment = moment;
+    // A host that reads paths would be asked at every picture.
+    if (this.playing && this.options.reader) this.card.hide();
+    else this.card.update();
   }
 
   private setSharp(sharp: boolean): void {
@@ -391,6 +407,7 @@ export class Viewer extends SceneView {
     this.root.dataset.sharp = String(sharp);
     if (!sharp) return;
     this.card.update();
+    this.pointers.again();
     this.options.onFrame?.();
   }
 
@@ -442,8 +459,10 @@ export class Viewer extends SceneView {
     const { player, options, painter } = this;
     const isMade = (steps: number[]) => painter.make?.(steps, now) ?? true;
     if (!player.playing || !player.advance(now, isMade)) return;
-    if (player.varies) options.onTime?.(player.time);
-    else options.onClock?.(player.clock);
+    if (player.varies) {
+      options.onTime?.(player.time);
+      this.pointers.outdate();
+    } else options.onClock?.(player.clock);
     this.panel.tick();
     painter.restart?.(false);
     this.setSharp(false);

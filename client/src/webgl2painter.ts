@@ -24,6 +24,8 @@ export class WebGL2Painter implements Painter {
   private readonly renderer: ProgressiveRenderer;
   /** Steps that the player shows next. */
   private next: number[] = [];
+  /** Whether the slices of the present moment are missing, so that another one is shown. */
+  private isLate = false;
 
   constructor(view: SceneView) {
     this.view = view;
@@ -110,6 +112,7 @@ export class WebGL2Painter implements Painter {
     const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
     if (steps.length && view.requests.hasSteps && !view.options.isComing?.()) view.requests.wantSteps(steps);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
+    this.isLate = !isMade;
     const marks = view.requests.hasMarks ? scene.marks.lacking(view.settings, moment) : [];
     if (!view.options.isComing?.()) view.requests.wantMarks(marks);
     view.root.dataset.lacking = String(lacking.length + marks.length || Number(!isMade));
@@ -153,6 +156,8 @@ export class WebGL2Painter implements Painter {
     const program = this.program(header); // built while parts come and slices are made
     scene.prepare();
     if (!shown || !view.camera) return;
+    // The picture of another moment is complete: the slices of this one get all the time.
+    if (this.isLate && view.sharp) return;
     if (program.error) return view.panel.fail("The shader does not compile with this graphics driver.", program.error);
     if (!program.ready || !scene.isReady(view.settings, this.smooth)) return view.request();
     const isComplete = !view.sharp && this.renderer.draw(program, shown, until);

@@ -11,13 +11,13 @@ from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, IMAGE, MIDDLE, SIZE, WHOLE
 from webgl_page import ClientPage, packed, state
 
-from flowtex import FlowField
+from flowtex import FlowField, formula
 from flowtex.field.earth import Projection
 from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Appearance, Options
-from flowtex.scene.probe import probe
+from flowtex.scene.probe import locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
@@ -231,3 +231,93 @@ def test_the_card_has_the_values_of_the_data_on_every_map(
     parts = [float(got[name].removesuffix(" m/s")) for name in list(got)[1:]]
     same = [expected.eastward, expected.northward, expected.speed]
     assert parts == pytest.approx(same, abs=1e-2)  # with three digits
+
+
+def wandering() -> FlowField:
+    """A vortex that moves to the right, at nine times."""
+    y, x = np.mgrid[-1:1:25j, -1.5:1.5:37j]
+    times = np.linspace(0.0, 0.8, 9)
+    steps = [np.stack([-y, x - 1.5 * t + 0.4], axis=-1) for t in times]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=times)
+
+
+def test_each_of_two_views_shows_its_own_path(client: ClientPage) -> None:
+    beside = {"lines": "streamlines"}
+    views = web_views(wandering(), Options.split(lines="pathlines", samples=31, beside=beside))
+    scenes = []
+    for view in views:
+        data = view.page_data()
+        header = data.header(view.scene.settings, camera=state(MIDDLE), time=0.4)
+        scenes.append(packed(data, header, tuple(range(9))))
+        view.scene.time = 0.4
+    client.mount(scenes, (2 * SIZE[0] + 2, SIZE[1]), smooth=False, controls=False)
+    picks = "() => viewers[0].together.every((view) => view.sharp && view.canPick)"
+    client.page.wait_for_function(picks)
+    for clicked in (0, 1):
+        client.page.evaluate(f"viewers[0].together[{clicked}].card.choose(0.3, -0.2)")
+        ends = []
+        for n, view in enumerate(views):
+            drawn = client.page.evaluate(DRAWN.replace("viewers[0]", f"viewers[0].together[{n}]"))
+            at = locate(view.field, drawn["point"])
+            assert at is not None
+            judge = probe(view.scene, at, pixel=MIDDLE, size=SIZE)
+            length = float(np.linalg.norm(np.diff(judge.points, axis=0), axis=1).sum())
+            ends.append(np.array([drawn["sampled"][0], drawn["sampled"][-1]]))
+            np.testing.assert_allclose(ends[n], judge.points[[0, -1]], atol=0.06 * length)
+        assert np.abs(ends[0] - ends[1]).max() > 0.2 * length
+        assert client.page.locator(".card:visible").count() == 1
+    client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
+
+
+def test_what_is_read_off_follows_the_time(client: ClientPage) -> None:
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    steps = np.array([1.0, 2.0, 4.0])[:, None, None, None] * np.ones((*x.shape, 2))
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), steps, times=[0.0, 5.0, 10.0])
+    mount(client, field, hear=["onPoint"], controls=True)
+    page = client.page
+    readout = "viewers[0].root.shadowRoot.querySelector('.readout').innerText"
+    page.mouse.click(300, 130)
+    page.locator(".card").wait_for()
+    page.mouse.move(320, 140)
+    for time, factor in ((5.0, 2.0), (7.5, 3.0), (10.0, 4.0), (0.0, 1.0)):
+        speed = factor * 2**0.5
+        page.evaluate("(time) => viewers[0].setTime(time)", time)
+        assert "speed" not in page.evaluate(readout), "nothing of the time before"
+        client.sharp()
+        page.wait_for_function(f"() => {readout}.includes('speed')")
+        assert float(page.evaluate(readout).split()[-1]) == pytest.approx(speed, rel=1e-2)
+        assert float(card(page)["speed"]) == pytest.approx(speed, rel=1e-2)
+        _, point = page.evaluate("events")[-1]
+        assert point["values"]["speed"] == pytest.approx(speed, rel=1e-2)
+
+
+def test_another_surface_closes_the_card(client: ClientPage) -> None:
+    mount(client, leaving(share=0.0))
+    client.page.mouse.click(300, 150)
+    client.page.locator(".card").wait_for()
+    field = leaving(share=0.0)
+    higher = FlowField.from_arrays(field.points + np.array([0.0, 0.0, 0.01]), field.velocity[0])
+    moved = web_views(higher, Options.split(samples=9))[0]
+    data = moved.page_data()
+    scene = packed(data, data.header(moved.scene.settings))
+    client.page.evaluate(
+        """({ header, parts }) => {
+          viewers[0].setHeader(header);
+          for (const part of unpack(parts)) viewers[0].setPart(part);
+        }""",
+        scene,
+    )
+    assert client.page.locator(".card:visible").count() == 0
+    assert client.page.locator("svg.path > *").count() == 0
+
+
+@pytest.mark.parametrize("zoom", [1.0, 300.0])
+def test_the_index_on_a_formula_is_one_of_its_grid(client: ClientPage, zoom: float) -> None:
+    field = formula("y", "-sin(x)", x=(-3, 3), y=(-2, 2), resolution=65)
+    mount(client, field)
+    client.page.evaluate(f"viewers[0].camera.zoomBy({zoom}, 0, 0); viewers[0].reportCamera()")
+    client.complete()
+    client.page.wait_for_function("() => viewers[0].canPick")
+    point = client.page.evaluate("() => viewers[0].card.choose(0.25, -0.3)")
+    i, j = point["index"]
+    np.testing.assert_allclose(field.surface.at(np.array([i, j])), point["position"], atol=1e-4)

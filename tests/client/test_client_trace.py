@@ -346,3 +346,22 @@ def test_a_page_with_velocity_is_small(tmp_path: Path) -> None:
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
     made: Any = export(field, tmp_path / "page.html")
     assert made.nbytes < 1_600_000
+
+
+def test_a_far_time_between_two_steps_is_shown(client: ClientPage) -> None:
+    """While its slices are made, the picture is that of the time before, whose slices stay."""
+    y, x = np.mgrid[-1:1:25j, -1.5:1.5:37j]
+    times = np.linspace(0.0, 1.1, 12)
+    steps = [np.stack([-y, x - 1.5 * t + 0.4], axis=-1) for t in times]
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=times)
+    view = web_views(field, Options.split(lines="pathlines", samples=15))[0]
+    data = view.page_data()
+    for first in (0.05, 0.85):
+        header = data.header(view.scene.settings, time=first)
+        viewer = client.mount(packed(data, header, tuple(range(12))), SIZE, smooth=False)
+        client.sharp(viewer)
+    client.page.evaluate("viewers[0].setTime(0.85)")
+    client.page.wait_for_function(
+        "() => viewers[0].sharp && viewers[0].root.dataset.lacking === '0'"
+    )
+    assert np.array_equal(client.pixels(0), client.pixels(1))

@@ -232,7 +232,10 @@ class TrameView {
   }
 
   private reader(n: number): Reader {
-    return (at, path) => trame().trigger(this.props.read, [n, { ...at, path }]) as Promise<Reading | null>;
+    return (at, path) => {
+      const time = this.view?.viewers[n]?.player.time;
+      return trame().trigger(this.props.read, [n, { ...at, path, time }]) as Promise<Reading | null>;
+    };
   }
 
   /** Send the size of the picture of all views. */

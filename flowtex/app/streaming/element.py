@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -32,6 +33,13 @@ _numbers = itertools.count(1)
 PAINTERS = ("server", "browser")
 #: Name of the whole surface in place of a tile.
 WHOLE = "whole"
+#: Requests for steps of the whole that are answered at once, the last ones: a page has four at a
+#: time, and drops those that a moving slider has left behind.
+MOST_STEPS_ASKED = 8
+
+
+def _never() -> bool:
+    return False
 
 
 class HandedScene:
@@ -40,6 +48,8 @@ class HandedScene:
     def __init__(self, routes: Routes) -> None:
         self._routes, self._stem = routes, ""
         self._source: TileSource | None = None
+        #: Number of requests for steps of the whole.
+        self._asked = 0
 
     def update(self, pane: FlowHandle, background: object, **values: object) -> Header:
         """Replace the scene by that of a pane, or by the same in other colours.
@@ -68,9 +78,10 @@ class HandedScene:
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
             raise LookupError(name)
+        is_over = self._next_request() if place == WHOLE and steps else _never
         try:
-            parts = await asyncio.wrap_future(source.ask(key, steps, kind=kind))
-        except Stopped:  # the scene is no longer shown
+            parts = await asyncio.wrap_future(source.ask(key, steps, is_over, kind))
+        except Stopped:  # neither the scene nor the step is shown any more
             parts = {}
         except Exception as error:
             # Coarser tiles replace it.
@@ -80,6 +91,12 @@ class HandedScene:
         # Packing takes a while, and the loop has other pages to serve.
         body = await asyncio.get_running_loop().run_in_executor(None, parts_file, parts)
         return body, "application/octet-stream", None
+
+    def _next_request(self) -> Callable[[], bool]:
+        """Count a request for steps; return whether many others have followed."""
+        self._asked += 1
+        number = self._asked
+        return lambda: self._asked >= number + MOST_STEPS_ASKED
 
     def close(self) -> None:
         """Stop serving the parts."""

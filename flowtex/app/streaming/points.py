@@ -41,7 +41,8 @@ class PointReader:
         """Return the values at a point of a pane; ``None`` outside the surface.
 
         ``at`` has the ``place`` in the view, (x, y) from -1 to 1, the ``index`` (i, j) on a
-        grid, or the ``position`` on triangles; with ``path`` the path as well.
+        grid, or the ``position`` on triangles; with ``path`` the path as well, as the pane draws
+        it, and the ``time`` that the page shows, which may be ahead of the one here.
         """
         panes = self._viewport.panes
         if type(pane) is not int or pane not in range(len(panes)):  # 0.0 is in a range as well
@@ -50,12 +51,13 @@ class PointReader:
         index = self._index(pane, request)
         if index is None:
             return None
+        time = _time_of(shown.field, request.get("time"), shown.time)
         if not request.get("path"):
-            point = values_of(values_at(shown.field, index, shown.time), index)
+            point = values_of(values_at(shown.field, index, time), index)
             return {"point": point | self._mark(shown, point["position"])}
-        # Two panes of one flow show its path in both, as the first one draws it.
-        first = shown if "field" in self._viewport.differences else panes[0]
-        scene, clock = first.scene.copy(), self._viewport.clock
+        scene, clock = shown.scene.copy(), self._viewport.clock
+        if time != scene.time:
+            scene.time = time
         camera, size = self._viewport.camera, self._viewport.pane_size
 
         def work() -> Probe | None:
@@ -67,10 +69,9 @@ class PointReader:
         probed = await asyncio.get_running_loop().run_in_executor(self._worker, work)
         if probed is None:
             return None
-        alone = "field" in self._viewport.differences
-        read = path_of(probed, index, first.field)
-        read["point"] |= self._mark(first, read["point"]["position"])
-        return {**read, "alone": alone}
+        read = path_of(probed, index, shown.field)
+        read["point"] |= self._mark(shown, read["point"]["position"])
+        return read
 
     def _mark(self, pane: FlowHandle, position: Sequence[float]) -> dict[str, str]:
         scene = pane.scene
@@ -109,6 +110,12 @@ class PointReader:
     def close(self) -> None:
         """Stop reading."""
         self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def _time_of(field: FlowField, asked: object, present: float) -> float:
+    """Return the time that is asked for, or the present one if the field has none such."""
+    time = number(asked, *map(float, field.times[[0, -1]]))
+    return present if time is None or field.steady else time
 
 
 def _numbers(value: object, count: int) -> list[float] | None:

@@ -784,21 +784,22 @@ layer.scene,near,ray)[1],[position,there]=onRay(layer.scene,beside,ray),place=pl
 parts.get("lonlat")),index=geometry.triangles?place:wholeIndex(root.header,layer,place);return{point:{position,index,values:valuesAt(
 layer.scene,moment,place)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
 share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
-i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
-tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
-j,row2,rows)]}function onRay(scene,near,[start,along2]){let{geometry}=scene.header,{data}=scene.part("position"),nodes=scene.
-cornersAt(near).map(([node])=>node),[a,b,c]=nodes.map(n=>add(fromFrame(geometry.frame,[...data.subarray(3*n,3*n+3)]),geometry.
-center)),[first,second]=[subtract2(b,a),subtract2(c,a)],normal=cross2(first,second),position=add(start,along2,dot2(normal,
-subtract2(a,start))/dot2(normal,along2)),way=subtract2(position,a),[s,t]=[cross2(way,second),cross2(first,way)].map(each=>dot2(
-each,normal)/dot2(normal,normal));if(!(Math.max(Math.abs(s),Math.abs(t))<FARTHEST)){let about=nodeAt(scene,near);return[
-add(start,along2,dot2(subtract2(about,start),along2)/dot2(along2,along2)),near]}if(geometry.triangles)return[position,placeIn(
-Math.floor(near[1]),s,Math.max(t,0))];let[rows,columns]=geometry.shape,at=(of,count2)=>{let[own,one,two]=nodes.map(of);return clamp(
-own+s*(one-own)+t*(two-own),0,count2-1)};return[position,[at(n=>n%columns,columns),at(n=>Math.floor(n/columns),rows)]]}function valuesAt(scene,moment,place){
-let{header,parts}=scene,{scalars,geometry}=header,corners=cornersOn(scene,place),cell=geometry.triangles?Math.floor(place[1]):
-corners[0][0],[from,to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[
-scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.
-name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.
-name]=each.flat?value(cell):interpolated(corners,value)}return values}var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
+i,j]){let{pyramid,geometry,mesh,formula}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,
+side=mesh.tileCells*(pyramid?.tileBlocks??0),finer=formula?2**(pyramid?.depth??0):1,at=(n,tile,nodes)=>fullIndex(n+tile*
+side,level,nodes)/finer;return[at(i,column,columns),at(j,row2,rows)]}function onRay(scene,near,[start,along2]){let{geometry}=scene.
+header,{data}=scene.part("position"),nodes=scene.cornersAt(near).map(([node])=>node),[a,b,c]=nodes.map(n=>add(fromFrame(
+geometry.frame,[...data.subarray(3*n,3*n+3)]),geometry.center)),[first,second]=[subtract2(b,a),subtract2(c,a)],normal=cross2(
+first,second),position=add(start,along2,dot2(normal,subtract2(a,start))/dot2(normal,along2)),way=subtract2(position,a),[
+s,t]=[cross2(way,second),cross2(first,way)].map(each=>dot2(each,normal)/dot2(normal,normal));if(!(Math.max(Math.abs(s),Math.
+abs(t))<FARTHEST)){let about=nodeAt(scene,near);return[add(start,along2,dot2(subtract2(about,start),along2)/dot2(along2,
+along2)),near]}if(geometry.triangles)return[position,placeIn(Math.floor(near[1]),s,Math.max(t,0))];let[rows,columns]=geometry.
+shape,at=(of,count2)=>{let[own,one,two]=nodes.map(of);return clamp(own+s*(one-own)+t*(two-own),0,count2-1)};return[position,
+[at(n=>n%columns,columns),at(n=>Math.floor(n/columns),rows)]]}function valuesAt(scene,moment,place){let{header,parts}=scene,
+{scalars,geometry}=header,corners=cornersOn(scene,place),cell=geometry.triangles?Math.floor(place[1]):corners[0][0],[from,
+to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[scalars,
+...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
+null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
+each.flat?value(cell):interpolated(corners,value)}return values}var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
 shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(let n=0;n<positions2.length;n+=3){if(Number.
 isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
 Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
@@ -1207,7 +1208,7 @@ place[1]);away<least&&([kind,least]=[structure?.kinds[number]?.name??"",away])}r
 before,after,between3]){return between3<.5?before:after}var USERS={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
 "cmap"],image:["image"],step:["step"],scalars:["scalar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*
 (4/3),CORNERS_WIDTH=2048,ARRAYS=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=count+=1;constructor(graphics,header,parts,tile=null){
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
 this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
 header,parts)}isReady(settings,smooth=!1){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[
@@ -1228,11 +1229,11 @@ geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geome
 shape[2]],step:image?[...image.stepSize].reverse():[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
 let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
 ["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
-planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.
-every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,
-trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.
-resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,
-trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),this.
+wanted=steps,steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,
+this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||
+this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
+step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
 tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
 get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
 advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
@@ -1244,12 +1245,12 @@ parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is mis
 step]=name.split("/");["position","cells","triangles"].includes(kind)&&this.arrows.forget();let sliced=["slices","extra",
 "flow"].includes(kind);!sliced&&kind!=="scalars"&&(this.earth.forget(name),this.version+=1,this.most=null),BODY_PARTS.includes(
 kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(
-kind)&&this.dropSlices(NaN,NaN)}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.
-users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
-for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),
-this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(
-name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
-resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
+kind)&&(this.wanted=[],this.dropSlices(NaN,NaN))}drop(name){let resource=this.resources.get(name);this.resources.delete(
+name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.
+delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.
+dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.
+parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
 graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
 key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
 whole&&graphics.common.set(whole,resource),object}get blocks(){return this.part("mesh")}get doublings(){let{geometry,mesh}=this.
@@ -1298,18 +1299,18 @@ gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,s
 {width,height,layers,channels,levels}=size;makeLayers(gl,texture,size),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let format=channels===
 1?gl.RED:gl.RGBA;for(let n=0;n<layers;n+=1)gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,0,0,0,n,width,height,1,format,gl.HALF_FLOAT,
 layer(n));levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.steps?
-after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(
-name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.header,steps=String(
-this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,this.dropSlices(before,
-after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.slices(after)),this.bind(
-"u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",image.repeat));let colours=texelsOf(
-this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.
-beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);this.bind("u_shares",scalars.
-name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(image?.alongI??[],
-image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,image.alongJ.length),
-along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(target,
-gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;let all=new data.constructor(
-length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+after+1:0,kept=[before,after,next,after+1,...this.wanted];for(let name of[...this.resources.keys()])name.startsWith("sli\
+ces/")&&!kept.includes(stepOf(name))&&this.drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.
+header,steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,
+this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.
+slices(after)),this.bind("u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",
+image.repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table(
+"cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);
+this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(
+image?.alongI??[],image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,
+image.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
+texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;
+let all=new data.constructor(length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){
@@ -1356,12 +1357,12 @@ keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of value
 values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.source?.memory??BUDGET_BYTES)&&
 used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.
 parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(
-tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];constructor(view){this.view=view,
-this.renderer=new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2 with flo\
-ating-point targets, which are needed to draw the picture.","Turn on hardware acceleration in its settings, or use a rec\
-ent Firefox, Chrome or Safari.")}open(header){let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.
-parts),this.tiles=new Tiles(view,this.scene),this.places=new Places(view.graphics)}leave(){this.tiles?.dispose(),this.scene?.
-dispose(),this.places?.dispose(),this.tiles=this.scene=this.places=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
+tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];isLate=!1;constructor(view){this.
+view=view,this.renderer=new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL\
+2 with floating-point targets, which are needed to draw the picture.","Turn on hardware acceleration in its settings, or\
+ use a recent Firefox, Chrome or Safari.")}open(header){let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,
+view.parts),this.tiles=new Tiles(view,this.scene),this.places=new Places(view.graphics)}leave(){this.tiles?.dispose(),this.
+scene?.dispose(),this.places?.dispose(),this.tiles=this.scene=this.places=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
 this.renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
 let layers=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),layers}get smooth(){
 let{header,options}=this.view;return options.smooth!==void 0||!header?options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get isComing(){
@@ -1370,26 +1371,26 @@ after)??[]}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lack
 next=steps,!this.missing(steps).length&&!!this.scene?.make(steps,until)}available(until){let{view,scene,shown,lacking}=this,
 {header,player}=view;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+
 n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]);steps.length&&view.requests.hasSteps&&
-!view.options.isComing?.()&&view.requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until),
-marks=view.requests.hasMarks?scene.marks.lacking(view.settings,moment):[];return view.options.isComing?.()||view.requests.
-wantMarks(marks),view.root.dataset.lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,isMade,
-this.renderer.leavesOut,marks.length>0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.
-slice(0,2))!==String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),
-shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header),still=!this.view.player.playing){
-let{fullVertex,fragment}=header.shaders,variant=variantOf(header,this.view.settings,isClose,still);return this.view.graphics.
-programs.get(fullVertex,fragment,...variant)}isClose(header){let{view}=this;if(!view.camera)return!1;let seen=view.view(
-[0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).
+!view.options.isComing?.()&&view.requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);
+this.isLate=!isMade;let marks=view.requests.hasMarks?scene.marks.lacking(view.settings,moment):[];return view.options.isComing?.()||
+view.requests.wantMarks(marks),view.root.dataset.lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,
+isMade,this.renderer.leavesOut,marks.length>0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(
+moment.slice(0,2))!==String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.
+request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header),still=!this.view.
+player.playing){let{fullVertex,fragment}=header.shaders,variant=variantOf(header,this.view.settings,isClose,still);return this.
+view.graphics.programs.get(fullVertex,fragment,...variant)}isClose(header){let{view}=this;if(!view.camera)return!1;let seen=view.
+view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).
 some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,{graphics,header}=view;if(graphics.isLost||
 !graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.next=[],view.advance(now);let shown=this.
-available(until);view.camera||view.place();let program=this.program(header);if(scene.prepare(),!shown||!view.camera)return;
-if(program.error)return view.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.
-ready||!scene.isReady(view.settings,this.smooth))return view.request();let isComplete=!view.sharp&&this.renderer.draw(program,
-shown,until);isComplete&&(header.slices.critical&&this.program(header,!0),view.player.varies&&this.program(header,this.isClose(
-header),!1)),view.painted(isComplete)}get canPick(){return!!this.places?.width&&!this.view.graphics.isLost}find(x,y){let{
-tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.length&&shown?this.renderer.placeAt(shown,x,y):null;if(!at||
-!camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,[x,y]),pointed={place:[x,y],position:found.
-point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.at(pointed,camera,view.settings,shown),
-found}};var SceneView=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=sharedGraphics();lifetime=new Lifetime;held=new HeldParts(
+available(until);view.camera||view.place();let program=this.program(header);if(scene.prepare(),!shown||!view.camera||this.
+isLate&&view.sharp)return;if(program.error)return view.panel.fail("The shader does not compile with this graphics driver\
+.",program.error);if(!program.ready||!scene.isReady(view.settings,this.smooth))return view.request();let isComplete=!view.
+sharp&&this.renderer.draw(program,shown,until);isComplete&&(header.slices.critical&&this.program(header,!0),view.player.
+varies&&this.program(header,this.isClose(header),!1)),view.painted(isComplete)}get canPick(){return!!this.places?.width&&
+!this.view.graphics.isLost}find(x,y){let{tiles,shown,scene,view}=this,{camera}=view,at=tiles?.layers.length&&shown?this.
+renderer.placeAt(shown,x,y):null;if(!at||!camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,
+[x,y]),pointed={place:[x,y],position:found.point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.
+at(pointed,camera,view.settings,shown),found}};var SceneView=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=sharedGraphics();lifetime=new Lifetime;held=new HeldParts(
 this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;dispose(){this.lifetime.isOver||(this.lifetime.
 end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.
 painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&
@@ -1609,45 +1610,48 @@ height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chosen=null;read=null;asked=0;later=null;drawn=null;constructor(host){
+"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chosen=null;read=null;asked=0;later=null;hasNumbers=!0;drawn=null;constructor(host){
 this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
 utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
 "div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
-canPick,options}=this.host;if(lifetime.cancel(this.later),options.streamed)return this.close(),this.ask({place:[x,y]}),null;
-if(!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.
-host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),found&&options.reader?this.ask(found.
-point):(this.chosen=found,this.update()),found?.point??null}async ask(at){let{options,header}=this.host,number=this.asked+=
-1,found=await options.reader?.(at,!0).catch(()=>null),{camera}=this.host;if(number!==this.asked||header!==this.host.header||
-!header||!camera)return;if(!found?.path)return this.close();"place"in at&&options.onPoint?.(found.point),this.read=found.
-point;let{point,path}=found;this.tell(point,path,header,camera),this.share(path,point.position,[],found.alone?[{card:this}]:
-this.host.together)}share(path,point,samples,views=this.host.together){for(let{card}of views)card.drawn={path,point,samples},
-card.draw()}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
-this.drawn=this.read=null,this.asked+=1,this.element.hidden=!0,this.overlay.replaceChildren(),this.host.options.explainer?.
-clear()}update(){let{chosen}=this;if(this.read)return void this.ask(this.read);let{options,camera,shown,header,tiles,settings,
-stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.
-layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.position,exact=requests.trajectory(position);
-if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now={...exact,sampled:[],directed:!0};return this.
-tell({...point,values:{}},now,header,camera),this.share(now,position,[])}let at={scene,moment:shown,place,position},path={
-...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(at,this.host.parts.get("lonla\
-t"))??void 0;this.tell({...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2},path,header,camera);let pixel={
-at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(path,position,samples)}tell(point,{
-velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,label=eastNorth2?"speed":header.speed.
-label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.position,header,this.host.parts,camera,
-!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),
-unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,
-VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll(
-"|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.
-entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
-withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark),this.list.replaceChildren(...[
-...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==
-void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
-placeOf2=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
-let lines2=[[]];for(let place of points.map(placeOf2))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf2(drawn.point),{samples}=drawn,most=Math.max(
-...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf2(position);return place?
-[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
-sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>shape(
-tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+canPick,options,together}=this.host;if(lifetime.cancel(this.later),!options.streamed&&!canPick&&performance.now()<until)
+return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;this.close();for(let{card}of together)card!==
+this&&card.begin(x,y,!1);return this.begin(x,y,!0)?.point??null}begin(x,y,hasNumbers){let{options}=this.host;if(this.hasNumbers=
+hasNumbers,options.streamed)return this.ask({place:[x,y]}),null;let found=this.host.find(x,y);return found?(hasNumbers&&
+options.onPoint?.(found.point),options.reader?this.ask(found.point):(this.chosen=found,this.update()),found):null}async ask(at){
+let{options,header}=this.host,number=this.asked+=1,found=await options.reader?.(at,!0).catch(()=>null),{camera}=this.host;
+if(number!==this.asked||header!==this.host.header||!header||!camera)return;if(!found?.path)return this.hasNumbers?this.close():
+this.clear();"place"in at&&this.hasNumbers&&options.onPoint?.(found.point),this.read=found.point;let{point,path}=found;this.
+tell(point,path,header,camera),this.show(path,point.position,[])}show(path,point,samples){this.drawn={path,point,samples},
+this.draw()}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
+this.read=null,this.asked+=1,this.hide(),this.host.options.explainer?.clear()}hide(){this.drawn=null,this.element.hidden=
+!0,this.overlay.replaceChildren()}update(){let{chosen}=this;if(this.read)return void this.ask(this.read);let{options,camera,
+shown,header,tiles,settings,stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,
+layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.position,exact=requests.
+trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now2={...exact,sampled:[],
+directed:!0};return this.tell({...point,values:{}},now2,header,camera),this.show(now2,position,[])}let at={scene,moment:shown,
+place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(at,this.
+host.parts.get("lonlat"))??void 0,now={...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2};this.report(now),
+this.tell(now,path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(
+pixel)??[];this.show(path,position,samples)}report(point){let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(chosen.
+point.values)===JSON.stringify(point.values)||(this.chosen={...chosen,point:{...chosen.point,values:point.values}},this.
+host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,
+label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.
+position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set(
+"eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),
+unit3))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),
+lines.set(label.replace("speed","velocity").replaceAll("|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(
+size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
+each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.
+set("critical point",point.mark),this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom(
+"dd",{},[value])])),this.element.hidden=!this.hasNumbers||this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,
+stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf3=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf3))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf3(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf3(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -2053,50 +2057,54 @@ canvas.getContext("2d",{alpha:!1})}frame(now){let{view}=this;view.camera||view.p
 picture,left,0,width,picture.height,0,0,canvas.width,canvas.height),this.isPainted=!0,panel.wait([],!0,!isSharp),view.painted(
 isSharp)}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn2(element,event){
 let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
-box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;asked=null;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
+box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;asked=null;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;pointed=null;lastPointed=-1/0;constructor(viewer){
 this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
 options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
 event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
-"pointercancel",event=>this.onUp(event)),listen("pointerleave",()=>viewer.panel.read(null)),listen("contextmenu",event=>event.
-preventDefault()),listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>{viewer.card.close(),this.zoom(2,event)}),
-lifetime.listen(root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().
-includes(root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wh\
-eel",release,{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){
-this.viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.
-viewer;return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
+"pointercancel",event=>this.onUp(event)),listen("pointerleave",()=>this.leave()),listen("contextmenu",event=>event.preventDefault()),
+listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>{viewer.card.close(),this.zoom(2,event)}),lifetime.listen(
+root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().includes(
+root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wheel",release,
+{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){this.
+viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.viewer;
+return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
 return placeIn2(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
 {preventScroll:!0,focusVisible:!1}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),
 this.down.set(event.pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
-this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
-viewer;if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
+this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera}=this.viewer;
+if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
 (this.lastPointed=performance.now()),!old)return this.hover(place);if(Math.hypot(event.clientX-this.press.x,event.clientY-
 this.press.y)>CLICK_PX&&(this.press.isDrag=!0),!this.press.isDrag)return;let before=this.middle();this.down.set(event.pointerId,
 place);let now=this.middle();this.down.size>1?(camera.pan(before.x-now.x,before.y-now.y),before.apart>0&&camera.zoomBy(now.
 apart/before.apart,now.x,now.y)):camera.flat===this.isOther?camera.rotate(place.x-old.x,place.y-old.y):camera.pan(old.x-
-place.x,old.y-place.y),panel.read(null),this.viewer.reportCamera()}middle(){let[a,b=a]=[...this.down.values()],aspect=this.
-viewer.camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){
-let place=this.down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.
-remove("flowtex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;
-!place||this.press.isDrag||!isQuick||event.button!==0||this.viewer.panel.read(this.viewer.card.choose(place.x,place.y))}onWheel(event){
-if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);
-return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(
--event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
-let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
-viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
-performance.now();let{x,y}=place,{streamed,reader}=viewer.options;if(streamed){let asked=this.asked={},show=point=>{asked===
-this.asked&&!this.down.size&&viewer.panel.read(point,viewer.ground(x,y))};reader?.({place:[x,y]},!1).then(found=>show(found?.
-point??null),()=>null)}else viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
-player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){
-let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
-test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
-event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
-if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
-camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;
-camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
-"next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
-lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class extends SceneView{options;requests;player=new Player;stage=document.
-createElement("div");card=new PointCard(this);panel;pointers;header=null;settings={};frames=0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
+place.x,old.y-place.y),this.leave(),this.viewer.reportCamera()}leave(){this.pointed=this.asked=null,this.viewer.lifetime.
+cancel(this.look),this.viewer.panel.read(null)}outdate(){this.pointed&&(this.asked=null,this.viewer.panel.read(null))}again(){
+this.pointed&&!this.down.size&&this.hover(this.pointed)}middle(){let[a,b=a]=[...this.down.values()],aspect=this.viewer.camera?.
+aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){let place=this.
+down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.remove("flowt\
+ex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;!place||
+this.press.isDrag||!isQuick||event.button!==0||(this.pointed=place,this.viewer.panel.read(this.viewer.card.choose(place.
+x,place.y)))}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.now()-this.lastPointed<POINTED_MS&&
+this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.
+deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??
+1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){
+let{viewer}=this;this.pointed=place,viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),
+look=()=>{this.look=null,this.lastLook=performance.now();let{x,y}=place,{streamed,reader}=viewer.options;if(streamed){let asked=this.
+asked={},show=point=>{asked===this.asked&&!this.down.size&&viewer.panel.read(point,viewer.ground(x,y))};reader?.({place:[
+x,y]},!1).then(found=>show(found?.point??null),()=>null)}else viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(
+x,y),viewer.ground(x,y)):viewer.player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.
+sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==
+root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||
+isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,
+{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].
+map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.reportCamera()}else if(command===
+"closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
+reportCamera()}else if(command==="whole")viewer.reset();else if(command==="next"||command==="previous")viewer.step(command===
+"next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===
+FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.
+fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),placeOf2=({geometry:{center,extent,
+shape:shape2}})=>[center,extent,shape2],Viewer=class extends SceneView{options;requests;player=new Player;stage=document.
+createElement("div");card=new PointCard(this);panel;pointers;header=null;settings={};frames=0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;toldMoment="";firstCamera=null;keptCamera=null;constructor(element,options={}){
 super(),this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowte\
 x",root.tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-\
 lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.panel=new Panel(this);let make=options.painter??
@@ -2113,60 +2121,62 @@ panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requ
 generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
 this.given=header,header={...header,...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.
 own},this.player.setHeader(header),this.requests.setHeader(header),this.painter.open?.(header);let isElsewhere=!old||!isSamePlace(
-old.geometry,header.geometry);isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.
-camera]=[this.keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&
-!keepsCamera||name.includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),
-this.change()}keepParts(names){for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.
-remove(name),this.scene?.forget(name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.
-assign(this.header,colours),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),
-this.panel.showLegend(),this.change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.
-isOnPage=colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.
-options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{
-colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
-let isOther=super.setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),
-isOther}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
-this.settings,settings),this.requests.follow(this.settings)&&(this.renew(),this.panel.showLegend(),this.card.update()),this.
-panel.update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),
-this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||
-this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
-name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):
-null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
-this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
-change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
-this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
-parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
-pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
-showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
-max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
-this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
-null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
-let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
-player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
-this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
-time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
-this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
-varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
-this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
-playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
-this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
-return performance.now()<this.busyUntil}change(cameraOnly=!1){let parts=this.camera&&this.requests.formula?.look(this.camera,
-this.parts.keys());for(let part of parts??[])this.setPart(part);this.painter.restart?.(cameraOnly),this.card.draw(),this.
-panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){
-this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&
-(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&(this.header?.slices.times.
-length??1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}setSharp(sharp){
-sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}resize(){
-let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
-map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
-painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
-this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
-Math.max(this.stage.clientHeight,1)}lost(){super.lost(),this.root.dataset.sharp="false"}get shown(){return this.painter.
-shown??null}get lacking(){return this.painter.lacking??[]}tell(reason){this.panel.tell(reason)}fail(error){this.pause(),
-this.panel.fail("The picture could not be drawn.",String(error))}advance(now){let{player,options,painter}=this,isMade=steps=>painter.
-make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.
-onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}get rows(){return this.stage.clientHeight}get canPick(){
-return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&
-camera&&groundAt(header,camera,x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+old.geometry,header.geometry);old&&!isEqual2(placeOf2(old),placeOf2(header))&&(isElsewhere||!this.options.reader)&&this.
+card.close(),isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?
+null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&!keepsCamera||name.
+includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),this.change()}keepParts(names){
+for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.remove(name),this.scene?.forget(
+name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),Object.
+assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.showLegend(),this.
+change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.background===
+null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.onColours)return this.
+options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
+header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let isOther=super.setPart(
+part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),isOther}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+requests.follow(this.settings)&&(this.renew(),this.panel.showLegend(),this.card.update()),this.panel.update(),this.change())}renew(){
+this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&
+this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
+this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
+this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
+!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
+let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
+let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
+x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
+this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
+clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
+let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
+first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
+player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
+options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
+setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
+player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
+playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
+this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
+pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
+performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){let parts=this.camera&&
+this.requests.formula?.look(this.camera,this.parts.keys());for(let part of parts??[])this.setPart(part);this.painter.restart?.(
+cameraOnly),cameraOnly||this.pointers.outdate(),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){
+this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){
+this.root.dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),
+this.followMoment(),this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}followMoment(){let moment=String(
+this.shown);moment!==this.toldMoment&&(this.toldMoment=moment,this.playing&&this.options.reader?this.card.hide():this.card.
+update())}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.
+update(),this.pointers.again(),this.options.onFrame?.()))}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,
+clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.
+canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.
+width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.
+start)&&this.place()),this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){super.
+lost(),this.root.dataset.sharp="false"}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??
+[]}tell(reason){this.panel.tell(reason)}fail(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
+error))}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.
+advance(now,isMade)||(player.varies?(options.onTime?.(player.time),this.pointers.outdate()):options.onClock?.(player.clock),
+this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}get rows(){return this.stage.clientHeight}get canPick(){return this.
+painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&
+groundAt(header,camera,x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

@@ -410,15 +410,16 @@ r.map((u,p)=>u-l[p])),m=Mr(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[
 c,...o):$i(l,...o),m=t.ray(n,s),u=cs(i.scene,h,m)[1],[p,f]=cs(i.scene,u,m),d=as(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
 d:ji(e.header,i,d);return{point:{position:p,index:g,values:Yi(i.scene,r,d)},layer:i,place:d}}function $i({rows:a,columns:e,
 shape:t},r,n){let s=(i,{size:o,before:c},l)=>A(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function ji(a,{key:e},[t,
-r]){let{pyramid:n,geometry:s,mesh:i}=a,[o,c,l]=e,[h,m]=n?.shapes[0]??s.shape,u=i.tileCells*(n?.tileBlocks??0),p=(f,d,g)=>pt(
-f+d*u,o,g);return[p(t,l,m),p(r,c,h)]}function cs(a,e,[t,r]){let{geometry:n}=a.header,{data:s}=a.part("position"),i=a.cornersAt(
-e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(
-t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.max(Math.abs(d),Math.abs(g))<Wi)){
-let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(e[1]),d,Math.max(g,0))];let[y,b]=n.
-shape,v=(x,w)=>{let[M,_,S]=i.map(x);return A(M+d*(_-M)+g*(S-M),0,w-1)};return[p,[v(x=>x%b,b),v(x=>Math.floor(x/b),y)]]}function Yi(a,e,t){
-let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=is(a,t),c=i.triangles?Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.
-map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===
-null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=f.flat?b(c):bt(o,b)}return u}var Xi=3,hs=5;function ms({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
+r]){let{pyramid:n,geometry:s,mesh:i,formula:o}=a,[c,l,h]=e,[m,u]=n?.shapes[0]??s.shape,p=i.tileCells*(n?.tileBlocks??0),
+f=o?2**(n?.depth??0):1,d=(g,y,b)=>pt(g+y*p,c,b)/f;return[d(t,h,u),d(r,l,m)]}function cs(a,e,[t,r]){let{geometry:n}=a.header,
+{data:s}=a.part("position"),i=a.cornersAt(e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),
+[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.
+max(Math.abs(d),Math.abs(g))<Wi)){let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
+e[1]),d,Math.max(g,0))];let[y,b]=n.shape,v=(x,w)=>{let[M,_,S]=i.map(x);return A(M+d*(_-M)+g*(S-M),0,w-1)};return[p,[v(x=>x%
+b,b),v(x=>Math.floor(x/b),y)]]}function Yi(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=is(a,t),c=i.triangles?
+Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
+l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=
+f.flat?b(c):bt(o,b)}return u}var Xi=3,hs=5;function ms({shape:a,triangles:e},t,r,n){let[s,i]=t.shape,o=new Int8Array(s*i).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let m of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let u of[Math.floor((h-1)/n),Math.floor(h/n)])m>=0&&m<s&&u>=0&&u<i&&(o[m*i+u]=0)}return o}function us({
 shape:a,data:e},t,r,n,s){let[i,o]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(i*o).fill(-1),h=[1,1,-1,-1];for(let m=0;m<
@@ -723,86 +724,86 @@ return u}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("
 buffer=this.drawn=null}};function Tr([a,e,t]){return t<.5?a:e}var Eo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
 "cmap"],image:["image"],step:["step"],scalars:["scalar"]},Cs=["padded","unit","open","nearest","rays"],So=8*(4/3),Ao=2048,
 To=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],_o=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";number=_o+=1;constructor(e,t,r,n=null){this.tile=
-n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Lt(e,t,r),this.bodies=new Rt(e,t,r),this.arrows=new Pt(e,t,r),
-this.marks=new kt(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(o=>this.arrows.program(e,o));return[...["place","surface","sm\
-ooth","probe"].filter(o=>t||o!=="smooth").map(o=>this.programs(o).ready),this.earth.isReady,this.bodies.isReady,this.marks.
-isReady(e)].every(Boolean)&&r.every(o=>o?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,image:i,pyramid:o,formula:c}=this.
-header,{trace:l}=n,h=["mesh",...l?.parts??["position",...r.planar?[]:["normal"]]];o&&!c&&h.push("places"),this.header.bodies?.
-runs.length&&h.push(...Ce),r.triangles&&h.push("triangles","blocks");for(let m of new Set([e,t]))l?h.push(...ie(this.header,
-m).map(u=>`flow/${u}`)):h.push(`slices/${m}`),n.channels===2&&h.push(`extra/${m}`);return h.push(...this.scalarParts(e,t)),
-s.name!==null&&h.push("cmap"),i&&h.push("image","step"),[...new Set(h)].filter(m=>!this.fits(m))}lacking(e){let t=this.missing(
-e,e).map(r=>r.startsWith("flow/")?Y(r):e);return[...new Set(t)]}scalarParts(e,t,r=this.header.scalars){let{name:n,steps:s,
-number:i}=r;if(n===null)return[];let o=i?`/${i}`:"";return(s>1?[e,t]:[0,0]).map(c=>`scalars/${c}${o}`)}fits(e){let t=this.
-parts.get(e);if(!t)return!1;let{geometry:r,slices:n,image:s,mesh:i}=this.header,o=r.shape.map(m=>Math.max(Math.ceil((m-1)/
-i.tileCells),1)),c=n.trace?.nodes??[],h={flow:[...c,t.shape[2]],unit:c,padded:[...c.map(m=>m+2),3],slices:[n.count,r.rows.
-size,r.columns.size,n.channels],position:[...r.shape,3],mesh:r.triangles?t.shape:[...o,t.shape[2]],step:s?[...s.stepSize].
-reverse():[]}[e.split("/")[0]];return!h||String(h)===String(t.shape)}make(e,t){let{slices:r,geometry:n}=this.header,{trace:s}=r;
-if(!s)return!0;let i=this.part("padded"),o=c=>this.key(["padded"],c,s);return this.put("position",o("position"),()=>_n(i,
-s,n.shape)),!n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Pn(i,s,n.shape)),e.every(c=>this.trace(
-c,t))}prepare(){let{trace:e}=this.header.slices;e&&st(this.graphics,this.header,e)}trace(e,t){let{graphics:r,header:n}=this,
-{trace:s,lags:i,sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(n,e).map(u=>`flow/${u}`),
-h=this.key([...l,...Cs],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){let{tracings:u}=r,p=h||`${this.
-number} ${e}`;this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=u.get(p)??new at(r,n,s,f,e);if(u.set(this.
-tracing=p,d),m=d.advance(t),!m)return!1;this.stopTracing()}return this.take(c,"Texture",h,()=>m,()=>{}),!0}put(e,t,r){let{
-graphics:n,parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),digest:t};n.release(s.get(e)),
-s.set(e,n.hold(i)),this.forget(e)}isMade(e){return!this.missing(e[0],e[e.length-1]).length&&(!this.header.slices.trace||
-this.isLoaded(e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),
-this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of the scene is missing`);return t}forget(e){
-let[t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.forget();let n=["slices","extra","flow"].
-includes(t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=null),Ce.includes(t)&&this.bodies.dispose();
-for(let s of n?[`slices/${r}`]:Eo[t]??[])this.drop(s);Cs.includes(t)&&this.dropSlices(NaN,NaN)}drop(e){let t=this.resources.
-get(e);this.resources.delete(e),t&&(t.users-=1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(
-t.key)))}dispose(){for(let e of[...this.resources.keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.
-dispose(),this.arrows.dispose(),this.marks.dispose()}key(e,...t){let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"n\
-one");return r.every(Boolean)?JSON.stringify([r,t]):""}take(e,t,r,n,s){let i=this.resources.get(e);if(i)return i.object;
-let{graphics:o}=this,c=r&&`${e.split("/")[0]} ${r}`,l=c?o.common.get(c):void 0,h=l?.object??o.counted(n()),m=l??{kind:t,
-object:h,count:0,key:c,users:0};return m.users+=1,this.resources.set(e,m),l||(m.count=s(h)||0),c&&o.common.set(c,m),h}get blocks(){
-return this.part("mesh")}get doublings(){let{geometry:e,mesh:t}=this.header;return this.most??=ms(e,this.blocks,this.part(
-"position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.header.geometry;return t?jn(this.part("triangle\
-s").data,e):Wn(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`slices/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.
-header;return e.trace?[...this.resources.keys()].filter(n=>n.startsWith("slices/")).length*So*e.count*t.rows.size*t.columns.
-size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.
-header.geometry;e.some((m,u)=>m!==this.anchor[u])&&this.drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture(
-"nodes",this.key(["position","normal"],o,e),m=>{or(t,o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?
-3:6)*o*i);u.set(dt(this.part("position").data,e)),s||u.set(Gn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(
-t.TEXTURE_2D_ARRAY,0,t.RGB32F,...p,0,t.RGB,t.FLOAT,u),Us(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.
-of(1),h=n?this.table("cells",this.key(["triangles","blocks"]),t.RGBA32UI,Ao,()=>$n(this.part("triangles").data,this.part(
-"blocks").data)):this.table("cells",this.key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",
-c),this.bind(n?"u_corners":"u_open",h)}get nodesSize(){let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?
-[r.size,n.size]:e}bind(e,t){let r=this.graphics.context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(To.includes(
-e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,
-o={[i.RGBA32UI]:[i.RGBA_INTEGER,i.UNSIGNED_INT,4],[i.R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],
-[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},[c,l,h]=o[r];return this.texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(
-i.TEXTURE_2D,m),i.pixelStorei(i.UNPACK_ALIGNMENT,1);let f=Po(u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Us(i,i.
-TEXTURE_2D)})}shares(e,t){let{geometry:r,scalars:n}=this.header,{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["tr\
-iangles",...new Set(i)],s,n.low,n.high,n.log),()=>gt(i.map(l=>this.part(l).data),n)]}texture(e,t,r){let n=this.graphics.
-context;return this.take(e,"Texture",t,()=>n.createTexture(),r)}slices(e){let{slices:t,geometry:r}=this.header,n=this.key(
-[`slices/${e}`,`extra/${e}`],r.levels,t.extra);return this.texture(`slices/${e}`,n,s=>{let i=this.part(`slices/${e}`),[o,
-c,l,h]=i.shape,m=i.data,u=this.parts.get(`extra/${e}`)?.data,p=c*l,f=d=>{let g=m.subarray(d*p*h,(d+1)*p*h);if(h===4)return g;
-let y=new Uint16Array(4*p),b=t.extra.indexOf(d),v=b<0?null:u?.subarray(b*p,(b+1)*p);for(let x=0;x<p;x+=1)y[4*x]=g[2*x],y[4*
-x+1]=g[2*x+1],v&&(y[4*x+3]=v[x]);return y};this.fill(s,{width:l,height:c,layers:o,channels:4,levels:r.levels},f)})}programs(e){
-let{programs:t}=this.graphics,{vertex:r,place:n,fullVertex:s,surface:i,probe:o}=this.header.shaders;return e==="smooth"?
-t.get(r,i,"FLOWTEX_SMOOTH"):e==="place"?t.get(r,n):t.get(s,e==="probe"?o:i)}texels(e,t){let{graphics:r,header:n}=this,s=r.
-context,{slices:i,geometry:o}=n,c=o.columns.size,l=this.slices(e),h=()=>{s.activeTexture(s.TEXTURE0),s.bindTexture(s.TEXTURE_2D_ARRAY,
-l),s.bindVertexArray(null);let p=t.flatMap(f=>[f%c,Math.floor(f/c)]);r.programs.use(this.programs("probe"),{u_texels:p}),
-s.drawArrays(s.TRIANGLES,0,3)},m=r.numbers(h,t.length,i.count),u=new Float32Array(m.buffer);return(p,f)=>{let[d,g,y,b]=u.
-subarray(4*(p*t.length+f));return[d,g,y,b]}}image(e,t){let r=this.graphics.context;return this.texture(e,this.key([e],t),
-n=>{let{data:s,shape:i}=this.part(e),[o,c,l=1]=i,h=Math.floor(Math.log2(Math.max(c,o))),m={width:c,height:o,layers:1,channels:l,
-levels:h};this.fill(n,m,()=>s);let u=p=>t[p]?r.REPEAT:r.CLAMP_TO_EDGE;r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_S,
-u(1)),r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_T,u(0))})}fill(e,t,r){let n=this.graphics.context,{width:s,height:i,
-layers:o,channels:c,levels:l}=t;Qe(n,e,t),n.pixelStorei(n.UNPACK_ALIGNMENT,1);let h=c===1?n.RED:n.RGBA;for(let m=0;m<o;m+=
-1)n.texSubImage3D(n.TEXTURE_2D_ARRAY,0,0,0,m,s,i,1,h,n.HALF_FLOAT,r(m));l&&n.generateMipmap(n.TEXTURE_2D_ARRAY)}dropSlices(e,t){
-let r=t+1<this.header.slices.steps?t+1:0;for(let n of[...this.resources.keys()])n.startsWith("slices/")&&([e,t,r,t+1].includes(
-Y(n))||this.drop(n))}bindTextures(e,t){let r=this.graphics.context,{image:n,scalars:s}=this.header,i=String(this.scalarParts(
-e,t));i!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=i,this.dropSlices(e,t),this.bind("u_slices",this.slices(
-e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_image",n&&this.image("image",[!0,!0])),this.bind("u\
-_stepImage",n&&this.image("step",n.repeat));let o=ln(this.parts.get("cmap")?.data??new Uint8Array(4),s);this.bind("u_cma\
-p",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,o.length/4,()=>o));let[c,l]=this.shares(e,t);this.bind("u_sha\
-res",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>Hn(n?.alongI??[],n?.alongJ??[]);this.
-bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),h))}};function Us(a,e){a.texParameteri(
-e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Po(a,e){if(a.length===e)return a;
-let t=new a.constructor(e);return t.set(a),t}var Ro=60,Lo=25,ko=9e8,Oo=3.5,Fo={slices:4,flow:24},Ot=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=_o+=1;constructor(e,t,r,n=null){
+this.tile=n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Lt(e,t,r),this.bodies=new Rt(e,t,r),this.arrows=new Pt(
+e,t,r),this.marks=new kt(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(o=>this.arrows.program(e,o));return[...["place","surfa\
+ce","smooth","probe"].filter(o=>t||o!=="smooth").map(o=>this.programs(o).ready),this.earth.isReady,this.bodies.isReady,this.
+marks.isReady(e)].every(Boolean)&&r.every(o=>o?.ready??!0)}missing(e,t){let{geometry:r,slices:n,scalars:s,image:i,pyramid:o,
+formula:c}=this.header,{trace:l}=n,h=["mesh",...l?.parts??["position",...r.planar?[]:["normal"]]];o&&!c&&h.push("places"),
+this.header.bodies?.runs.length&&h.push(...Ce),r.triangles&&h.push("triangles","blocks");for(let m of new Set([e,t]))l?h.
+push(...ie(this.header,m).map(u=>`flow/${u}`)):h.push(`slices/${m}`),n.channels===2&&h.push(`extra/${m}`);return h.push(
+...this.scalarParts(e,t)),s.name!==null&&h.push("cmap"),i&&h.push("image","step"),[...new Set(h)].filter(m=>!this.fits(m))}lacking(e){
+let t=this.missing(e,e).map(r=>r.startsWith("flow/")?Y(r):e);return[...new Set(t)]}scalarParts(e,t,r=this.header.scalars){
+let{name:n,steps:s,number:i}=r;if(n===null)return[];let o=i?`/${i}`:"";return(s>1?[e,t]:[0,0]).map(c=>`scalars/${c}${o}`)}fits(e){
+let t=this.parts.get(e);if(!t)return!1;let{geometry:r,slices:n,image:s,mesh:i}=this.header,o=r.shape.map(m=>Math.max(Math.
+ceil((m-1)/i.tileCells),1)),c=n.trace?.nodes??[],h={flow:[...c,t.shape[2]],unit:c,padded:[...c.map(m=>m+2),3],slices:[n.
+count,r.rows.size,r.columns.size,n.channels],position:[...r.shape,3],mesh:r.triangles?t.shape:[...o,t.shape[2]],step:s?[
+...s.stepSize].reverse():[]}[e.split("/")[0]];return!h||String(h)===String(t.shape)}make(e,t){let{slices:r,geometry:n}=this.
+header,{trace:s}=r;if(!s)return!0;let i=this.part("padded"),o=c=>this.key(["padded"],c,s);return this.put("position",o("\
+position"),()=>_n(i,s,n.shape)),!n.planar&&!s.parts.includes("normal")&&this.put("normal",o("normal"),()=>Pn(i,s,n.shape)),
+this.wanted=e,e.every(c=>this.trace(c,t))}prepare(){let{trace:e}=this.header.slices;e&&st(this.graphics,this.header,e)}trace(e,t){
+let{graphics:r,header:n}=this,{trace:s,lags:i,sides:o}=n.slices,c=`slices/${e}`;if(!s||this.resources.has(c))return!0;let l=ie(
+n,e).map(u=>`flow/${u}`),h=this.key([...l,...Cs],e,s,i,o,n.geometry.levels),m=null;if(!h||!r.common.has(`slices ${h}`)){
+let{tracings:u}=r,p=h||`${this.number} ${e}`;this.tracing!==p&&this.stopTracing();let f=g=>this.parts.get(g),d=u.get(p)??
+new at(r,n,s,f,e);if(u.set(this.tracing=p,d),m=d.advance(t),!m)return!1;this.stopTracing()}return this.take(c,"Texture",
+h,()=>m,()=>{}),!0}put(e,t,r){let{graphics:n,parts:s}=this;if(s.get(e)?.digest===t)return;let i=n.stock.get(t)?.part??{...r(),
+digest:t};n.release(s.get(e)),s.set(e,n.hold(i)),this.forget(e)}isMade(e){return!this.missing(e[0],e[e.length-1]).length&&
+(!this.header.slices.trace||this.isLoaded(e))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.
+tracings.delete(this.tracing),this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of \
+the scene is missing`);return t}forget(e){let[t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.
+forget();let n=["slices","extra","flow"].includes(t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=
+null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:Eo[t]??[])this.drop(s);Cs.includes(t)&&(this.
+wanted=[],this.dropSlices(NaN,NaN))}drop(e){let t=this.resources.get(e);this.resources.delete(e),t&&(t.users-=1,!t.users&&
+(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){for(let e of[...this.resources.keys()])
+this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(e,...t){
+let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Boolean)?JSON.stringify([r,t]):""}take(e,t,r,n,s){
+let i=this.resources.get(e);if(i)return i.object;let{graphics:o}=this,c=r&&`${e.split("/")[0]} ${r}`,l=c?o.common.get(c):
+void 0,h=l?.object??o.counted(n()),m=l??{kind:t,object:h,count:0,key:c,users:0};return m.users+=1,this.resources.set(e,m),
+l||(m.count=s(h)||0),c&&o.common.set(c,m),h}get blocks(){return this.part("mesh")}get doublings(){let{geometry:e,mesh:t}=this.
+header;return this.most??=ms(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
+header.geometry;return t?jn(this.part("triangles").data,e):Wn(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`sli\
+ces/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.
+startsWith("slices/")).length*So*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
+let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.header.geometry;e.some((m,u)=>m!==this.anchor[u])&&this.
+drop("nodes"),this.anchor=e;let[i,o]=this.nodesSize,c=this.texture("nodes",this.key(["position","normal"],o,e),m=>{or(t,
+o,i),t.bindTexture(t.TEXTURE_2D_ARRAY,m);let u=new Float32Array((s?3:6)*o*i);u.set(dt(this.part("position").data,e)),s||
+u.set(Gn(this.part("normal").data),3*o*i);let p=[o,i,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,...p,0,t.RGB,t.FLOAT,
+u),Us(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table("cells",this.key(["tr\
+iangles","blocks"]),t.RGBA32UI,Ao,()=>$n(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.
+key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_corners":"u_open",h)}get nodesSize(){
+let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:e}bind(e,t){let r=this.graphics.
+context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(To.includes(e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(
+r.TEXTURE0+de.length)}table(e,t,r,n,s){let i=this.graphics.context,o={[i.RGBA32UI]:[i.RGBA_INTEGER,i.UNSIGNED_INT,4],[i.
+R8UI]:[i.RED_INTEGER,i.UNSIGNED_BYTE,1],[i.RG32F]:[i.RG,i.FLOAT,2],[i.RGBA32F]:[i.RGBA,i.FLOAT,4]},[c,l,h]=o[r];return this.
+texture(e,t,m=>{let u=s(),p=Math.ceil(u.length/h/n);i.bindTexture(i.TEXTURE_2D,m),i.pixelStorei(i.UNPACK_ALIGNMENT,1);let f=Po(
+u,h*n*p);i.texImage2D(i.TEXTURE_2D,0,r,n,p,0,c,l,f),Us(i,i.TEXTURE_2D)})}shares(e,t){let{geometry:r,scalars:n}=this.header,
+{shape:s}=r,i=this.scalarParts(e,t);return[this.key(["triangles",...new Set(i)],s,n.low,n.high,n.log),()=>gt(i.map(l=>this.
+part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Texture",t,()=>n.createTexture(),r)}slices(e){
+let{slices:t,geometry:r}=this.header,n=this.key([`slices/${e}`,`extra/${e}`],r.levels,t.extra);return this.texture(`slic\
+es/${e}`,n,s=>{let i=this.part(`slices/${e}`),[o,c,l,h]=i.shape,m=i.data,u=this.parts.get(`extra/${e}`)?.data,p=c*l,f=d=>{
+let g=m.subarray(d*p*h,(d+1)*p*h);if(h===4)return g;let y=new Uint16Array(4*p),b=t.extra.indexOf(d),v=b<0?null:u?.subarray(
+b*p,(b+1)*p);for(let x=0;x<p;x+=1)y[4*x]=g[2*x],y[4*x+1]=g[2*x+1],v&&(y[4*x+3]=v[x]);return y};this.fill(s,{width:l,height:c,
+layers:o,channels:4,levels:r.levels},f)})}programs(e){let{programs:t}=this.graphics,{vertex:r,place:n,fullVertex:s,surface:i,
+probe:o}=this.header.shaders;return e==="smooth"?t.get(r,i,"FLOWTEX_SMOOTH"):e==="place"?t.get(r,n):t.get(s,e==="probe"?
+o:i)}texels(e,t){let{graphics:r,header:n}=this,s=r.context,{slices:i,geometry:o}=n,c=o.columns.size,l=this.slices(e),h=()=>{
+s.activeTexture(s.TEXTURE0),s.bindTexture(s.TEXTURE_2D_ARRAY,l),s.bindVertexArray(null);let p=t.flatMap(f=>[f%c,Math.floor(
+f/c)]);r.programs.use(this.programs("probe"),{u_texels:p}),s.drawArrays(s.TRIANGLES,0,3)},m=r.numbers(h,t.length,i.count),
+u=new Float32Array(m.buffer);return(p,f)=>{let[d,g,y,b]=u.subarray(4*(p*t.length+f));return[d,g,y,b]}}image(e,t){let r=this.
+graphics.context;return this.texture(e,this.key([e],t),n=>{let{data:s,shape:i}=this.part(e),[o,c,l=1]=i,h=Math.floor(Math.
+log2(Math.max(c,o))),m={width:c,height:o,layers:1,channels:l,levels:h};this.fill(n,m,()=>s);let u=p=>t[p]?r.REPEAT:r.CLAMP_TO_EDGE;
+r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_S,u(1)),r.texParameteri(r.TEXTURE_2D_ARRAY,r.TEXTURE_WRAP_T,u(0))})}fill(e,t,r){
+let n=this.graphics.context,{width:s,height:i,layers:o,channels:c,levels:l}=t;Qe(n,e,t),n.pixelStorei(n.UNPACK_ALIGNMENT,
+1);let h=c===1?n.RED:n.RGBA;for(let m=0;m<o;m+=1)n.texSubImage3D(n.TEXTURE_2D_ARRAY,0,0,0,m,s,i,1,h,n.HALF_FLOAT,r(m));l&&
+n.generateMipmap(n.TEXTURE_2D_ARRAY)}dropSlices(e,t){let r=t+1<this.header.slices.steps?t+1:0,n=[e,t,r,t+1,...this.wanted];
+for(let s of[...this.resources.keys()])s.startsWith("slices/")&&!n.includes(Y(s))&&this.drop(s)}bindTextures(e,t){let r=this.
+graphics.context,{image:n,scalars:s}=this.header,i=String(this.scalarParts(e,t));i!==this.scalarSteps&&this.drop("scalar"),
+this.scalarSteps=i,this.dropSlices(e,t),this.bind("u_slices",this.slices(e)),this.bind("u_slicesNext",t===e?null:this.slices(
+t)),this.bind("u_image",n&&this.image("image",[!0,!0])),this.bind("u_stepImage",n&&this.image("step",n.repeat));let o=ln(
+this.parts.get("cmap")?.data??new Uint8Array(4),s);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,
+o.length/4,()=>o));let[c,l]=this.shares(e,t);this.bind("u_shares",s.name===null?null:this.table("scalar",c,r.RG32F,this.
+nodesSize[1],l));let h=()=>Hn(n?.alongI??[],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(
+n.alongI.length,n.alongJ.length),h))}};function Us(a,e){a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(
+e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Po(a,e){if(a.length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Ro=60,Lo=25,ko=9e8,Oo=3.5,Fo={slices:4,flow:24},Ot=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ae;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
@@ -839,9 +840,9 @@ flow":"slices",l=[...s.keys()].filter(m=>m.startsWith(`${c}/`)),h=i?e.flatMap(m=
 let p=[...s.keys()].filter(f=>Ee(f,u,this.root.header));for(let f of p)this.release(n,f)}for(let{data:m}of s.values())t+=
 Oo*m.byteLength;t+=i?.tracedBytes??0,t>(this.host.options.source?.memory??ko)&&o<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
-t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var Ft=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];constructor(e){this.view=e,this.renderer=
-new wt(e,this),!e.graphics.gl&&e.panel.fail("This browser has no WebGL2 with floating-point targets, which are needed to\
- draw the picture.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(e){
+t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var Ft=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];isLate=!1;constructor(e){this.view=e,this.
+renderer=new wt(e,this),!e.graphics.gl&&e.panel.fail("This browser has no WebGL2 with floating-point targets, which are \
+needed to draw the picture.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(e){
 let{view:t}=this;this.leave(),this.scene=new _e(t.graphics,e,t.parts),this.tiles=new Ot(t,this.scene),this.places=new xt(
 t.graphics)}leave(){this.tiles?.dispose(),this.scene?.dispose(),this.places?.dispose(),this.tiles=this.scene=this.places=
 null}dispose(){this.leave(),this.renderer.dispose()}restart(e){this.renderer.restart(e)}resize(e,t){this.renderer.resize(
@@ -852,20 +853,21 @@ scene?.missing(e,t)??[]}missing(e){return[...new Set(e.flatMap(t=>this.scene?.la
 e,!this.missing(e).length&&!!this.scene?.make(e,t)}available(e){let{view:t,scene:r,shown:n,lacking:s}=this,{header:i,player:o}=t;
 if(!i||!r)return null;let c=o.moment,l=o.playing?[1,2].map(p=>(c[1]+p)%i.slices.steps):[],h=this.missing([c[0],c[1],...this.
 next,...l]);h.length&&t.requests.hasSteps&&!t.options.isComing?.()&&t.requests.wantSteps(h);let m=!s.length&&r.make(c.slice(
-0,2),e),u=t.requests.hasMarks?r.marks.lacking(t.settings,c):[];return t.options.isComing?.()||t.requests.wantMarks(u),t.
-root.dataset.lacking=String(s.length+u.length||+!m),t.panel.wait(s,m,this.renderer.leavesOut,u.length>0),t.panel.showKinds(
-r.marks.legend(t.settings,c)),m&&String(c.slice(0,2))!==String(n?.slice(0,2))&&(t.trim(),t.change()),m?this.shown=c:(s.length||
-t.request(),n&&r.isMade(n.slice(0,2))?n:null)}program(e,t=this.isClose(e),r=!this.view.player.playing){let{fullVertex:n,
-fragment:s}=e.shaders,i=kn(e,this.view.settings,t,r);return this.view.graphics.programs.get(n,s,...i)}isClose(e){let{view:t}=this;
-if(!t.camera)return!1;let r=t.view([0,0,0],t.ratio),n=this.tiles?.layers.slice(1).map(({scene:s})=>s.header)??[];return(n.
-length?n:[e]).some(s=>lt(s,t.settings,r))}frame(e,t){let{view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||!s.gl||
-!r.isVisible||!i||!n||r.canvas.width<2)return;this.next=[],r.advance(e);let o=this.available(t);r.camera||r.place();let c=this.
-program(i);if(n.prepare(),!o||!r.camera)return;if(c.error)return r.panel.fail("The shader does not compile with this gra\
-phics driver.",c.error);if(!c.ready||!n.isReady(r.settings,this.smooth))return r.request();let l=!r.sharp&&this.renderer.
-draw(c,o,t);l&&(i.slices.critical&&this.program(i,!0),r.player.varies&&this.program(i,this.isClose(i),!1)),r.painted(l)}get canPick(){
-return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){let{tiles:r,shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.
-layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||!n||!s)return null;let l=ls(c,s,o,n,[e,t]),h={place:[e,t],
-position:l.point.position,height:i.root.clientHeight};return l.point.mark=s.marks.at(h,o,i.settings,n),l}};var _r=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ot;held=new it(
+0,2),e);this.isLate=!m;let u=t.requests.hasMarks?r.marks.lacking(t.settings,c):[];return t.options.isComing?.()||t.requests.
+wantMarks(u),t.root.dataset.lacking=String(s.length+u.length||+!m),t.panel.wait(s,m,this.renderer.leavesOut,u.length>0),
+t.panel.showKinds(r.marks.legend(t.settings,c)),m&&String(c.slice(0,2))!==String(n?.slice(0,2))&&(t.trim(),t.change()),m?
+this.shown=c:(s.length||t.request(),n&&r.isMade(n.slice(0,2))?n:null)}program(e,t=this.isClose(e),r=!this.view.player.playing){
+let{fullVertex:n,fragment:s}=e.shaders,i=kn(e,this.view.settings,t,r);return this.view.graphics.programs.get(n,s,...i)}isClose(e){
+let{view:t}=this;if(!t.camera)return!1;let r=t.view([0,0,0],t.ratio),n=this.tiles?.layers.slice(1).map(({scene:s})=>s.header)??
+[];return(n.length?n:[e]).some(s=>lt(s,t.settings,r))}frame(e,t){let{view:r,scene:n}=this,{graphics:s,header:i}=r;if(s.isLost||
+!s.gl||!r.isVisible||!i||!n||r.canvas.width<2)return;this.next=[],r.advance(e);let o=this.available(t);r.camera||r.place();
+let c=this.program(i);if(n.prepare(),!o||!r.camera||this.isLate&&r.sharp)return;if(c.error)return r.panel.fail("The shad\
+er does not compile with this graphics driver.",c.error);if(!c.ready||!n.isReady(r.settings,this.smooth))return r.request();
+let l=!r.sharp&&this.renderer.draw(c,o,t);l&&(i.slices.critical&&this.program(i,!0),r.player.varies&&this.program(i,this.
+isClose(i),!1)),r.painted(l)}get canPick(){return!!this.places?.width&&!this.view.graphics.isLost}find(e,t){let{tiles:r,
+shown:n,scene:s,view:i}=this,{camera:o}=i,c=r?.layers.length&&n?this.renderer.placeAt(n,e,t):null;if(!c||!o||!n||!s)return null;
+let l=ls(c,s,o,n,[e,t]),h={place:[e,t],position:l.point.position,height:i.root.clientHeight};return l.point.mark=s.marks.
+at(h,o,i.settings,n),l}};var _r=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=Sn();lifetime=new ot;held=new it(
 this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;dispose(){this.lifetime.isOver||(this.lifetime.
 end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.
 painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(e){let t=ue(e.name);return t&&this.tiles?.setPart(

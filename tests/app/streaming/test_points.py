@@ -96,3 +96,37 @@ def test_a_point_on_triangles_is_told_by_its_place() -> None:
     assert read(app, index=[1.0, 1.0]) is None
     assert np.linalg.norm(read(app, place=[0.0, 0.0])["point"]["position"]) > 0.97
     app.close()
+
+
+def wandering() -> FlowField:
+    """A vortex that moves to the right, at five times."""
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    times = np.linspace(0.0, 0.8, 5)
+    steps = [np.stack([-y, x - 1.5 * t + 0.4], axis=-1) for t in times]
+    return FlowField.from_arrays(np.stack([x, y], -1), np.stack(steps), times=times)
+
+
+@pytest.mark.usefixtures("opengl")
+def test_each_pane_has_its_own_path_at_the_time_of_the_page() -> None:
+    app = small_page(wandering(), 21, 240, 160, lines="pathlines")
+    app.area.compare({"lines": "streamlines"})
+    at = {"index": [24.0, 12.0], "path": True}
+    for time in (0.0, 0.3):
+        told = [
+            asyncio.run(app.area.points.read(pane, {**at, "time": time}))["path"]["sampled"]
+            for pane in (0, 1)
+        ]
+        for pane, sampled in zip(app.viewport.panes, told, strict=True):
+            scene = pane.scene.copy()
+            scene.time = time
+            camera, size = app.viewport.camera, app.viewport.pane_size
+            found = probe(scene, (12.0, 24.0), pixel=camera, size=size)
+            np.testing.assert_allclose(sampled[0], found.points[0])
+            np.testing.assert_allclose(sampled[-1], found.points[-1])
+        assert np.abs(np.subtract(told[0][0], told[1][0])).max() > 1e-4
+    point = asyncio.run(app.area.points.read(0, {"index": [24.0, 12.0], "time": 0.3}))["point"]
+    expected = app.field.at(*point["position"][:2], time=0.3)
+    assert expected is not None
+    assert point["values"]["speed"] == pytest.approx(expected.speed)
+    assert app.viewport.handle.time == 0.0, "the time of the server is that of its own messages"
+    app.close()

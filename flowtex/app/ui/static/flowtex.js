@@ -41,19 +41,20 @@ scenes[n].header);try{let parts=await loads[n](null,[],void 0,void 0,name);if(th
 parts.map(part=>part.name));for(let part of parts)viewer.setPart(part);this.loaded[n]=generation}catch(error){this.scenes===
 scenes&&viewer.panel.fail("The flow could not be loaded.",String(error))}this.painter==="server"&&viewer.sharp&&(this.size=
 ""),viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled),this.resize()}load(n){return loadFiles(
-()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){return(at,path)=>trame().trigger(this.
-props.read,[n,{...at,path}])}resize(){let{view,area}=this;if(!view?.viewers.length||!area)return;view.first.resize();let{
-width,height}=view.first.canvas,count=view.viewers.length,size={w:count*width+(count-1)*GAP_PX,h:height,p:1},text=JSON.stringify(
-size);text!==this.size&&(this.size=text,session().call("trame.rca.size",[area,"view",size]))}async takeFrame({name,meta,
-content}){if(name!==this.area||this.painter!=="server")return;let number=this.came+=1,picture=await createImageBitmap(new Blob(
-[content],{type:meta.type})),seconds=performance.now()/1e3;if(session().call("trame.rca.event",[name,this.name,{number:meta.
-number,seconds}]),number<this.shown||this.painter!=="server")return;this.shown=number;let{view}=this,whole=(view?.viewers.
-length??1)*(view?.first.canvas.width??1);view?.paint(picture,Math.max(Math.round(GAP_PX*picture.width/whole),1),meta.sharp),
-picture.close()}dispose(){this.ended.abort(),this.watcher.disconnect(),this.subscription&&session().unsubscribe(this.subscription),
-this.view?.dispose()}},browser={name:"flowtex-client",props:["begin","read"],emits:["camera","time","clock","playing","s\
-etting","colours"],setup(props,{emit,expose}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(
-()=>{place.value&&(view=new TrameView(props,emit,place.value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose(
-{take:changes=>{view?.take(changes)},paint:painter=>{view?.paint(painter)}}),()=>h("div",{ref:place})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
+()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){return(at,path)=>{let time=this.view?.
+viewers[n]?.player.time;return trame().trigger(this.props.read,[n,{...at,path,time}])}}resize(){let{view,area}=this;if(!view?.
+viewers.length||!area)return;view.first.resize();let{width,height}=view.first.canvas,count=view.viewers.length,size={w:count*
+width+(count-1)*GAP_PX,h:height,p:1},text=JSON.stringify(size);text!==this.size&&(this.size=text,session().call("trame.r\
+ca.size",[area,"view",size]))}async takeFrame({name,meta,content}){if(name!==this.area||this.painter!=="server")return;let number=this.
+came+=1,picture=await createImageBitmap(new Blob([content],{type:meta.type})),seconds=performance.now()/1e3;if(session().
+call("trame.rca.event",[name,this.name,{number:meta.number,seconds}]),number<this.shown||this.painter!=="server")return;
+this.shown=number;let{view}=this,whole=(view?.viewers.length??1)*(view?.first.canvas.width??1);view?.paint(picture,Math.
+max(Math.round(GAP_PX*picture.width/whole),1),meta.sharp),picture.close()}dispose(){this.ended.abort(),this.watcher.disconnect(),
+this.subscription&&session().unsubscribe(this.subscription),this.view?.dispose()}},browser={name:"flowtex-client",props:[
+"begin","read"],emits:["camera","time","clock","playing","setting","colours"],setup(props,{emit,expose}){let{h,ref,onMounted,
+onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(()=>{place.value&&(view=new TrameView(props,emit,place.
+value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose({take:changes=>{view?.take(changes)},paint:painter=>{
+view?.paint(painter)}}),()=>h("div",{ref:place})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
 middle=[at.left+(at.width-width)/2,at.top+(at.height-height)/2],below=[middle[0],at.bottom+GAP_PX2],above=[middle[0],at.
 top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.right+2*GAP_PX2,middle[1]],top:above},[left,
 top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
