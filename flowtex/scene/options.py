@@ -108,7 +108,9 @@ class Appearance:
     opacity: float = option(1.0, "Opacity: 1 is opaque, 0 invisible.")
     visible: bool = option(default=True, text="Whether the surface is drawn.")
     lighting: bool | None = option(
-        None, "Whether the surface is lit; by default only curved ones are."
+        None,
+        "Whether the surface is lit; by default only curved ones are, and no globes, whose colours "
+        "are those of the legend.",
     )
     show_scalar_bar: bool | None = option(
         None,

@@ -157,9 +157,15 @@ class Scene:
 
     @property
     def is_lit(self) -> bool:
-        """Whether the surface is lit; by default a curved one is."""
+        """Whether the surface is lit; by default a curved one is, unless it is the Earth's.
+
+        A globe is a map: its colours are those of the colour bar as far as the limb.
+        """
         lighting = self.appearance.lighting
-        return self.whole.surface.frame is None if lighting is None else lighting
+        if lighting is not None:
+            return lighting
+        surface = self.whole.surface
+        return surface.frame is None and not surface.on_globe
 
     @property
     def scalar_name(self) -> str | None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy import ndimage
 from webgl_page import ClientPage, packed, state
 
 import flowtex
@@ -84,6 +85,30 @@ def test_the_picture_is_that_of_vtk(client: ClientPage, name: str, zoom: float) 
     drawn = (without - ours).mean(axis=-1)
     assert (drawn > 60).sum() > 100
     assert np.mean((without - theirs).mean(axis=-1)[drawn > 60] > 30) > 0.95
+
+
+def test_colours_of_a_globe_are_those_of_the_bar_as_far_as_the_limb(client: ClientPage) -> None:
+    projection = Projection("globe")
+    lon, lat = np.meshgrid(np.linspace(-180, 180, 73), np.linspace(-88, 88, 45))
+    field = FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, np.full(lon.shape, 10.0), 0 * lon),
+        projection=projection,
+    )
+    camera = camera_of(field, 1)
+    look = {"scalars": "speed", "cmap": "gray", "clim": (0.0, 20.0), "lighting": None}
+    look |= {"coastlines": False, "graticule": False, "background": "red"}
+    ours = shown(client, field, camera, **look)
+    options = {**PLAIN, **look, "show_scalar_bar": False}
+    theirs = flowtex.render(field, camera=camera, size=SIZE, **options)
+    for picture in (ours, theirs):
+        colours = picture.astype(int)
+        globe = colours[..., 1] > 20
+        limb = globe & ~ndimage.binary_erosion(globe, iterations=8)
+        limb &= ndimage.binary_erosion(globe, iterations=2)
+        assert limb.sum() > 500
+        # Half of the range is grey of 127 or 128.
+        assert np.abs(colours[limb] - 127.5).max() < 0.02 * 255
 
 
 def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
