@@ -243,7 +243,7 @@ class MeshSource(FlowSource):
     def _first(self, mesh: Any) -> Any:
         """Return the mesh of the first step or block; series that fit stay in memory."""
         series = len(parts.times_of(mesh)) > 1
-        first = mesh.read() if parts.is_reader(mesh) else mesh
+        first = parts.read_checked(mesh) if parts.is_reader(mesh) else mesh
         one = self._block is not None or isinstance(first, (list, tuple))
         if blocks := {} if one else _choices(first, series=series):
             self.blocks = tuple(blocks)

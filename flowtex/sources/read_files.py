@@ -333,7 +333,7 @@ def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
     """Summarize the first step of a file, whether or not a flow can be drawn from it."""
     with errors_of_file(path):
         file = open_file(path)
-        mesh = file.source.read() if parts.is_reader(file.source) else file.source
+        mesh = parts.read_checked(file.source) if parts.is_reader(file.source) else file.source
         mesh = mesh[0].grid if isinstance(mesh, list) else mesh
         return _summary(file, mesh, block)
 

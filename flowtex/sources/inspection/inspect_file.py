@@ -14,7 +14,9 @@ from typing import Any, NoReturn
 
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
+from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.vtk_files import Data
+from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy
 from flowtex.sources.reader_errors import check_count, check_memory
 
 #: Suffixes of NetCDF, and its first bytes in the classic forms.
@@ -31,6 +33,8 @@ HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
 #: Most files of a series or of several blocks that are inspected.
 MOST_MEMBERS = 100_000
+#: Suffixes of files that describe a grid whose pieces lie in other files.
+PARALLEL = (".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 #: Documents of a group, and of all arrays.
 DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
 GRIB_MAGIC = b"GRIB"
@@ -64,14 +68,15 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
-    waiting, seen = [path], {realpath(path)}
+    waiting = [(path, False)]
+    seen = {realpath(path)}
     while waiting:
-        file = waiting.pop()
+        file, is_piece = waiting.pop()
         if not file.is_file():
             continue  # the reader that needs it raises the error
         state = file.stat()
         try:
-            members = _members(file, state.st_mtime_ns, state.st_size, whole)
+            members = _members(file, state.st_mtime_ns, state.st_size, whole, is_piece)
         except FieldError as error:
             if file == path:
                 raise
@@ -79,18 +84,24 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
         for member in members:
             if len(seen) < MOST_MEMBERS and realpath(member) not in seen:
                 seen.add(realpath(member))
-                waiting.append(member)
+                waiting.append((member, file.suffix.lower() in PARALLEL))
 
 
 @lru_cache(maxsize=1024)
-def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, ...]:  # noqa: FBT001
+def _members(
+    path: Path,
+    _changed: int,
+    size: int,
+    whole: bool,  # noqa: FBT001
+    is_piece: bool,  # noqa: FBT001
+) -> tuple[Path, ...]:
     if not size:  # it cannot be mapped
-        return _inspect(path, b"", whole=whole)
+        return _inspect(path, b"", whole=whole, is_piece=is_piece)
     with path.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as data:
-        return _inspect(path, data, whole=whole)
+        return _inspect(path, data, whole=whole, is_piece=is_piece)
 
 
-def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
+def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Path, ...]:
     import h5py
 
     # HDF5 may begin after a block of the user.
@@ -105,9 +116,12 @@ def _inspect(path: Path, data: Data, *, whole: bool) -> tuple[Path, ...]:
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         check_grib(data)
     if suffix == ".vtk":
-        vtk_files.check_vtk_legacy(data)
-    is_xml = suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head)
-    return tuple(vtk_files.check_vtk_xml(path, data)) if is_xml else ()
+        check_vtk_legacy(data)
+    if suffix == ".ply":
+        check_ply(data)
+    if suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head):
+        return tuple(vtk_files.check_vtk_xml(path, data, is_piece=is_piece))
+    return ()
 
 
 def check_zarr(folder: Path) -> None:

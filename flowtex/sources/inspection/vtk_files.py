@@ -1,4 +1,4 @@
-"""Files of VTK, legacy and XML: all arrays that are declared are present, and fit into memory.
+"""Files of VTK in XML: all arrays that are declared are present, and fit into memory.
 
 VTK allocates what is declared before it reads the first value, and continues with partial data if
 a file ends early.
@@ -15,7 +15,7 @@ from collections import Counter
 from dataclasses import dataclass
 from mmap import mmap
 from pathlib import Path
-from typing import Literal, NoReturn, TypeAlias
+from typing import Literal, TypeAlias
 from xml.parsers import expat
 
 import numpy as np
@@ -26,30 +26,11 @@ from flowtex.sources.reader_errors import check_count, check_memory
 #: A file that is mapped into memory; an empty one cannot be mapped.
 Data: TypeAlias = mmap | bytes
 #: Words up to the longest that VTK reads at once.
-_WORD = re.compile(rb"\S{1,255}")
+WORD = re.compile(rb"\S{1,255}")
 _NUMBER = rb"(?:\s*+[0-9+\-.eEdDnNaAiIfFtTyY]++(?!\S))"
 _NUMBERS = re.compile(_NUMBER + b"*+")
 #: Most repetitions that a pattern may name.
 MOST_REPEATED = 2**32 - 2
-MAGIC = b"# vtk DataFile Version"
-#: Bytes of a value by the beginning of its type's name, as VTK recognises it.
-TYPES = {
-    **dict.fromkeys((b"unsigned_char", b"signed_char", b"char"), 1),
-    **dict.fromkeys((b"unsigned_short", b"short"), 2),
-    **dict.fromkeys((b"vtkidtype", b"unsigned_int", b"int", b"float"), 4),
-    **dict.fromkeys((b"unsigned_long", b"long", b"vtktypeint64", b"vtktypeuint64", b"double"), 8),
-}
-#: Components of attributes whose keyword is followed by a name and a type.
-COMPONENTS = {b"vectors": 3, b"normals": 3, b"tensors6": 6, b"tensors": 9}
-COMPONENTS |= dict.fromkeys((b"global_ids", b"pedigree_ids", b"edge_flags"), 1)
-CELLS = (b"cells", b"vertices", b"lines", b"polygons", b"triangle_strips")
-#: Keywords, which VTK also recognises by their beginning.
-KEYWORDS = (
-    *(*COMPONENTS, *CELLS, b"x_coordinate", b"y_coordinate", b"z_coordinate", b"dataset"),
-    *(b"dimensions", b"extent", b"spacing", b"origin", b"aspect_ratio", b"points", b"blanking"),
-    *(b"cell_types", b"point_data", b"cell_data", b"scalars", b"color_scalars"),
-    *(b"texture_coordinates", b"lookup_table", b"field", b"metadata"),
-)
 
 
 def count_numbers(data: Data, most: int | None, begin: int, end: int) -> tuple[int, int]:
@@ -59,195 +40,7 @@ def count_numbers(data: Data, most: int | None, begin: int, end: int) -> tuple[i
         if match := re.compile(_NUMBER + b"{%d}+" % fitting).match(data, begin, end):
             return fitting, match.end()
     stop = _NUMBERS.match(data, begin, end).end()  # type: ignore[union-attr]
-    return sum(1 for _ in _WORD.finditer(data, begin, stop)), stop
-
-
-def check_vtk_legacy(data: Data) -> None:
-    """Raise a FieldError for a file that ends early, or does not fit into memory."""
-    check_memory(_Legacy(data).total, "the file")
-
-
-class _Legacy:
-    """One pass through a file as by VTK's reader, which refuses unknown content."""
-
-    def __init__(self, data: Data) -> None:
-        self._data, self._at = data, 0
-        head = (self._line() or b"").removeprefix(MAGIC)
-        version = re.fullmatch(rb"\s*(\d+)\.\d+\s*", head)
-        if version is None:
-            _refuse(head, "the version of a legacy file of VTK")
-        self._version = int(version[1])
-        self._line()  # the title
-        self._binary = self._word().lower().startswith(b"binary")
-        #: Number of points or cells of the current attributes.
-        self._tuples = 0
-        #: Bytes of all arrays.
-        self.total = 0
-        while word := self._word().lower():
-            self._section(word)
-
-    def _word(self) -> bytes:
-        """Return the next word, empty at the end."""
-        match = _WORD.search(self._data, self._at)
-        self._at = match.end() if match else len(self._data)
-        return match.group() if match else b""
-
-    def _is_next(self, beginning: bytes) -> bool:
-        match = _WORD.search(self._data, self._at)
-        return match is not None and match.group().lower().startswith(beginning)
-
-    def _line(self) -> bytes | None:
-        """Return the rest of the line without its end, ``None`` at the end of the file."""
-        begin, length = self._at, len(self._data)
-        stop = self._data.find(b"\n", begin)
-        stop = length if stop < 0 else stop
-        self._at = min(stop + 1, length)
-        return None if begin == length else self._data[begin:stop].removesuffix(b"\r")
-
-    def _skip(self, count: int) -> bytes:
-        begin, self._at = self._at, min(self._at + count, len(self._data))
-        return self._data[begin : self._at]
-
-    def _number(self) -> int:
-        word = self._word()
-        if not re.fullmatch(rb"[+-]?\d{1,20}", word):
-            _refuse(word, "a whole number")
-        return int(word)
-
-    def _count(self, label: bytes) -> int:
-        count = self._number()
-        if count < 0:
-            _refuse(str(count).encode(), f"the size of {label.decode(errors='replace')}")
-        return count
-
-    def _section(self, word: bytes) -> None:
-        keyword = next((k for k in KEYWORDS if word.startswith(k)), b"")
-        byte = b"unsigned_char" if self._binary else b"float"
-        match keyword:
-            case b"":
-                _refuse(word, "a keyword")
-            case b"dataset":
-                self._word()
-            case b"dimensions" | b"extent":
-                sides = [self._number() for _ in range(3 if keyword == b"dimensions" else 6)]
-                if keyword == b"extent":
-                    sides = [b - a + 1 for a, b in zip(sides[::2], sides[1::2], strict=True)]
-                # PyVista makes points of grids that have none.
-                check_memory(24 * math.prod(max(n, 0) for n in sides), "the grid")
-            case b"spacing" | b"origin" | b"aspect_ratio":
-                for _ in range(3):
-                    self._word()
-            case b"point_data" | b"cell_data":
-                self._tuples = self._count(keyword)
-            case b"metadata":
-                self._metadata(0)
-            case b"field":
-                self._word()
-                for _ in range(self._count(keyword)):
-                    self._field_array()
-            case b"cell_types":
-                self._array(keyword, b"int", self._count(keyword), 1)
-            case b"lookup_table":
-                name = keyword + b" " + self._word()
-                self._array(name, byte, self._count(keyword), 4)
-            case b"color_scalars":
-                name = keyword + b" " + self._word()
-                self._array(name, byte, self._tuples, self._count(name))
-            case b"texture_coordinates":
-                name, components = keyword + b" " + self._word(), self._count(keyword)
-                self._array(name, self._word(), self._tuples, components)
-            case b"scalars":
-                name, kind = keyword + b" " + self._word(), self._word()
-                components = 1 if self._is_next(b"lookup_table") else self._count(name)
-                self._word()
-                self._word()  # the table's name
-                self._array(name, kind, self._tuples, components)
-            case _ if keyword in CELLS:
-                self._cells(keyword)
-            case _ if keyword in COMPONENTS:
-                name = keyword + b" " + self._word()
-                self._array(name, self._word(), self._tuples, COMPONENTS[keyword])
-            case _:
-                count, components = self._count(keyword), 3 if keyword == b"points" else 1
-                self._array(keyword, self._word(), count, components)
-
-    def _cells(self, word: bytes) -> None:
-        first, second = self._count(word), self._count(word)
-        if self._version < 5:
-            self._array(word, b"int", second, 1)
-            return
-        for count in (first, second) if first else ():
-            name = self._word()
-            self._array(word + b" " + name, self._word(), count, 1)
-
-    def _field_array(self) -> None:
-        name = self._word()
-        if name == b"NULL_ARRAY":
-            return
-        check_count(int(bool(name)), 1, "FIELD", "arrays more")
-        components, tuples = self._count(name), self._count(name)
-        self._array(b"FIELD " + name, self._word(), tuples, components)
-
-    def _array(self, name: bytes, kind: bytes, tuples: int, components: int) -> None:
-        """Skip the values of an array, which must have as many as it declares."""
-        kind, label = kind.lower(), name.decode(errors="replace")
-        values = tuples * components
-        size = next((size for start, size in TYPES.items() if kind.startswith(start)), 0)
-        if kind.startswith((b"string", b"utf8_string", b"variant")):
-            self._texts(values, label, lines=kind.startswith(b"variant") or not self._binary)
-        elif not size and not kind.startswith(b"bit"):
-            _refuse(kind, f"the type of {label}")
-        else:
-            nbytes = size * values or (values + 7) // 8
-            self.total += nbytes
-            self._values(values, nbytes, label)
-        # VTK writes metadata after the values.
-        if self._is_next(b"metadata"):
-            self._word()
-            self._metadata(components)
-
-    def _values(self, values: int, nbytes: int, label: str) -> None:
-        if not self._binary:
-            count, self._at = count_numbers(self._data, values, self._at, len(self._data))
-            check_count(count, values, label, "numbers")
-        elif nbytes:
-            self._line()
-            check_count(len(self._data) - self._at, nbytes, label)
-            self._at += nbytes
-            # The newline behind a shorter block would be taken for its last byte.
-            ends = self._data[self._at - 1 : self._at + 1]
-            if ends[:1] == b"\n" and ends[1:] not in (b"\n", b"\r"):
-                raise FieldError(
-                    f"the file is damaged: no newline follows the {nbytes:,} bytes of {label}, so "
-                    "at least one of them is missing; write or copy it again"
-                )
-
-    def _texts(self, values: int, label: str, *, lines: bool) -> None:
-        """Skip texts: lines, or bytes after their number."""
-        self._line()
-        for number in range(values):
-            head = self._line() if lines else self._skip(1) or None
-            if head is None:
-                check_count(number, values, label, "texts")
-            elif not lines:
-                length = 2 ** (3 - (head[0] >> 6))  # of the number, whose first bits say it
-                size = int.from_bytes(head + self._skip(length - 1), "big")
-                size &= (1 << (8 * length - (2 if length < 8 else 0))) - 1
-                check_count(len(self._data) - self._at, size, label)
-                self._at += size
-
-    def _metadata(self, components: int) -> None:
-        self._line()
-        while line := self._line():
-            if line.lower().startswith(b"component_names"):
-                for _ in range(components):
-                    self._line()
-
-
-def _refuse(word: bytes, expected: str) -> NoReturn:
-    fault = f"has {word[:40].decode(errors='replace')!r}" if word else "ends"
-    text = "the file is truncated or damaged"
-    raise FieldError(f"{text}: it {fault} where {expected} was expected; write or copy it again")
+    return sum(1 for _ in WORD.finditer(data, begin, stop)), stop
 
 
 #: Endings of files of one mesh, of its pieces, of blocks and of series.
@@ -256,6 +49,8 @@ SUFFIXES = (
     *(".vtm", ".vtmb", ".pvd", ".vtpd"),
 )
 CHUNK_BYTES = 1 << 20
+#: Greatest number of a block; VTK makes as many.
+MOST_BLOCKS = 100_000
 _TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>\s*""")
 _INTEGER = re.compile(rb"\d+")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
@@ -268,8 +63,11 @@ def is_xml(head: bytes) -> bool:
     return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
-def check_vtk_xml(path: Path, data: Data) -> list[Path]:
-    """Return the files that a file names, if its arrays fit into it and into memory."""
+def check_vtk_xml(path: Path, data: Data, *, is_piece: bool = False) -> list[Path]:
+    """Return the files that a file names, if its arrays fit into it and into memory.
+
+    ``is_piece`` is whether it has a part of a grid that another file describes.
+    """
     if b"\0" in data[:4]:
         raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
     document, times = _Document(data), Counter[str]()
@@ -282,6 +80,9 @@ def check_vtk_xml(path: Path, data: Data) -> list[Path]:
     check_memory(max(times.values(), default=0), "the file")
     points = max(document.points, document.whole)
     check_memory(max(24 * points, document.parallel), "the grid")
+    if not is_piece:
+        check_count(document.covered, document.cells, "WholeExtent", "cells")
+        check_count(document.nodes, document.whole, "WholeExtent", "nodes")
     return [path.parent / name for name in document.members]
 
 
@@ -317,8 +118,12 @@ class _Document:
         self._path: list[str] = []
         self._piece: dict[str, str] = {}
         self._axis = self._pieces = 0
+        #: First and last node of the whole grid along each axis.
+        self._extent: list[int] = []
         #: Points of all pieces, and of the whole grid where it is structured.
         self.points = self.whole = 0
+        #: Cells of the whole grid where it is structured, and cells and nodes of its pieces.
+        self.cells = self.covered = self.nodes = 0
         self._parser = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
@@ -351,12 +156,19 @@ class _Document:
             self._encoded = attributes.get("encoding", "base64") == "base64"
             raise _Appended
         elif tag == "DataSet" or (tag == "Piece" and "Source" in attributes):
+            self._cover(attributes.get("Extent", ""))
+            _check_whole("index", attributes.get("index", "0"), MOST_BLOCKS)
             self.members += filter(None, (attributes.get("file"), attributes.get("Source")))
         elif "WholeExtent" in attributes:
+            self._extent = _ends(attributes["WholeExtent"])
             self.whole = math.prod(_sides(attributes["WholeExtent"]))
+            self.cells = _cells(attributes["WholeExtent"])
         elif tag == "Piece" and len(self._path) == 3:  # VTK reads only those of the grid
             self._piece, self._pieces = attributes, self._pieces + 1
+            self._check_piece()
             self.points += self._tuples("PointData") or 0
+        elif tag == "Block":
+            _check_whole("index", attributes.get("index", "0"), MOST_BLOCKS)
         elif tag in ("Coordinates", "Points"):
             self._axis = 0
         elif tag in ("DataArray", "Array"):
@@ -365,7 +177,33 @@ class _Document:
             components = _whole(attributes.get("NumberOfComponents", "1"))
             self.parallel += 8 * components * self.whole
 
+    def _check_piece(self) -> None:
+        """Raise a FieldError for a negative count, or nodes outside of the whole grid."""
+        for key, text in self._piece.items():
+            if key.startswith("NumberOf"):
+                _check_whole(key, text)
+        if "Extent" not in self._piece or not self._extent:
+            return
+        self._cover(self._piece["Extent"])
+        ends = _ends(self._piece["Extent"])
+        firsts = zip(ends[::2], self._extent[::2], strict=False)
+        lasts = zip(ends[1::2], self._extent[1::2], strict=False)
+        is_inside = all(a >= b for a, b in firsts) and all(a <= b for a, b in lasts)
+        if len(ends) != 6 or not is_inside:
+            raise FieldError(
+                f"a piece has the Extent {self._piece['Extent']!r}, outside of the WholeExtent "
+                f"{self._extent}; the file is damaged, write or copy it again"
+            )
+
+    def _cover(self, extent: str) -> None:
+        """Count the cells and nodes of a piece of a structured grid."""
+        if extent:
+            self.covered += _cells(extent)
+            self.nodes += math.prod(_sides(extent))
+
     def _array(self, section: str, attributes: dict[str, str]) -> None:
+        for key in ("NumberOfComponents", "NumberOfTuples", "offset"):
+            _check_whole(key, attributes.get(key, "0"))
         name, kind = attributes.get("Name", ""), attributes.get("type", "")
         bits = _BITS.fullmatch(kind)
         width = 1 if kind == "Bit" else int(bits[1]) if bits else 8
@@ -383,7 +221,7 @@ class _Document:
         count = {key: _whole(self._piece.get(key, "0")) for key in self._piece if key != "Extent"}
         if "Extent" in self._piece:
             sides = _sides(self._piece["Extent"])
-            points, cells = math.prod(sides), math.prod(max(n - 1, 1) for n in sides)
+            points, cells = math.prod(sides), _cells(self._piece["Extent"])
         else:
             sides, points = (), count.get("NumberOfPoints", 0)
             cells = sum(count.get(f"NumberOf{tag}", 0) for tag in CELL_TAGS)
@@ -405,14 +243,14 @@ class _Document:
             self.arrays[-1].end = self._parser.CurrentByteIndex
 
     def check(self, array: _Array) -> None:
-        """Raise a FieldError if the file has less of an array than declared."""
-        if array.values == 0:
-            return
+        """Raise a FieldError if the file has less or more of an array than declared."""
         label = f"the array {array.name}"
         is_topology = array.section in CELL_TAGS and array.name in ("offsets", "connectivity")
         form, begin = array.attributes.get("format", "ascii").lower(), self._after_tag(array.begin)
         if form == "ascii":
-            values, _ = count_numbers(self._data, array.values, begin, array.end)
+            values, end = count_numbers(self._data, array.values, begin, array.end)
+            rest, _ = count_numbers(self._data, 1, end, array.end)
+            values += rest
             tail = _INTEGER.findall(self._data, max(begin, array.end - 64), array.end)
             last = int((tail or [b"0"])[-1]) if is_topology else None
         else:
@@ -420,11 +258,18 @@ class _Document:
             if form == "appended":
                 offset = self._base + _whole(array.attributes.get("offset", "0"))
                 place = offset, len(self._data), self._encoded
+            if array.values == 0 and place[0] >= place[1]:
+                return  # an empty array may have no header
             block = _Block(self._data, self, place, label)
             values = block.nbytes * 8 // array.bits
             last = block.last(array.bits // 8) if is_topology else None
         if array.values is not None:
             check_count(values, array.values, label, "values")
+            if values > array.values and array.attributes.get("type") != "String":
+                raise FieldError(
+                    f"the file is damaged: {label} has more than the {array.values:,} values that "
+                    "its piece declares; write or copy it again"
+                )
         if is_topology and last is not None:
             ends = self._joined.setdefault((array.piece, array.section), {})
             ends[array.name] = last if array.name == "offsets" else values
@@ -507,6 +352,30 @@ def _sides(extent: str) -> tuple[int, ...]:
     """Return the nodes along the axes of an extent such as ``"0 9 0 9 0 0"``."""
     ends = [_whole(word) for word in extent.split()]
     return tuple(max(b - a + 1, 0) for a, b in zip(ends[::2], ends[1::2], strict=False))
+
+
+def _cells(extent: str) -> int:
+    """Return the number of cells of an extent."""
+    sides = _sides(extent)
+    if len(sides) != 3:
+        return 0
+    return math.prod(max(side - 1, 1) for side in sides)
+
+
+def _ends(extent: str) -> list[int]:
+    """Return the first and last node along each axis of an extent."""
+    return [_whole(word) for word in extent.split()]
+
+
+def _check_whole(name: str, text: str, most: int | None = None) -> None:
+    """Raise a FieldError for a count or number in an attribute that is negative or too large."""
+    value = _whole(text)
+    if value < 0 or (most is not None and value > most):
+        expected = "0 or more" if most is None else f"0 to {most:,}"
+        raise FieldError(
+            f"the file is damaged: {name} is {text[:40]!r}; expected {expected}. Write or copy it "
+            "again"
+        )
 
 
 def _whole(word: str) -> int:

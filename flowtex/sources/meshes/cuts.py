@@ -150,11 +150,6 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     """Return the nodes of the surface of a mesh, (N,), which :func:`check_cut` has checked."""
     surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
-    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
-        raise FieldError(
-            f"its cells refer to points {triangles.min()} to {triangles.max()}, but there are "
-            f"{len(points):,}; write or copy it again"
-        )
     areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
 
     def nodes(array: MeshArray) -> Floats:

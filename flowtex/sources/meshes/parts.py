@@ -17,6 +17,7 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.sources.meshes.cells import check_mesh
 from flowtex.sources.meshes.vectors import MeshArray, Sheet, candidates, catalogue, data_of
 from flowtex.sources.notices import Record
 
@@ -154,6 +155,13 @@ def several_fault(mesh: Any, label: str) -> str:
     )
 
 
+def read_checked(reader: Any) -> Any:
+    """Read what a reader is set to, and check it before any filter of VTK sees it."""
+    mesh = reader.read()
+    check_mesh(mesh)
+    return mesh
+
+
 def _read(reader: Any, block: int | str | None, **options: Any) -> Iterator[TimeStep]:
     """Read one time after the other, and restore the time of the reader."""
     times = times_of(reader)
@@ -231,7 +239,9 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
     import pyvista as pv
 
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
-        return source if isinstance(source, pv.DataObject) else pv.wrap(source)
+        mesh = source if isinstance(source, pv.DataObject) else pv.wrap(source)
+        check_mesh(mesh)
+        return mesh
     raise FieldError(
         f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
         "of them, or a reader; for others use FlowField.from_arrays, from_triangles or from_xarray"

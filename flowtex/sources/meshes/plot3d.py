@@ -19,7 +19,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError
-from flowtex.sources.meshes.parts import TimeStep
+from flowtex.sources.meshes.parts import TimeStep, read_checked
 from flowtex.sources.meshes.vectors import candidates
 from flowtex.sources.reader_errors import check_count, check_memory
 
@@ -189,7 +189,7 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     import pyvista as pv
 
     reader: Any = pv.get_reader(str(file))
-    mesh = reader.read()
+    mesh = read_checked(reader)
     if candidates(mesh):
         return mesh, None, ""
     path, is_stl = file.with_suffix(".npy"), file.suffix.lower() == ".stl"
@@ -197,7 +197,7 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     vectors, problem = _vectors(path)
     if vectors.shape[-2] == 3 * cells != points and is_stl:
         reader.reader.SetMerging(0)
-        mesh = reader.read()
+        mesh = read_checked(reader)
     if not problem and vectors.shape[-2] not in (mesh.n_points, cells):
         problem = f"{path.name} has shape {vectors.shape}"
     if problem:
