@@ -21,11 +21,13 @@ from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived import magnitude_label
 from flowtex.field.earth import Projection
 from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
+from flowtex.field.finer import FINEST
 from flowtex.field.formula import Formula
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity
 from flowtex.field.quantities import FieldQuantities
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
 from flowtex.field.triangles.triangle_nodes import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
@@ -41,6 +43,8 @@ OPENED = "_opened"
 KEPT = ("section", "reading", "volume_values")
 #: Attributes that are computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
+#: Attributes that a field with other scalars or steps has as well.
+_LARGE = (WHOLE_SHAPE, FINEST)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,6 +142,11 @@ class FlowField(FieldConstructors, FieldQuantities):
     on_cells: tuple[str, ...] = ()
     vectors: str = ""
     parts: Mapping[str, Steps] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Let unknown names of scalars raise errors that say how to get them."""
+        if not isinstance(self.scalars, Scalars):
+            object.__setattr__(self, "scalars", Scalars(self.scalars))
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
         opened = vars(self).get(OPENED)
@@ -495,7 +504,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     def same_flow(self, **changes: Any) -> FlowField:
         """Return the field with other scalars or texts; positions and velocity stay."""
         flow = replace(self, **changes)
-        flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in _SHARED})
+        kept = (*_SHARED, *_LARGE)
+        flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in kept})
         return flow
 
     def forget(self) -> None:
@@ -520,6 +530,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         velocity, times = np.asarray(self.velocity[index]), self.times[index]
         part = replace(self, velocity=velocity, times=times, scalars=data, parts=parts)
         part.__dict__["surface"] = self.surface  # equal to what the property would make
+        part.__dict__.update({k: v for k, v in self.__dict__.items() if k in _LARGE})
         return part
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
@@ -47,6 +48,30 @@ def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
         return 0, 0, 0.0
     step, share = bracket(times, time)
     return int(step), int(step) + 1, float(share)
+
+
+def at_moment(
+    steps: Any,
+    moment: tuple[int, int, float],
+    part: Callable[[Floats], Floats] = np.asarray,
+) -> Floats:
+    """Return values between two steps of (T or 1, ...), or a part of them.
+
+    ``moment`` is that of :func:`steps_around`. Where one step has no value, NaN, that of the nearer
+    step is taken.
+    """
+    before, after, share = moment
+    if len(steps) == 1:
+        return part(steps[0])
+    if share in (0.0, 1.0):
+        return part(steps[before + int(share) * (after - before)])
+    earlier = part(steps[before])
+    later = part(steps[after])
+    mixed = earlier * (1 - share) + later * share
+    nearer = later
+    if share < 0.5:
+        nearer = earlier
+    return np.where(np.isnan(mixed), nearer, mixed)
 
 
 def cell_of(

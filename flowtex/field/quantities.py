@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import brief, check_field
+from flowtex._util.arguments import brief, check_field, checked_array
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
 from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
+from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import Projection
+from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.grids.grid_nodes import weighted_axis
-from flowtex.field.interpolation import steps_around
+from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.locate import (
     CURVED_TOLERANCE,
     EARTH,
@@ -27,9 +29,11 @@ from flowtex.field.locate import (
     locate,
     locate_lonlat,
     lonlats,
+    surface_point,
     turned,
     value_point,
 )
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import Steps
 
 #: Share of the way to the middle of a cell by which its corners are moved to one side of a map.
@@ -86,7 +90,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
         (j, i) in cells; :func:`~flowtex.scene.probe.locate` returns it for a point in space.
     time
         Time in the field's unit; or a date, as text, ``numpy.datetime64``, ``datetime`` or of
-        cftime, if the times are dates. The last one by default.
+        cftime, if the times are dates. The first one by default, as in pictures.
 
     Raises
     ------
@@ -103,16 +107,46 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     ['vorticity']
     """
     check_field(field, FieldConstructors)
+    finest = finest_of(field)
+    if finest is None:
+        return _values_at(field, index, time)
+    position = surface_point(field.surface, index).interpolate(field.surface.points)
+    part = finest.near(true_positions(position, field.projection)).field
+    nearest = locate(part, position, tolerance=np.inf)
+    if nearest is None:  # all nodes around it are blank at the finest level
+        return _values_at(field, index, time)
+    at = checked_array("index", index, expected="two finite numbers (j, i), in cells")
+    time = _moment(field, time)
+    return _with_others(_values_at(part, nearest, time), field, (float(at[0]), float(at[1])), time)
+
+
+def _moment(field: Any, time: Any) -> Any:
+    """Return a time for the finest level of a field, of which the field may have one step."""
+    if time is None or field.steady:
+        return float(field.times[0])
+    return time
+
+
+def _with_others(
+    values: PointValues, field: Any, index: tuple[float, float], time: Any
+) -> PointValues:
+    """Return values of the finest level for (j, i) in the coarse field, which may have others."""
+    scalars = values.scalars
+    if set(field.scalars) - set(scalars) - {"speed"}:
+        scalars = Scalars({**_values_at(field, index, time).scalars, **scalars})
+    return replace(values, index=index, scalars=scalars)
+
+
+def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
+    """Return the values at (j, i) from the nodes that are in memory."""
     point = value_point(field, index)
-    moment = float(field.times[-1])
+    moment = float(field.times[0])
     if time is not None and not field.steady:
         moment = time_within(field.start, field.times, time)
-    before, after, share = steps_around(field.times, moment)
+    between = steps_around(field.times, moment)
 
     def value(steps: Steps, corners: Callable[[Floats], Floats] = point.corners) -> Floats:
-        if len(steps) == 1:
-            return corners(steps[0])
-        return corners(steps[before]) * (1 - share) + corners(steps[after]) * share
+        return at_moment(steps, between, corners)
 
     def scalar(name: str) -> float:
         steps = field.scalars[name]
@@ -133,6 +167,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
         values["speed"] = float(weights @ value(field.index_velocity.speed) * scale)
     if field.projection is not None:
         values |= _on_earth(field, field.projection, point, values, partial(value, field.velocity))
+    values["scalars"] = Scalars(values["scalars"])
     return PointValues(
         index=point.index,
         time=moment,
@@ -218,7 +253,8 @@ class FieldQuantities:
         Raises
         ------
         FieldError
-            When the name is unknown, the horizon is invalid, or the field is sign-free.
+            When the name is unknown, the horizon is invalid, the field is sign-free, or not all of
+            its nodes are in memory, as of a large store.
 
         Notes
         -----
@@ -235,6 +271,7 @@ class FieldQuantities:
         field: Any = self
         if field.sign_free:
             raise FieldError(f"{name} needs a direction, but this field is sign-free")
+        check_derivable(field, name)
         if horizon is not None or name in FOLLOWED:
             return followed_steps(name, field, horizon)
         return derived_steps(name, field)
@@ -268,7 +305,7 @@ class FieldQuantities:
             argument is the time.
         time
             Time in the field's unit, or a date if the times are dates; values are interpolated. The
-            last one by default.
+            first one by default, which pictures, axes and the widget show too.
 
         Returns
         -------
@@ -295,12 +332,36 @@ class FieldQuantities:
         at = np.asarray(place, dtype=float)
         if not np.isfinite(at).all():
             raise FieldError(f"the place is {brief(place)}; expected finite numbers")
-        if field.projection is not None:
-            index = locate_lonlat(field, *at.tolist())
-        else:
-            frame = field.surface.frame
-            if len(at) == 2 and frame is not None and not frame[:, 2].any():
+        frame = field.surface.frame
+        tolerance = CURVED_TOLERANCE
+        if field.projection is None and frame is not None:
+            tolerance = FLAT_TOLERANCE
+            if len(at) == 2 and not frame[:, 2].any():
                 at = np.append(at, field.surface.center[2])
-            tolerance = CURVED_TOLERANCE if frame is None else FLAT_TOLERANCE
-            index = locate(field, at, tolerance=tolerance)
-        return None if index is None else values_at(field, index, time)
+        finest = finest_of(field)
+        if finest is None:
+            index = _located(field, at, tolerance)
+            if index is None:
+                return None
+            return _values_at(field, index, time)
+        part = finest.near(_in_space(field, at))
+        index = _located(part.field, at, tolerance)
+        if index is None:
+            return None
+        time = _moment(field, time)
+        values = _values_at(part.field, index, time)
+        return _with_others(values, field, part.coarse_index(index), time)
+
+
+def _located(field: Any, at: Floats, tolerance: float) -> tuple[float, float] | None:
+    """Return (j, i) of a longitude and latitude, or of a position."""
+    if field.projection is not None:
+        return locate_lonlat(field, *at.tolist())
+    return locate(field, at, tolerance=tolerance)
+
+
+def _in_space(field: Any, at: Floats) -> Floats:
+    """Return the position (3,) of a longitude and latitude on the globe, or of a place."""
+    if field.projection is not None:
+        return EARTH.positions(at[:1], at[1:2])[0]
+    return np.append(at, np.zeros(3 - len(at)))

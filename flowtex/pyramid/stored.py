@@ -14,9 +14,11 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.field import OPENED, WHOLE_SHAPE
+from flowtex.field.finer import FINEST
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Nodes
 from flowtex.field.uncertainty import spread_name
+from flowtex.pyramid.finest import FinestOfLevels, FinestOfRegions
 from flowtex.pyramid.layout import VELOCITY_BITS, About
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError, is_store, place_text
@@ -30,7 +32,8 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     """Open a pyramid in a store as a field.
 
     ``flowtex.render``, ``flowtex.show`` and the widget read only the tiles in view. The arrays of
-    the field are those of the coarsest level.
+    the field are those of the coarsest level, while ``field.at`` reads the nodes of the finest one
+    around a point. What is derived needs all nodes: derive it before you build the store.
 
     Parameters
     ----------
@@ -94,6 +97,9 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     attach_pyramid(root, pyramid)
     opened = partial(open_store, store, uncertainty=uncertainty)
     root.__dict__.update({WHOLE_SHAPE: tuple(levels.about["nodes"]), OPENED: opened})
+    if levels.about["depth"]:
+        finest = StoredPyramid(levels, levels.template)
+        root.__dict__[FINEST] = FinestOfLevels(finest, root, levels.positions, opened)
     return root
 
 
@@ -210,4 +216,7 @@ def _of_others(place: str, options: FieldOptions) -> FlowField:
             f"{place} is drawn with {nodes(drawn):,} of its {nodes(finest):,} nodes; "
             f"`flowtex pyramid {place} -o flow.zarr` builds a store of all of them"
         )
-    return FlowField.from_xarray(drawn, name=name, **options.given)
+    field = FlowField.from_xarray(drawn, name=name, **options.given)
+    if nodes(drawn) < nodes(finest):
+        field.__dict__[FINEST] = FinestOfRegions(source, field)
+    return field

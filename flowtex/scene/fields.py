@@ -17,6 +17,7 @@ from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.derived import DERIVED, with_vector_scalar
+from flowtex.field.finer import finest_of
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
@@ -41,7 +42,7 @@ APART = {"formula", "start", "section", "reading"}
 
 def with_scalars(field: FlowField, name: str | None) -> FlowField:
     """Return the field with the scalar of its colours, if that is derived from vectors."""
-    if name is None or name in ("speed", *field.scalars) or has_pyramid(field):
+    if name is None or name in ("speed", *field.scalars) or finest_of(field) is not None:
         return field
     if name not in DERIVED:
         return _fields.get(name, lambda: with_vector_scalar(field, name), owner=field)

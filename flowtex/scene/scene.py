@@ -28,7 +28,7 @@ from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
-from flowtex.field.interpolation import steps_around
+from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
@@ -308,14 +308,7 @@ class Scene:
 
         They are those of a part of the field, or of a coarser form of it, where one is given.
         """
-        steps = steps_of(field or self.field, name)
-        before, after, share = self.moment
-        if len(steps) == 1:
-            return np.asarray(steps[0])
-        earlier, later = steps[before], steps[after]
-        mixed = earlier * (1 - share) + later * share
-        # Where one step has no value, that of the nearer step is shown.
-        return np.asarray(np.where(np.isnan(mixed), earlier if share < 0.5 else later, mixed))
+        return at_moment(steps_of(field or self.field, name), self.moment)
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         name, chosen = appearance.scalar_name, appearance.clim

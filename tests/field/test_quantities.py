@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from datetime import datetime
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.spatial import Delaunay
 from flowtex import FieldError, FlowField
 from flowtex.field.earth import Projection
 from flowtex.field.quantities import values_at
+from flowtex.scene.scene import Scene
 
 Floats = NDArray[np.float64]
 
@@ -36,7 +38,7 @@ def test_values_are_linear_in_space_and_time() -> None:
     assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
     assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
     assert (got.time, got.speed_unit) == (1.5, "m/s")
-    assert values_at(field, (1, 2)).time == 3.0
+    assert values_at(field, (1, 2)).time == 1.0
     assert values_at(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
     with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
         values_at(field, (1, 2), 4)
@@ -204,3 +206,49 @@ def test_a_point_in_space_is_bilinear_in_a_rectangle() -> None:
     assert raised.at(2.3, 1.2, 4.0) is None
     with pytest.raises(FieldError, match="expected finite numbers"):
         field.at(np.nan, 1.0)
+
+
+def test_unknown_scalars_say_how_to_get_them() -> None:
+    x, y = np.linspace(0, 1, 11), np.linspace(0, 1, 9)
+    v = np.stack(np.meshgrid(x, y), axis=-1)
+    field = FlowField.from_arrays((x, y), v, scalars={"heat": v[..., 0]})
+    at = field.at(0.5, 0.5)
+    assert at is not None
+    for scalars in (field.scalars, at.scalars, pickle.loads(pickle.dumps(field)).scalars):
+        for name, words in {
+            "vorticity": "with_derived('vorticity')",
+            "ftle": "horizon=",
+            "speed": "field.speed",
+            "heet": "did you mean 'heat'",
+        }.items():
+            for kind in (KeyError, FieldError):
+                with pytest.raises(kind) as raised:
+                    scalars[name]
+            assert words in str(raised.value)
+            assert scalars.get(name) is None
+            assert name not in scalars
+    other = field.with_derived("shear")
+    assert other.scalars["shear"] == pytest.approx(np.zeros((1, 9, 11)), abs=1e-9)
+
+
+def test_the_first_time_is_that_of_pictures_and_points() -> None:
+    x, y = np.linspace(0, 1, 11), np.linspace(0, 1, 9)
+    steps = np.stack([np.ones((9, 11, 2)) * k for k in (1, 2, 3)])
+    field = FlowField.from_arrays((x, y), steps, times=[5.0, 6.0, 7.0])
+    at = field.at(0.5, 0.5)
+    assert at is not None
+    assert at.time == Scene.of(field).time == 5.0
+    assert at.speed == pytest.approx(np.sqrt(2))
+
+
+def test_a_value_that_is_missing_at_one_step_is_that_of_the_nearer_one() -> None:
+    x, y = np.linspace(0, 1, 11), np.linspace(0, 1, 9)
+    heat = np.ones((3, 9, 11)) * np.array([1.0, np.nan, 3.0])[:, None, None]
+    field = FlowField.from_arrays((x, y), np.ones((3, 9, 11, 2)), scalars={"heat": heat})
+    scene = Scene.of(field)
+    for time, wanted in ((0.0, 1.0), (0.4, 1.0), (0.6, np.nan), (1.0, np.nan), (1.9, 3.0), (2, 3)):
+        scene.time = time
+        at = field.at(0.33, 0.21, time=time)
+        assert at is not None
+        assert at.scalars["heat"] == pytest.approx(wanted, nan_ok=True)
+        assert scene.scalar("heat")[3, 3] == pytest.approx(wanted, nan_ok=True)

@@ -18,6 +18,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
+from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
 from flowtex.field.units import NONE, VELOCITIES, measures, parsed
 from flowtex.field.validation import NO_DATA, known_nodes
@@ -92,9 +93,12 @@ def steps_of(field: Any, name: str) -> Steps:
         return field.speed
     if name in (other := with_vector_scalar(field, name)).scalars:
         return other.scalars[name]
+    if name in DERIVED or name in FOLLOWED:
+        check_derivable(field, name)
     vectors = [field.vectors or UNNAMED, *(part[:-2] for part in field.parts)]
     vectors = [] if field.projection is not None else vectors
-    names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *DERIVED])))
+    derived = DERIVED if finest_of(field) is None else ()
+    names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *derived])))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
     if COMPONENT.search(name):
         msg += "; a component is named as in 'U_x', or chosen by component=0"

@@ -155,6 +155,10 @@ class Pyramid:
         rows, columns = (np.arange(n) for n in self.shape(level))
         return self._part(level, rows, columns, self.field.periodic)
 
+    def lines_at(self, level: int, rows: Indices, columns: Indices) -> FlowField:
+        """Return some successive lines of a level, also beyond the ends of a closed axis."""
+        return self._part(level, rows, columns, (False, False))
+
     @property
     def blocks(self) -> tuple[int, int]:
         """Rows and columns of blocks at level 0."""
