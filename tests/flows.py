@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from triangle_meshes import random_plane, soup, sphere
+from triangle_meshes import cube, random_plane, soup, sphere
 
 from flowtex import FlowField
 from flowtex.field.uncertainty import with_uncertainty
@@ -148,6 +148,12 @@ def folded(w: float = 0.0) -> FlowField:
     halves = [[corners[k] for k in some] for some in ((0, 1, 2), (0, 2, 3))]
     triangles = np.concatenate(halves, axis=1).T
     return FlowField.from_triangles(points, triangles, np.tile([1.0, 0.6, w], (s.size, 1)))
+
+
+def across() -> FlowField:
+    """A uniform flow through a cube, so that two of its faces have no flow along them."""
+    points, triangles = cube(4)
+    return FlowField.from_triangles(points, triangles, np.tile([1.0, 0.0, 0.0], (len(points), 1)))
 
 
 def ring() -> FlowField:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 from flows import (
+    across,
     dense_gyre,
     folded,
     fountain,
@@ -59,6 +60,7 @@ WHOLE, MIDDLE = straight(1, (1.0, 0.5)), straight(1, (0.0, 0.0))
 SOURCE = straight(1.6, (0.3, 0.25))
 TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1))
 GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1))
+CORNER = Camera((3.4, -2.9, 2.5), (0.0, 0.0, 0.0), (0, 0, 1))
 ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1))
 
 IMAGE = np.zeros((30, 50, 4))
@@ -160,6 +162,7 @@ VIEWS: dict[str, View] = {
     "triangles, centre": View(scattered_gyre, straight(64, (0.5, 0.5))),
     "triangles, curved": View(rippled, ASIDE),
     "triangles, sharp edge": View(folded, ASIDE),
+    "triangles, across the flow": View(across, CORNER),
     "triangles, holes": View(scattered_holed, MIDDLE),
     "triangles, between two steps": View(
         scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55

@@ -29,7 +29,7 @@ from flowtex.field.node_surface import IndexVelocity
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
-from flowtex.field.triangles.triangle_nodes import triangle_nodes
+from flowtex.field.triangles.triangle_arguments import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.units import factor, speed_unit
 from flowtex.field.validation import ALL_AT_REST, prepared
@@ -340,7 +340,8 @@ class FlowField(FieldConstructors, FieldQuantities):
         -------
         FlowField
             Its nodes are those that triangles use; border nodes at the same position are merged,
-            with the mean of their values.
+            with the mean of their values. At sharp edges, of 35 degrees or more, each face has its
+            own nodes, which have the values of nodes in that face.
 
         Raises
         ------
@@ -365,8 +366,12 @@ class FlowField(FieldConstructors, FieldQuantities):
         t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=1)
         words |= {"name": name, "vectors": vectors, "projection": projection}
         words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
+        on_globe = projection is not None and projection.is_globe
         parts = points, triangles, v, t, valid, data, cell_scalars or {}
-        return cls._moving(t, scale, periodic=(False, False), **words, **triangle_nodes(*parts))
+        surface, nodes = triangle_nodes(*parts, on_globe=on_globe)
+        flow = cls._moving(t, scale, periodic=(False, False), **words, **nodes)
+        flow.__dict__["surface"] = surface  # equal to what the property would make
+        return flow
 
     @classmethod
     def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:

@@ -10,7 +10,7 @@ import pytest
 import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial import ConvexHull, Delaunay
+from scipy.spatial import ConvexHull, Delaunay, cKDTree
 from strategies import property_test
 
 from flowtex import FlowField, TraceSlices, trace
@@ -161,16 +161,18 @@ def box(per_side: int, rows: int) -> tuple[Floats, Indices, Floats]:
 
 def test_paths_go_on_across_the_edges_of_a_box() -> None:
     """Unrolled, a flow that climbs around a box is uniform, and its paths are straight."""
-    points, triangles, along = box(6, 25)
-    middle = points[:, :2] - 0.5
+    nodes, triangles, places = box(6, 25)
     side = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], dtype=float)
-    at = np.floor(along).astype(int)
-    corner = along == at
-    flat = np.where(corner[:, None], side[at] + side[at - 1], side[at])
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
-    assert (np.abs(middle).max(axis=1) == 0.5).all()
-    velocity = np.column_stack([0.8 * flat, np.full(len(points), 0.6)])
-    field = FlowField.from_triangles(points, triangles, velocity)
+    outward = np.array([[0, -1], [1, 0], [0, 1], [-1, 0]], dtype=float)
+    middle = nodes[triangles].mean(axis=1)[:, :2] - 0.5
+    face = np.argmax(middle @ outward.T, axis=1)
+    # Each triangle has its own nodes.
+    velocity = np.column_stack([0.8 * side[face], np.full(len(face), 0.6)]).repeat(3, axis=0)
+    own = np.arange(triangles.size).reshape(-1, 3)
+    field = FlowField.from_triangles(nodes[triangles].reshape(-1, 3), own, velocity)
+    points = field.points[0]
+    assert len(points) == len(nodes) + 4 * 25
+    along = places[cKDTree(nodes).query(points)[1]]
     lags = np.array([0.3, 1.0, 2.5])
     slices = trace(field, lags=lags, unit=1.0)
     for m, lag in enumerate(lags):

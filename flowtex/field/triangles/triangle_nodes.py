@@ -1,29 +1,17 @@
-"""Arguments of a field on triangles as its arrays, without parts that cannot be drawn."""
+"""Triangles between nodes: their sides, normals and neighbours, and means at the nodes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
-from flowtex.errors import FieldError, notify, raise_faults
-from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
-from flowtex.field.validation import (
-    as_numbers,
-    cell_faults,
-    finite_nodes,
-    nodal_faults,
-    range_faults,
-    scalar_steps,
-    three_components,
-    with_gaps,
-)
+from flowtex.field.steps import Steps, map_steps
 
 #: Twice the area of a triangle over the square of its longest side, below which it is flat.
 FLAT_TRIANGLE = 1e-12
@@ -37,126 +25,6 @@ NEEDLE_SHARE = 1e-4
 SHARP = 0.86
 
 
-def triangle_nodes(
-    points: ArrayLike,
-    triangles: ArrayLike,
-    velocity: Any,
-    times: Floats | None,
-    valid: ArrayLike | None,
-    scalars: Mapping[str, Any],
-    cell_scalars: Mapping[str, Any],
-) -> dict[str, Any]:
-    """Check arrays; return the arguments of a field whose nodes are a row, (1, N).
-
-    Nodes at one place are joined, and parts that cannot be drawn are left out.
-    """
-    p, masked_points = as_numbers("points", points)
-    v, masked = as_numbers("velocity", first_step(velocity))
-    try:
-        corners = np.asarray(triangles)
-    except ValueError as error:
-        raise FieldError(
-            f"triangles is not an array ({error}); expected three node numbers in every row"
-        ) from error
-    mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
-    arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
-    on_cells = {
-        k: with_gaps(f"cell_scalars[{k!r}]", first_step(s)) for k, s in cell_scalars.items()
-    }
-    count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
-    faults = _faults(p, corners, v, count, times, mask, arrays)
-    raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
-    p = three_components(p)
-    v = three_components(v)
-    v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
-    finite = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
-    ok: Bools = np.asarray(finite if mask is None else finite & mask)
-    v = np.asarray(np.where(ok[:, None], v, np.nan))
-    raise_faults(range_faults(p[None], v, ok[None]))
-    steps: Steps = v
-    if isinstance(velocity, LazySteps):
-        steps = velocity.map(partial(_row, ok))
-    data = {
-        name: scalars[name].map(_as_row)
-        if isinstance(scalars[name], LazySteps)
-        else scalar_steps(s, (1, len(p)))
-        for name, s in arrays.items()
-    }
-    drawn, pairs = _usable(p, corners.astype(np.intp))
-    cells, corners = len(corners), corners[drawn].astype(np.intp)
-    if not (ok[corners].all(axis=1)).any():
-        raise FieldError(
-            f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
-            "check the triangles and the mask"
-        )
-    # Unknown positions must not take part in computations.
-    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
-    same = merged_nodes(p, corners, pairs)
-    is_joined = same != np.arange(len(p))
-    if is_joined.any():
-        moved = is_joined[corners].any(axis=1)
-        corners = same[corners]
-        moved[moved] = ~solid_triangles(p, corners[moved])
-        corners, drawn = corners[~moved], drawn[~moved]
-    is_used = np.zeros(len(p), dtype=bool)
-    is_used[corners] = True
-    used = np.flatnonzero(is_used)
-    number = np.where(is_used, np.cumsum(is_used) - 1, -1)
-    if len(used) < len(p):
-        ok, steps, data = _joined(number[same], len(used), ok, steps, data)
-        p = p[used]
-    steps = map_steps(steps, partial(_at_rest, ~ok))
-    for name, s in on_cells.items():
-        late = cell_scalars[name]
-        if isinstance(late, LazySteps):
-            data[name] = late.map(partial(_as_row, at=drawn))
-        else:
-            data[name] = scalar_steps(s, (1, cells))[..., drawn]
-    nodes = {"points": p[None].copy("C"), "triangles": number[corners], "valid": ok[None]}
-    return {**nodes, "velocity": steps, "scalars": data}
-
-
-def _as_row(step: Floats, at: Any = slice(None)) -> Floats:
-    """Return some values of a step, (N, ...), as a row of nodes, (1, N, ...)."""
-    return step[None, at]
-
-
-def _at_rest(unused: Bools, step: Floats) -> Floats:
-    """Return a step, (1, N, 3), that is zero at nodes that are not in use."""
-    return np.where(unused[:, None], 0.0, step)
-
-
-def _row(ok: Bools, step: Floats) -> Floats:
-    """Return a step (1, N, 3) of (N, 2 or 3): nodes that are not in use have NaN."""
-    step = np.where(np.isfinite(step).all(axis=-1, keepdims=True), step, 0.0)
-    return np.where(ok[:, None], three_components(step), np.nan)[None]
-
-
-def _faults(
-    p: Floats,
-    corners: Any,
-    v: Floats,
-    steps: int,
-    times: Floats | None,
-    valid: Any,
-    scalars: Mapping[str, Floats],
-) -> list[str]:
-    if p.ndim != 2 or p.shape[-1] not in (2, 3) or not len(p):
-        return [f"points has shape {p.shape}; expected (N, 2) or (N, 3), one row for each node"]
-    faults, count = [], len(p)
-    if corners.ndim != 2 or corners.shape[-1] != 3 or corners.dtype.kind not in "iu":
-        faults.append(
-            f"triangles has shape {corners.shape} and type {corners.dtype}; expected whole "
-            "numbers of shape (M, 3): the nodes at the corners of each triangle"
-        )
-    elif not len(corners):
-        faults.append("triangles is empty; expected node numbers of shape (M, 3)")
-    elif corners.min() < 0 or corners.max() >= count:
-        wrong = int(corners.min() if corners.min() < 0 else corners.max())
-        faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, the rows of points")
-    return faults + nodal_faults((count,), v, steps, times, valid, scalars)
-
-
 def solid_triangles(p: Floats, corners: Indices) -> Bools:
     """Return which triangles (M,) have an area."""
     a, b, c = (p[corners[:, k]] for k in range(3))
@@ -164,26 +32,6 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
     longest = np.max([np.einsum("mc,mc->m", side, side) for side in sides], axis=0)
     area = np.linalg.norm(np.cross(*sides[:2]), axis=-1)
     return np.asarray(area > FLAT_TRIANGLE * longest)
-
-
-def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Return numbers of solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
-    finite = finite_nodes(p[None])[0]
-    placed = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
-    good = placed.copy()
-    good[placed] = solid_triangles(p, corners[placed])
-    once = ~repeated(corners)
-    flat = corners[placed & ~good]
-    is_point = needle_edges(p, flat)
-    counts = [
-        (int((~is_point.any(axis=1)).sum()), "without area"),
-        (int((good & ~once).sum()), "there twice"),
-        (int((~placed).sum()), "at points that are not finite"),
-    ]
-    listed = ", ".join(f"{count:,} {reason}" for count, reason in counts if count)
-    if listed:
-        notify(f"triangles are left out: {listed}", UserWarning)
-    return np.flatnonzero(good & once), edges_of(flat)[is_point]
 
 
 def nodal_means(
@@ -219,22 +67,6 @@ def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     return np.asarray(means.reshape(-1, *values.shape[1:]))
 
 
-def _joined(
-    number: Indices, count: int, ok: Bools, v: Steps, data: Mapping[str, Floats]
-) -> tuple[Bools, Floats, dict[str, Steps]]:
-    """Average the values of nodes at one place; nodes with the number -1 are left out."""
-    kept = np.flatnonzero(number >= 0)
-    summed = partial(sums_at, number[kept], count=count, of=kept)
-    mean = partial(_row_means, summed=summed)
-    usable = np.bincount(number[kept], ok[kept], count) > 0
-    return usable, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}
-
-
-def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
-    """Return :func:`known_means` of a row of nodes, (1, N, ...)."""
-    return known_means(step[0], summed)[None]
-
-
 def edges_of(triangles: Indices) -> Indices:
     """Return the edge opposite to each corner, (M, 3, 2): its nodes, the lower number first."""
     pairs = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, 1, axis=1)], axis=-1)
@@ -257,21 +89,41 @@ def repeated(triangles: Indices) -> Bools:
     return result
 
 
-def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
-    """Return for each node (N,) the first at its place; pairs that are ``joined`` are one."""
-    count = len(points)
+def _border_nodes(triangles: Indices) -> Indices:
+    """Return the nodes at sides that belong to one triangle."""
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
     lone = keys[differs[1:] & differs[:-1]]
-    border = np.unique(np.divmod(lone, int(triangles.max(initial=0)) + 1))
+    return np.unique(np.divmod(lone, int(triangles.max(initial=0)) + 1))
+
+
+def _twins(points: Floats, nodes: Indices) -> Indices:
+    """Return the first of some nodes (n,) at the exact place of each of them, (n,)."""
+    _, first, at = np.unique(points[nodes], axis=0, return_index=True, return_inverse=True)
+    return np.asarray(nodes[first[at.ravel()]])
+
+
+def same_places(points: Floats, triangles: Indices) -> Indices:
+    """Return the first node on a border at the exact place of each node, (N,)."""
+    result = np.arange(len(points))
+    border = _border_nodes(triangles)
+    if len(border):
+        result[border] = _twins(points, border)
+    return result
+
+
+def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
+    """Return for each node (N,) the first at its place; pairs that are ``joined`` are one."""
+    count = len(points)
+    border = _border_nodes(triangles)
     pairs = np.reshape(np.asarray(joined, dtype=np.intp), (-1, 2))
     if len(border):
         near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
         # Exact twins first, as in most files: few remain for the tree.
-        _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
-        twins = np.stack([border[first[at.ravel()]], border], axis=-1)
+        first = _twins(points, border)
+        twins = np.stack([first, border], axis=-1)
         pairs = np.concatenate([pairs, twins[twins[:, 0] != twins[:, 1]]])
-        left = border[first]
+        left = border[first == border]
         # Along this line hardly any two are as close.
         if (np.diff(np.sort((points[left] - points[left[0]]) @ GENERIC)) <= near).any():
             tree = scipy.spatial.cKDTree(points[left])

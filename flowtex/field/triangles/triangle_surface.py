@@ -18,10 +18,12 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
+from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
     SHARP,
     flipped,
     neighbours,
+    same_places,
     sums_at,
     triangle_normals,
 )
@@ -81,12 +83,35 @@ class TriangleSurface(NodeSurface):
     @cached_property
     def neighbours(self) -> Indices:
         """The triangle across the edge opposite to each corner, (M, 3), -1 at a border."""
-        return neighbours(self.points[0], self.triangles)
+        return neighbours(self.points[0], self.joined)
+
+    @cached_property
+    def places(self) -> Indices:
+        """First node at the place of each node, (N,): sharp edges have nodes for each face."""
+        return same_places(self.points[0], self.triangles)
+
+    @property
+    def joined(self) -> Indices:
+        """Nodes at the corners, (M, 3), the same ones for all faces at a sharp edge."""
+        return np.asarray(self.places[self.triangles])
 
     @cached_property
     def flipped(self) -> Bools:
         """Triangles that face the other way than the first one of their part, (M,)."""
-        return flipped(self.triangles, self.neighbours)
+        return flipped(self.joined, self.neighbours)
+
+    def with_faces(self) -> tuple[TriangleSurface, Indices]:
+        """Return the surface with nodes for each face at sharp edges, and which each was, (n,)."""
+        if self.frame is not None:
+            return self, np.arange(self.shape[1])
+        points = self.points[0]
+        triangles, origin = split_nodes(points, self.triangles, self.neighbours)
+        if len(origin) == len(points):
+            return self, origin
+        valid = self.valid[:, origin]
+        surface = TriangleSurface(self.points[:, origin], triangles, valid, on_globe=self.on_globe)
+        surface.__dict__.update(places=origin, neighbours=self.neighbours)
+        return surface, origin
 
     @cached_property
     def crosses(self) -> Floats:

@@ -15,8 +15,10 @@ import numpy as np
 from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
     needle_edges,
+    neighbours,
     nodal_means,
     solid_triangles,
     triangle_normals,
@@ -151,10 +153,17 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
     areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
+    origin = np.arange(len(points))
+    if velocity.where == "cells" and cut is None:
+        # Means of cells are those of one face.
+        beside = neighbours(points, triangles)
+        triangles, origin = split_nodes(points, triangles, beside)
+        points = points[origin]
 
     def nodes(array: MeshArray) -> Floats:
         if array.where == "points" or cut is not None:
-            return vectors.values_of(surface, replace(array, where="points")).astype(np.float64)
+            on_points = replace(array, where="points")
+            return vectors.values_of(surface, on_points)[origin].astype(np.float64)
         values = vectors.values_of(surface, array).astype(np.float64)
         finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), finite)[0]
@@ -164,7 +173,7 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
 
     return Sheet(
         points=points,
-        shown=np.asarray(surface.point_data[HIDDEN]) <= 0,
+        shown=np.asarray(surface.point_data[HIDDEN])[origin] <= 0,
         arrays=[a for a in vectors.catalogue(mesh) if a.name in vectors.data_of(surface, a.where)],
         nodes=nodes,
         flat=flat,

@@ -2,9 +2,9 @@
 
 Bins are cubes whose side is about twice the edges where they lie, and twice as long at each
 next level, so that a mesh of very different cells loses three nodes of four everywhere. Nodes on
-borders are binned apart from the others, which keeps outlines, and so are nodes of two sides of a
-thin sheet, and of parts that are not connected. Triangles remain where their corners lie in three
-bins.
+borders and sharp edges are binned apart from the others, which keeps outlines, and so are nodes of
+two sides of a thin sheet, and of parts that are not connected. Triangles remain where their corners
+lie in three bins. A bin at a sharp edge becomes a node for each face, all at one place.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import dot, norm
@@ -50,7 +51,11 @@ class Clusters:
     number: Indices  #: Node of this level for each node of the whole field, or -1, (N,).
     #: Sides of the bins of the next level, a power of two times the first, (n,).
     sides: Floats
-    border: Bools  #: Nodes on the border of the drawn triangles, (n,).
+    #: First node at the place of each, (n,): at sharp edges each face has its own.
+    places: Indices
+    face: Indices  #: The part without sharp edges that each node belongs to, (n,).
+    edge: Indices  #: The face, sharp edge or corner that each node lies on, (n,), from 0.
+    border: Bools  #: Nodes on the border of the drawn triangles, or on sharp edges, (n,).
     normals: Floats  #: Normals, (n, 3).
     part: Indices  #: Connected part of each node, (n,), numbered in the order of their extents.
 
@@ -81,14 +86,22 @@ class Clusters:
         if not surface.cells.all():
             triangles, crosses = triangles[surface.cells], crosses[surface.cells]
         around = np.repeat(np.arange(len(triangles)), 3)
-        normals = sums_at(triangles.ravel(), crosses, field.shape[1], around)
+        places = surface.places
+        joined = places[triangles]
+        normals = sums_at(joined.ravel(), crosses, field.shape[1], around)[places]
+        sides = _sides(norm(crosses), joined, len(normals), surface.extent)[places]
+        face = _faces(surface)
+        border[np.bincount(places)[places] > 1] = True
         return cls(
             field,
             field,
             triangles,
             surface.drawn,
             np.arange(field.shape[1]),
-            _sides(norm(crosses), triangles, len(normals), surface.extent),
+            sides,
+            places,
+            face,
+            _edges(face, places),
             border,
             normals,
             part,
@@ -96,28 +109,48 @@ class Clusters:
 
     def coarser(self) -> Clusters:
         """Return the next level, without triangles if all are smaller than the bins."""
-        cluster = self._compact(self._bins())
-        corners, cells = _once(cluster[self.triangles])
-        used = np.zeros(int(cluster.max(initial=-1)) + 1, dtype=bool)
+        together = self._compact(self._bins())[self.places]
+        corners, cells = _once(together[self.triangles])
+        # Each face has its own nodes.
+        faces = int(self.face.max(initial=0)) + 1
+        kinds, cluster = np.unique(together * faces + self.face, return_inverse=True)
+        face = self.face[self.triangles[cells, :1]]
+        corners = np.searchsorted(kinds, corners * faces + face)
+        used = np.zeros(len(kinds), dtype=bool)
         used[corners] = True
         count, fresh = int(used.sum()), np.where(used, np.cumsum(used) - 1, -1)
         cluster, corners = fresh[cluster], fresh[corners]
+        _, first, at = np.unique(kinds[used] // faces, return_index=True, return_inverse=True)
+        places = first[at]
         number = np.where(self.number >= 0, cluster[self.number], -1)
         kept = cluster >= 0
         sides, border = np.zeros(count), np.zeros(count, dtype=bool)
-        part = np.zeros(count, dtype=np.intp)
+        part, edge = np.zeros((2, count), dtype=np.intp)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
         part[cluster[kept]] = self.part[kept]
-        normals = sums_at(cluster[kept], self.normals[kept], count)
-        field = _averaged(self.whole, number, corners)
+        edge[cluster[kept]] = self.edge[kept]
+        normals = sums_at(places[cluster[kept]], self.normals[kept], count)[places]
+        field = _averaged(self.whole, number, places, corners)
         kept = _untangled(field.points[0], corners, normals, border)
         corners, cells = corners[kept], self.cells[cells[kept]]
         # A cell has the value of one of those in its place: means may be of none, such as a mark.
         flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
         field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
-        drawn = np.arange(len(corners))
-        return Clusters(self.whole, field, corners, drawn, number, sides, border, normals, part)
+        return Clusters(
+            whole=self.whole,
+            field=field,
+            triangles=corners,
+            cells=np.arange(len(corners)),
+            number=number,
+            sides=sides,
+            places=places,
+            face=kinds[used] % faces,
+            edge=edge,
+            border=border,
+            normals=normals,
+            part=part,
+        )
 
     def _bins(self) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""
@@ -130,9 +163,10 @@ class Clusters:
         key = 4 * size + 2 * drawn + self.border
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
-        if self.part.any():
-            bins = np.unique(key, return_inverse=True)[1]
-            key = bins * (int(self.part.max()) + 1) + self.part
+        for kind in (self.part, self.edge):
+            if kind.any():
+                bins = np.unique(key, return_inverse=True)[1]
+                key = bins * (int(kind.max()) + 1) + kind
         _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
         away = np.einsum("nc,nc->n", self.normals, self.normals[first][cluster]) < 0
         return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
@@ -148,9 +182,9 @@ class Clusters:
         for k in range(3):
             node, beside = self.triangles[:, k - 1], self.triangles[:, k]
             candidate = cluster[beside]
-            other = np.flatnonzero(
-                (cluster[node] != candidate) & (self.border[node] == self.border[beside])
-            )
+            alike = self.border[node] == self.border[beside]
+            alike &= self.edge[node] == self.edge[beside]
+            other = np.flatnonzero((cluster[node] != candidate) & alike)
             node, candidate = node[other], candidate[other]
             # Column by column, which is several times as fast.
             along = zip(points.T, center.T, strict=True)
@@ -177,17 +211,43 @@ def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
     return levels
 
 
-def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowField:
-    """Return a field on other triangles, whose nodes have the means of the nodes of a number."""
+def _faces(surface: TriangleSurface) -> Indices:
+    """Return the part without sharp edges that each node (N,) of a surface belongs to."""
+    count = surface.shape[1]
+    if (surface.places == np.arange(count)).all():
+        return np.zeros(count, dtype=np.intp)
+    first, second, third = surface.triangles.T
+    links = np.concatenate([first, second]), np.concatenate([second, third])
+    graph = scipy.sparse.coo_array((np.ones(len(links[0]), bool), links), shape=(count, count))
+    return scipy.sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.intp)
+
+
+def _edges(face: Indices, places: Indices) -> Indices:
+    """Return numbers from 0, (n,), the same for nodes that lie in or between the same faces."""
+    if not face.any():
+        return face
+    least, most = face.copy(), face.copy()
+    np.minimum.at(least, places, face)
+    np.maximum.at(most, places, face)
+    kinds = np.stack([least, most, np.bincount(places, minlength=len(face))], axis=-1)[places]
+    return np.asarray(np.unique(kinds, axis=0, return_inverse=True)[1].ravel(), np.intp)
+
+
+def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Indices) -> FlowField:
+    """Return a field on other triangles, whose nodes have the means of the nodes of a number.
+
+    All nodes (n,) at the ``places`` of others, (n,), have one position.
+    """
     kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
     summed = partial(sums_at, number[kept], count=count, of=kept)
+    placed = partial(sums_at, places[number[kept]], count=count, of=kept)
 
     def means(steps: Steps) -> Steps:
         return map_steps(steps, lambda step: known_means(step[0], summed)[None])
 
     return replace(
         field,
-        points=known_means(field.points[0], summed)[None],
+        points=known_means(field.points[0], placed)[None, places],
         velocity=means(field.velocity),
         valid=np.ones((1, count), dtype=bool),
         scalars={

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.grids.grid_nodes import neighbour_pairs
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
 ROUNDING_CELLS = 1e-9
@@ -127,6 +130,9 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
         edges = neighbour_pairs(field.shape, field.periodic)
     else:
         edges = np.concatenate([field.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+        places = cast("TriangleSurface", field.surface).places
+        twins = np.flatnonzero(places != np.arange(len(places)))
+        edges = np.concatenate([edges, np.stack([places[twins], twins], axis=-1)])
     edges = edges[valid[edges].all(axis=1)]
     needed = speed[edges].max(axis=1)
     order = np.argsort(needed)

@@ -46,10 +46,14 @@ class TriangleMesh:
     metric: Floats
     heights: Floats  #: Distance from each corner to the edge opposite, over the size, (M, 3).
     size: Floats  #: Mean length of the sides, (M,).
-    #: Corners by node: numbers of triangles times three plus that of the corner, those of node n
-    #: from ``first[n]`` to ``first[n + 1]``; only of triangles with data.
+    #: Corners by place and by node: numbers of triangles times three plus that of the corner, those
+    #: of node n from ``first[n]`` to ``last[n]``; only of triangles with data.
     around: Indices
     first: Indices
+    last: Indices
+    #: The same for all nodes at the place of each, which are several at sharp edges.
+    place_first: Indices
+    place_last: Indices
 
     @classmethod
     def of(cls, surface: TriangleSurface) -> TriangleMesh:
@@ -65,8 +69,15 @@ class TriangleMesh:
             block = slice(start, start + BLOCK_TRIANGLES)
             _measure(surface, block, rates[block], metric[block], heights[block], size[block])
         shown = np.flatnonzero(surface.cells)
-        nodes = surface.triangles[shown].ravel()
+        place, rank = surface.places, np.empty(surface.shape[1], dtype=np.intp)
+        # Nodes at one place follow each other.
+        rank[np.argsort(place, kind="stable")] = np.arange(len(rank))
+        nodes = rank[surface.triangles[shown].ravel()]
         order = np.argsort(nodes, kind="stable")
+        ends = np.searchsorted(nodes[order], np.arange(len(rank) + 1))
+        first, last = ends[rank], ends[rank + 1]
+        place_last = last.copy()
+        np.maximum.at(place_last, place, last)
         return cls(
             corners=surface.triangles,
             across=_across(surface),
@@ -75,7 +86,10 @@ class TriangleMesh:
             heights=heights,
             size=size,
             around=(3 * shown[:, None] + np.arange(3)).ravel()[order],
-            first=np.searchsorted(nodes[order], np.arange(surface.shape[1] + 1)),
+            first=first,
+            last=last,
+            place_first=first[place],
+            place_last=place_last[place],
         )
 
 
@@ -123,7 +137,7 @@ def _dot(one: Floats, two: Floats) -> Floats:
 
 
 def _across(surface: TriangleSurface) -> Indices:
-    corners, beside = surface.triangles, surface.neighbours
+    corners, beside = surface.joined, surface.neighbours
     result = np.full(beside.shape, -1, dtype=np.intp)
     for k in range(3):
         near = np.flatnonzero((beside[:, k] >= 0) & surface.cells)

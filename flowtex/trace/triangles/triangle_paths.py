@@ -107,22 +107,37 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
     """Return corners to start at, as three times the triangle plus the corner, (N,).
 
     It is the one around each node (N,), which has at least one, into whose triangle the velocity
-    points most.
+    points most. Where it leads out of a face at a sharp edge, the path begins in another one, if
+    the velocity there leads into that.
     """
     mesh = motion.mesh
-    start, count = mesh.first[nodes], mesh.first[nodes + 1] - mesh.first[nodes]
-    begins = np.cumsum(count) - count
-    owner = np.repeat(np.arange(len(nodes)), count)
-    at = mesh.around[np.arange(len(owner)) + (start - begins)[owner]]
-    leasts = np.empty(mesh.corners.shape)
+    inwards, sizes = np.empty(mesh.corners.shape), np.empty(mesh.corners.shape)
     with np.errstate(all="ignore"):
         for corner in range(3):
             inward = _three(motion.at_corner(corner)) * mesh.heights.T
             beside = inward[corner - 2], inward[corner - 1]
-            leasts[:, corner] = np.nan_to_num(np.minimum(*beside))
-    least = leasts.take(at)
-    best = np.flatnonzero(least == np.maximum.reduceat(least, begins)[owner])[::-1]
-    result = np.empty(len(nodes), dtype=np.intp)
+            inwards[:, corner] = np.nan_to_num(np.minimum(*beside))
+            sizes[:, corner] = np.nan_to_num(np.abs(inward).sum(axis=0))
+    result = _most_inward(mesh, inwards, mesh.first[nodes], mesh.last[nodes])
+    first, last = mesh.place_first[nodes], mesh.place_last[nodes]
+    leaves = inwards.take(result) < -EDGE_ROUNDING * sizes.take(result)
+    out = np.flatnonzero(leaves & (last - first > mesh.last[nodes] - mesh.first[nodes]))
+    if len(out):
+        other = _most_inward(mesh, inwards, first[out], last[out])
+        leads = inwards.take(other) > EDGE_ROUNDING * sizes.take(other)
+        result[out[leads]] = other[leads]
+    return result
+
+
+def _most_inward(mesh: TriangleMesh, inwards: Floats, first: Indices, last: Indices) -> Indices:
+    """Return those of corners from ``first`` to ``last`` (N,) with the most inward velocity."""
+    count = last - first
+    begins = np.cumsum(count) - count
+    owner = np.repeat(np.arange(len(first)), count)
+    at = mesh.around[np.arange(len(owner)) + (first - begins)[owner]]
+    inward = inwards.take(at)
+    best = np.flatnonzero(inward == np.maximum.reduceat(inward, begins)[owner])[::-1]
+    result = np.empty(len(first), dtype=np.intp)
     result[owner[best]] = at[best]
     return result
 

@@ -66,7 +66,7 @@ def triangle_slices(
     if compose and len(steps) == 1:
         direct = _direct_lags(field, parameter, lags, unit)
     followed = chosen if direct == len(lags) else field.valid
-    at = np.flatnonzero(followed[0] & (np.diff(mesh.first) > 0))
+    at = np.flatnonzero(followed[0] & (mesh.last > mesh.first))
     sides = (-1.0, 1.0) if two_sided else (-1.0,)
     displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
     reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)

@@ -1,0 +1,102 @@
+"""Sharp edges of a surface of triangles, whose faces have velocities of other directions there.
+
+Each face has its own nodes there, so that values of faces do not mix. A face is all triangles
+around a node that are joined by edges that are not sharp.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.arrays import bounds, dot, norm
+from flowtex.field.triangles.triangle_nodes import triangle_normals
+
+#: Cosine of the angle between two triangles from which on their edge is sharp; it is 1 in a plane.
+#: The sides of a prism of ten sides are faces, and those of a cylinder in twelve parts are not.
+SHARP_EDGE = 0.82
+#: Height of a triangle, as a share of the surface's extent, below which its normal is rounding.
+LEAST_HEIGHT = 1e-6
+
+
+class _Edges(NamedTuple):
+    """Edges (E,) between two triangles each."""
+
+    near: Indices  #: One triangle, (E,).
+    far: Indices  #: The other one, (E,).
+    ends: Indices  #: Nodes at both ends, (2, E).
+    near_corners: Indices  #: Corners of the one triangle there, (2, E).
+    far_corners: Indices  #: Corners of the other one there, (2, E).
+
+    @classmethod
+    def of(cls, triangles: Indices, beside: Indices) -> _Edges:
+        near, corner = np.nonzero(beside > np.arange(len(triangles))[:, None])
+        far = beside[near, corner]
+        near_corners = (corner + np.array([[1], [2]])) % 3
+        ends = triangles[near, near_corners]
+        far_corners = np.argmax(triangles[far] == ends[..., None], axis=-1)
+        return cls(near, far, ends, near_corners, far_corners)
+
+    def sharp(self, points: Floats, triangles: Indices) -> Bools:
+        """Return which are sharp, (E,)."""
+        crosses = triangle_normals(points, triangles)
+        area = norm(crosses)
+        cosine = dot(crosses[self.near], crosses[self.far])
+        # Two triangles that face alike pass their edge in opposite directions.
+        alike = (self.far_corners[1] - self.far_corners[0]) % 3 == 2
+        cosine = np.where(alike, cosine, -cosine)
+        result = cosine < SHARP_EDGE * area[self.near] * area[self.far]
+        few = np.flatnonzero(result)
+        length = norm(points[self.ends[1, few]] - points[self.ends[0, few]])
+        least = LEAST_HEIGHT * float(np.ptp(bounds(points), axis=0).max()) * length
+        lower = np.minimum(area[self.near[few]], area[self.far[few]])
+        result[few] = lower > least
+        return np.asarray(result)
+
+
+def split_nodes(points: Floats, triangles: Indices, beside: Indices) -> tuple[Indices, Indices]:
+    """Give each face its own nodes at sharp edges.
+
+    Parameters
+    ----------
+    points
+        Positions of the nodes, (N, 3).
+    triangles
+        Nodes at the corners of triangles, (M, 3).
+    beside
+        The triangle across the edge opposite to each corner, (M, 3), or -1.
+
+    Returns
+    -------
+    triangles
+        The triangles, (M, 3), with n nodes, n >= N.
+    origin
+        Which node each of them was, (n,); the first N keep their numbers.
+    """
+    count = len(points)
+    edges = _Edges.of(triangles, beside)
+    sharp = edges.sharp(points, triangles)
+    at_edge = np.zeros(count, dtype=bool)
+    at_edge[edges.ends[:, sharp]] = True
+    loose = np.flatnonzero(at_edge[triangles])  # corners
+    if not len(loose):
+        return triangles, np.arange(count)
+    joined = at_edge[edges.ends] & ~sharp
+    near = (3 * edges.near + edges.near_corners)[joined]
+    far = (3 * edges.far + edges.far_corners)[joined]
+    links = np.searchsorted(loose, near), np.searchsorted(loose, far)
+    graph = scipy.sparse.coo_array(
+        (np.ones(len(near), bool), links), shape=(len(loose), len(loose))
+    )
+    face = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    first = np.unique(face, return_index=True)[1]
+    nodes = triangles.ravel()[loose[first]]  # those of the faces
+    is_new = np.ones(len(nodes), dtype=bool)
+    is_new[np.unique(nodes, return_index=True)[1]] = False
+    number = np.where(is_new, count - 1 + np.cumsum(is_new), nodes)
+    result = triangles.copy()
+    result.ravel()[loose] = number[face]
+    return result, np.concatenate([np.arange(count), nodes[is_new]])

@@ -1,0 +1,216 @@
+"""Arguments of a field on triangles as its arrays, without parts that cannot be drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError, notify, raise_faults
+from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
+from flowtex.field.triangles.triangle_nodes import (
+    edges_of,
+    known_means,
+    merged_nodes,
+    needle_edges,
+    repeated,
+    solid_triangles,
+    sums_at,
+)
+from flowtex.field.triangles.triangle_surface import TriangleSurface
+from flowtex.field.validation import (
+    as_numbers,
+    cell_faults,
+    finite_nodes,
+    nodal_faults,
+    range_faults,
+    scalar_steps,
+    three_components,
+    with_gaps,
+)
+
+
+def triangle_nodes(
+    points: ArrayLike,
+    triangles: ArrayLike,
+    velocity: Any,
+    times: Floats | None,
+    valid: ArrayLike | None,
+    scalars: Mapping[str, Any],
+    cell_scalars: Mapping[str, Any],
+    *,
+    on_globe: bool,
+) -> tuple[TriangleSurface, dict[str, Any]]:
+    """Check arrays; return the surface and the arguments of a field whose nodes are a row, (1, N).
+
+    Nodes at one place are joined, but at sharp edges each face has its own; parts that cannot be
+    drawn are left out.
+    """
+    p, masked_points = as_numbers("points", points)
+    v, masked = as_numbers("velocity", first_step(velocity))
+    try:
+        corners = np.asarray(triangles)
+    except ValueError as error:
+        raise FieldError(
+            f"triangles is not an array ({error}); expected three node numbers in every row"
+        ) from error
+    mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
+    arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
+    on_cells = {
+        k: with_gaps(f"cell_scalars[{k!r}]", first_step(s)) for k, s in cell_scalars.items()
+    }
+    count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
+    faults = _faults(p, corners, v, count, times, mask, arrays)
+    raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
+    p = three_components(p)
+    v = three_components(v)
+    v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
+    finite = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
+    ok: Bools = np.asarray(finite if mask is None else finite & mask)
+    v = np.asarray(np.where(ok[:, None], v, np.nan))
+    raise_faults(range_faults(p[None], v, ok[None]))
+    steps: Steps = v
+    if isinstance(velocity, LazySteps):
+        steps = velocity.map(partial(_row, ok))
+    data = {
+        name: scalars[name].map(_as_row)
+        if isinstance(scalars[name], LazySteps)
+        else scalar_steps(s, (1, len(p)))
+        for name, s in arrays.items()
+    }
+    drawn, pairs = _usable(p, corners.astype(np.intp))
+    cells, corners = len(corners), corners[drawn].astype(np.intp)
+    if not (ok[corners].all(axis=1)).any():
+        raise FieldError(
+            f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
+            "check the triangles and the mask"
+        )
+    # Unknown positions must not take part in computations.
+    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
+    placed = _placed(p, corners, pairs, ok, on_globe=on_globe)
+    surface, drawn = placed.surface, drawn[placed.kept]
+    if not placed.unchanged:
+        steps, data = placed.means(steps), {k: placed.means(s) for k, s in data.items()}
+    steps = map_steps(steps, partial(_at_rest, ~surface.valid[0]))
+    for name, s in on_cells.items():
+        late = cell_scalars[name]
+        if isinstance(late, LazySteps):
+            data[name] = late.map(partial(_as_row, at=drawn))
+        else:
+            data[name] = scalar_steps(s, (1, cells))[..., drawn]
+    nodes = {"points": surface.points, "triangles": surface.triangles, "valid": surface.valid}
+    return surface, {**nodes, "velocity": steps, "scalars": data}
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """A surface whose nodes have the means of the given ones at their places, in their faces."""
+
+    surface: TriangleSurface
+    kept: Bools  #: Triangles that have an area with these nodes, (M,).
+    given: Indices  #: Numbers of given nodes, (n,), in the order of those that they belong to.
+    node: Indices  #: The node of the surface that each of them belongs to, (n,).
+    unchanged: bool  #: Whether all given nodes are those of the surface.
+
+    def means(self, steps: Steps) -> Steps:
+        """Return means (1, N, ...) of the steps of given nodes."""
+        summed = partial(sums_at, self.node, count=self.surface.shape[1], of=self.given)
+        return map_steps(steps, partial(_row_means, summed=summed))
+
+
+def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
+    """Return :func:`known_means` of a row of nodes, (1, N, ...)."""
+    return known_means(step[0], summed)[None]
+
+
+def _placed(p: Floats, corners: Indices, pairs: Indices, ok: Bools, *, on_globe: bool) -> _Placed:
+    """Join given nodes (N,) at one place, and pairs of them, but not those of two faces."""
+    same = merged_nodes(p, corners, pairs)
+    is_joined = same != np.arange(len(p))
+    kept = ~is_joined[corners].any(axis=1)
+    kept[~kept] = solid_triangles(p, same[corners[~kept]])
+    corners = corners[kept]
+    is_used = np.zeros(len(p), dtype=bool)
+    is_used[same[corners]] = True
+    number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]
+    given = np.flatnonzero(number >= 0)
+    valid = np.bincount(number[given], ok[given]) > 0
+    joined = TriangleSurface(p[is_used][None], number[corners], valid[None], on_globe=on_globe)
+    joined.__dict__["places"] = np.arange(joined.shape[1])
+    surface, origin = joined.with_faces()
+    unchanged = bool(is_used.all()) and surface is joined
+    if surface is joined:
+        return _Placed(surface, kept, given, number[given], unchanged)
+    is_split = (np.bincount(origin) > 1)[origin]
+    given = given[~is_split[number[given]]]
+    faced = is_split[surface.triangles]
+    own = np.unique(np.stack([surface.triangles[faced], corners[faced]], axis=-1), axis=0)
+    given, node = np.append(given, own[:, 1]), np.append(number[given], own[:, 0])
+    surface.valid = np.bincount(node, ok[given])[None] > 0
+    return _Placed(surface, kept, given, node, unchanged)
+
+
+def _as_row(step: Floats, at: Any = slice(None)) -> Floats:
+    """Return some values of a step, (N, ...), as a row of nodes, (1, N, ...)."""
+    return step[None, at]
+
+
+def _at_rest(unused: Bools, step: Floats) -> Floats:
+    """Return a step, (1, N, 3), that is zero at nodes that are not in use."""
+    return np.where(unused[:, None], 0.0, step)
+
+
+def _row(ok: Bools, step: Floats) -> Floats:
+    """Return a step (1, N, 3) of (N, 2 or 3): nodes that are not in use have NaN."""
+    step = np.where(np.isfinite(step).all(axis=-1, keepdims=True), step, 0.0)
+    return np.where(ok[:, None], three_components(step), np.nan)[None]
+
+
+def _faults(
+    p: Floats,
+    corners: Any,
+    v: Floats,
+    steps: int,
+    times: Floats | None,
+    valid: Any,
+    scalars: Mapping[str, Floats],
+) -> list[str]:
+    if p.ndim != 2 or p.shape[-1] not in (2, 3) or not len(p):
+        return [f"points has shape {p.shape}; expected (N, 2) or (N, 3), one row for each node"]
+    faults, count = [], len(p)
+    if corners.ndim != 2 or corners.shape[-1] != 3 or corners.dtype.kind not in "iu":
+        faults.append(
+            f"triangles has shape {corners.shape} and type {corners.dtype}; expected whole "
+            "numbers of shape (M, 3): the nodes at the corners of each triangle"
+        )
+    elif not len(corners):
+        faults.append("triangles is empty; expected node numbers of shape (M, 3)")
+    elif corners.min() < 0 or corners.max() >= count:
+        wrong = int(corners.min() if corners.min() < 0 else corners.max())
+        faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, the rows of points")
+    return faults + nodal_faults((count,), v, steps, times, valid, scalars)
+
+
+def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
+    """Return numbers of solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
+    finite = finite_nodes(p[None])[0]
+    placed = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
+    good = placed.copy()
+    good[placed] = solid_triangles(p, corners[placed])
+    once = ~repeated(corners)
+    flat = corners[placed & ~good]
+    is_point = needle_edges(p, flat)
+    counts = [
+        (int((~is_point.any(axis=1)).sum()), "without area"),
+        (int((good & ~once).sum()), "there twice"),
+        (int((~placed).sum()), "at points that are not finite"),
+    ]
+    listed = ", ".join(f"{count:,} {reason}" for count, reason in counts if count)
+    if listed:
+        notify(f"triangles are left out: {listed}", UserWarning)
+    return np.flatnonzero(good & once), edges_of(flat)[is_point]
