@@ -92,7 +92,10 @@ export function recoloured(
   if (Array.isArray(choice.clim)) [scalars.low, scalars.high] = choice.clim;
   if (choice.clim !== undefined) scalars.auto = !choice.clim;
   if (scalars.auto && scalars.choices[scalars.number]) {
-    const { low, high, cmap = "" } = scalars.choices[scalars.number];
+    const { cmap = "", least, ...usual } = scalars.choices[scalars.number];
+    // A logarithmic map shows all values, if they have logarithms.
+    const isWhole = scalars.log && least > 0;
+    const [low, high] = isWhole ? [least, usual.most] : [usual.low, usual.high];
     const isSigned = (low < 0 && high > 0) || scalars.diverging.includes(cmap);
     const widest = isSigned && scalars.diverging.includes(scalars.cmap);
     const end = Math.max(-low, high);

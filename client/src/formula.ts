@@ -4,7 +4,8 @@
 
 import type { Camera } from "./camera.ts";
 import { closedOrbits, fixedPoints, nullclines, separatrices, trajectory, type Ends, type Pair } from "./fixedpoints.ts";
-import { LINE, stepOf, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
+import { LINE, stepOf, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type RangeRules, type Tree } from "./protocol.ts";
+import { rangeOf } from "./ranges.ts";
 import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
@@ -17,6 +18,8 @@ const PARAMETER = "formula.";
 const [HALO, BEFORE] = [36, 8];
 /** Mip levels of a tile, numbers of a block's place, and one in half precision. */
 const [LEVELS, PLACE, HALF_ONE] = [3, 5, 0x3c00];
+/** Speeds from which on a formula counts as undefined. */
+const MOST_SPEED = 1e30;
 /** Saddles of which there are lines: as many as can be asked for. */
 const MOST_SADDLES = 50;
 /** Size of a window over that of the view, at least, and steps of its middle over its size: as in Python. */
@@ -141,12 +144,28 @@ class Grid {
         const [u, v] = this.rates.map((rate) => rate(values));
         const speed = Math.hypot(u, v);
         // Where it is undefined the velocity is zero.
-        if (!(speed > 0 && speed < 1e30)) continue;
+        if (!(speed > 0 && speed < MOST_SPEED)) continue;
         speeds[n] = speed;
         data.set([((u / dx) * size) / speed, ((v / dy) * size) / speed, speed / typical], 3 * n);
       }
     }
     return { flow: { data, shape: [rows, columns, 3] }, speeds };
+  }
+
+  /** Speeds at the nodes of the whole at a time, where they are defined. */
+  speeds(time: number, parameters: Values): number[] {
+    const { rate } = this.rate(time, parameters);
+    const [rows, columns] = this.header.geometry.shape;
+    const root = this.header.pyramid?.depth ?? 0;
+    const speeds: number[] = [];
+    for (let j = 0; j < rows; j += 1) {
+      const y = this.at(0, root, j);
+      for (let i = 0; i < columns; i += 1) {
+        const speed = Math.hypot(...rate(this.at(1, root, i), y));
+        if (speed < MOST_SPEED) speeds.push(speed);
+      }
+    }
+    return speeds;
   }
 
   /** Positions of the nodes of a window and of those around it, relative to its middle. */
@@ -195,7 +214,10 @@ export class FormulaSource {
   readonly atOnce = 2;
   private readonly header: Header;
   private readonly grid: Grid;
+  private readonly rules: RangeRules;
   private parameters: Values = {};
+  /** Whether they have been others than those of the header. */
+  private hasMoved = false;
   /** Says which numbers belong to digests. */
   private state = "";
   /** Where nullclines are as fine as the view. */
@@ -204,6 +226,7 @@ export class FormulaSource {
   constructor(header: Header, formula: FormulaHeader) {
     this.header = header;
     this.grid = new Grid(header, formula);
+    this.rules = formula.range;
     this.follow(header.settings);
   }
 
@@ -213,31 +236,29 @@ export class FormulaSource {
     this.parameters = Object.fromEntries(own.map(([name, value]) => [name.slice(PARAMETER.length), Number(value)]));
     const before = this.state;
     this.state = JSON.stringify([this.header.formula, this.header.geometry, this.parameters]);
-    if (before && before !== this.state) this.measure();
     return before !== this.state;
   }
 
-  /** Put the typical and the extreme speeds of the parameters into the header. */
+  /** Put the typical speed and the ranges of other parameters than its own into the header, if they are others. */
+  fit(): boolean {
+    const { table } = this.header;
+    const isMoved = table.some(({ name, default: own }) => name.startsWith(PARAMETER) && this.parameters[name.slice(PARAMETER.length)] !== own);
+    if (isMoved || this.hasMoved) this.measure();
+    this.hasMoved ||= isMoved;
+    return this.hasMoved;
+  }
+
   private measure(): void {
     const { speed, scalars, slices } = this.header;
     const every = Math.ceil(slices.times.length / MEASURED_STEPS);
-    const steps = slices.times.flatMap((_, step) => (step % every ? [] : [this.flow(step).speeds]));
-    let [sum, count, least, most] = [0, 0, Infinity, 0];
-    for (const value of steps.flatMap((speeds) => Array.from(speeds))) {
-      if (!value) continue;
-      [sum, count] = [sum + value ** 2, count + 1];
-      [least, most] = [Math.min(least, value), Math.max(most, value)];
-    }
-    if (!count) return;
-    if (!slices.trace?.timed) speed.typical = Math.sqrt(sum / count);
+    const steps = [...slices.times.keys()].filter((step) => step % every === 0);
+    const values = steps.flatMap((step) => this.grid.speeds(slices.times[step], this.parameters));
+    const moving = values.filter((value) => value > 0);
+    const sum = moving.reduce((total, value) => total + value ** 2, 0);
+    if (!slices.trace?.timed && moving.length) speed.typical = Math.sqrt(sum / moving.length);
+    const range = rangeOf(Float64Array.from(values), this.rules);
     const choice = scalars.choices[scalars.number];
-    if (choice) Object.assign(choice, { least, most });
-  }
-
-  /** The flow of the whole at a step. */
-  private flow(step: number): ReturnType<Grid["flow"]> {
-    const to = this.header.geometry.shape.map((n) => n - 1) as Pair;
-    return this.grid.flow({ level: this.header.pyramid?.depth ?? 0, from: [0, 0], to }, step, this.parameters);
+    if (choice && range) Object.assign(choice, range);
   }
 
   /** Follow a camera: the nullclines of these parts that it sees otherwise than before. */

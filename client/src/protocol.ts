@@ -262,7 +262,19 @@ export interface PoleHeader {
 export type Tree = number | string | Tree[];
 
 /** What the velocity is computed from, where the client does: flowtex/rendering/webgl/velocity.py. */
+/** How the range of colours follows from values: the names of flowtex/textures/tiles/shared.py. */
+export interface RangeRules {
+  percentiles: [number, number];
+  /** Length of a tail that colours leave out, and least share of the whole, in robust ranges. */
+  tail: number;
+  leastShare: number;
+  /** Shares of the greatest value: by which values are the same, and by which their range is widened. */
+  same: number;
+  widening: number;
+}
+
 export interface FormulaHeader {
+  range: RangeRules;
   /** The rates of the two coordinates, their names and ends. */
   trees: [Tree, Tree];
   /** Their derivatives, row by row. */

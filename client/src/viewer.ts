@@ -159,11 +159,17 @@ export class Viewer extends SceneView {
     if (!this.header) return;
     const colours = this.grounded(changes);
     Object.assign(this.header, colours);
+    this.fitColours();
     Object.assign(this.given ?? {}, changes); // a source reads there what is wanted
     this.scene?.forget("scalars");
     this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();
+  }
+
+  /** Have colours without a chosen range follow the parameters of a formula. */
+  private fitColours(): void {
+    if (this.header && this.requests.fit()) Object.assign(this.header, recoloured(this.header, {}, this.parts).colours);
   }
 
   /** Colours whose ground is that of the page, unless it is another one. */
@@ -195,8 +201,8 @@ export class Viewer extends SceneView {
     if (Object.entries(settings).every(([name, value]) => this.settings[name] === value)) return;
     Object.assign(this.settings, settings);
     if (this.requests.follow(this.settings)) {
+      this.recolour({});
       this.renew();
-      this.panel.showLegend();
       this.card.update();
     }
     this.panel.update();

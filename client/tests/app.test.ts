@@ -156,7 +156,7 @@ test("files are sent one after the other, and what goes wrong is told", async ()
 const CLIENT = `data:text/javascript,
   class Viewer {
     constructor(log, own) {
-      Object.assign(this, { log, own, header: null, playing: false, root: {}, stage: {}, canvas: { width: 300, height: 200 } });
+      Object.assign(this, { log, own, header: null, playing: false, player: { time: 7 }, root: {}, stage: {}, canvas: { width: 300, height: 200 } });
       this.panel = { fail: (...values) => log.push(["fail", ...values]) };
       for (const name of ["setHeader", "followSetting", "setCamera", "setTime", "followTime", "setClock",
         "setPart", "keepParts", "play", "pause", "change", "resize"])
@@ -246,7 +246,7 @@ test("the view shows what the server hands over, and follows it", async () => {
   const names = taken().filter(([name]) => name === "setHeader" || name === "setTime");
   assert.deepEqual(names, [["setHeader", one.header], ["setHeader", two.header], ["setTime", 5]]);
   await view.viewers[1].own.reader({ place: [0, 1] }, true);
-  assert.deepEqual(asked.at(-1), ["read", 1, { place: [0, 1], path: true }]);
+  assert.deepEqual(asked.at(-1), ["read", 1, { place: [0, 1], path: true, time: 7 }]);
   leave();
   assert.deepEqual(taken().at(-1), ["dispose"]);
 });

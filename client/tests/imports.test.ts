@@ -13,7 +13,7 @@ const LAYERS = [
   "protocol",
   "uniforms quality",
   "poles programs mesh lonlat meshlevels tilechoice arrowseeds player colours legend mercator",
-  "fixedpoints",
+  "fixedpoints ranges",
   "formula",
   "tracer sources/source",
   "sources/embedded sources/stream",

@@ -14,6 +14,7 @@ from pages import COMPLETE, acted, opened_page
 from PIL import Image
 
 import flowtex
+from flowtex.scene.scene import Scene
 from flowtex.trace.slices import typical_speed
 from paper import quality
 
@@ -154,3 +155,58 @@ def test_typical_and_greatest_speed_and_the_colour_bar_follow_the_slider(
             assert most == pytest.approx(np.max(field.speed), rel=1e-4)
             # The colours keep their range, and the bar says where values lie beyond it.
             assert end == high and is_above == (most > 1.001 * high)
+
+
+LIMITS = """async (b) => {
+  const { first } = document.querySelector("flowtex-view");
+  first.setSettings({ "formula.b": b });
+  const { low, high } = first.header.scalars;
+  return [low, high];
+}"""
+#: What the picture of a widget is sent when the kernel colours it again.
+AGAIN = """() => {
+  const { first } = document.querySelector("flowtex-view");
+  const { scalars, generation } = window.firstHeader;
+  first.setHeader({ ...first.header, scalars: structuredClone(scalars), generation });
+}"""
+
+
+@pytest.mark.parametrize("cmap", ["viridis", "RdBu"])
+def test_the_colours_follow_the_slider_unless_their_range_is_chosen(
+    browser: Browser, tmp_path: Path, cmap: str
+) -> None:
+    field = pendulum(b=(0.2, -3, 3), resolution=65)
+    path = flowtex.export(field, tmp_path / "page.html", samples=9, cmap=cmap)
+    view = "document.querySelector('flowtex-view').first"
+    with opened_page(browser, 320, 300) as page:
+        opened(page, path.path)
+        for b in (2.5, -3.0, 0.0, 0.2):
+            expected = Scene.of(pendulum(b=b, resolution=65), cmap=cmap).scalar_limits
+            assert page.evaluate(LIMITS, b) == pytest.approx(expected, rel=1e-6)
+        with acted(page):
+            page.evaluate(LIMITS, 2.5)
+        moved = picture(page)
+        other = tmp_path / "other.html"
+        flowtex.export(pendulum(b=(2.5, -3, 3), resolution=65), other, samples=9, cmap=cmap)
+        with opened_page(browser, 320, 300) as fresh:
+            opened(fresh, other)
+            assert rms(moved, picture(fresh)) < 2
+        page.evaluate(f"{view}.chooseColours({{ clim: [0, 3] }})")
+        assert page.evaluate(LIMITS, -1.0) == [0, 3]
+        page.evaluate(f"{view}.chooseColours({{ clim: null }})")
+        expected = Scene.of(pendulum(b=-1.0, resolution=65), cmap=cmap).scalar_limits
+        assert page.evaluate(LIMITS, -1.0) == pytest.approx(expected, rel=1e-6)
+
+
+def test_colours_sent_again_have_the_range_of_the_slider(browser: Browser, tmp_path: Path) -> None:
+    """As a kernel sends them, which does not know where the slider is."""
+    field = pendulum(b=(0.2, -3, 3), resolution=65)
+    path = flowtex.export(field, tmp_path / "page.html", samples=9)
+    view = "document.querySelector('flowtex-view').first"
+    with opened_page(browser, 320, 300) as page:
+        opened(page, path.path)
+        page.evaluate(f"{view}.header.generation = 1")
+        page.evaluate(f"window.firstHeader = structuredClone({view}.header)")
+        expected = page.evaluate(LIMITS, 2.5)
+        page.evaluate(AGAIN)
+        assert page.evaluate(LIMITS, 2.5) == expected

@@ -197,6 +197,11 @@ export class Requests {
     return this.formula?.follow(settings) ?? false;
   }
 
+  /** Have the header's ranges follow the parameters of a formula; returns whether they are others than its own. */
+  fit(): boolean {
+    return this.formula?.fit() ?? false;
+  }
+
   /** The trajectory through a point, where a formula gives it. */
   trajectory(position: Vector): ReturnType<FormulaSource["trajectory"]> {
     return this.formula?.trajectory(position) ?? null;

@@ -96,16 +96,17 @@ scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.fin
 if(number>=0){let{name,label,unit:unit3,steps,flat}=scalars.choices[number];Object.assign(scalars,{name,label,unit:unit3,
 steps,flat,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
 high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
-low,high,cmap=""}=scalars.choices[scalars.number],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.
-includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.
-earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
-opacity=header.opacity}=choice,colours={scalars,earth,opacity},[maps,map]=[parts.get("maps"),parts.get("cmap")?.data],norm=map instanceof
-Float32Array,ends2=norm&&(choice.clim!==void 0||choice.scalars!==void 0);if(!maps||!(choice.cmap||ends2))return{colours,
-part:null};ends2&&Object.assign(scalars,{ticks:[],beyond:[null,null,scalars.beyond[2]]});let own=norm&&!ends2,data=choice.
-cmap?mapOf(header,maps.data,choice.cmap,own?map:void 0):Uint8Array.from(map??[]),digest=[OWN,choice.cmap,own].join();return{
-colours,part:{name:"cmap",data,shape:[data.length/4,4],digest}}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/
-SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*
-c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
+cmap="",least,...usual}=scalars.choices[scalars.number],isWhole=scalars.log&&least>0,[low,high]=isWhole?[least,usual.most]:
+[usual.low,usual.high],widest=(low<0&&high>0||scalars.diverging.includes(cmap))&&scalars.diverging.includes(scalars.cmap),
+end=Math.max(-low,high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.earth?.coastlines,
+graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{opacity=header.opacity}=choice,
+colours={scalars,earth,opacity},[maps,map]=[parts.get("maps"),parts.get("cmap")?.data],norm=map instanceof Float32Array,
+ends2=norm&&(choice.clim!==void 0||choice.scalars!==void 0);if(!maps||!(choice.cmap||ends2))return{colours,part:null};ends2&&
+Object.assign(scalars,{ticks:[],beyond:[null,null,scalars.beyond[2]]});let own=norm&&!ends2,data=choice.cmap?mapOf(header,
+maps.data,choice.cmap,own?map:void 0):Uint8Array.from(map??[]),digest=[OWN,choice.cmap,own].join();return{colours,part:{
+name:"cmap",data,shape:[data.length/4,4],digest}}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**
+SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-
+SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
 let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
 Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
 cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
@@ -534,7 +535,13 @@ max(.75,1.25*apart)*step,places=new Map,cellOf2=at=>at.map(x=>Math.floor(x/aroun
 i,j]=cellOf2(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=
 LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.
 max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),
-1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??[],n])}return null}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??[],n])}return null}function percentileOf(sorted,percent){let place=percent/100*(sorted.length-1),before=Math.floor(place),after=Math.min(before+
+1,sorted.length-1);return sorted[before]+(place-before)*(sorted[after]-sorted[before])}function widened2([low,high],{same,
+widening}){let size=Math.max(Math.abs(low),Math.abs(high));return high-low>same*size?[low,high]:size>0?[low-widening*size,
+high+widening*size]:[0,1]}function rangeOf(values,rules){let sorted=values.filter(Number.isFinite).sort();if(!sorted.length)
+return null;let[least,most]=widened2([sorted[0],sorted[sorted.length-1]],rules),[from,to]=rules.percentiles.map(percent=>percentileOf(
+sorted,percent)),[low,high]=widened2([from,to],rules),tail=rules.tail*(high-low);return tail<rules.leastShare*(most-least)?
+{low:least,high:most,least,most}:{low:low-least>tail?low:least,high:most-high>tail?high:most,least,most}}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;place;constructor(header,places){
 this.header=header;let start=0,starts2=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
@@ -562,9 +569,9 @@ filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!
 !1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
 level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
 let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
-(Math.min((low+1)*step,nodes-1)-low*step)}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,[WINDOW_VIEWS,WINDOW_STEPS]=[
-2,4],OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),"\
->":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?
+(Math.min((low+1)*step,nodes-1)-low*step)}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SPEED=1e30,MOST_SADDLES=50,[WINDOW_VIEWS,
+WINDOW_STEPS]=[2,4],OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<
+b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?
 b:c,min:(a,b)=>Math.min(a,b),max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh\
  exp log log2 log10 sqrt abs sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree==
 "number")return()=>tree;if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(
@@ -584,68 +591,72 @@ frame,subtract2([x,y,0],center))}flow({level,from,to},step,parameters){let[rows,
 map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(rows*
 columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){values[yName]=
 this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,v2]=this.rates.
-map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/speed,v2/dy*size/
-speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.local(
-level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(3*rows*
-columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+j-1,from[1]+
-i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;if(!formula)
-return null;let grid=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid.shape(level),corner=far=>grid.
-local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
-corner(0),corner(1)],cell=Math.hypot(...subtract2(grid.local(level,0,1),grid.local(level,0,0))),own=low.map((x,k)=>.5*(x+
-high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,0)),
-.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var MEASURED_STEPS=8,FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";window=null;constructor(header,formula){
-this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
-settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
-slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
-header.geometry,this.parameters]),before&&before!==this.state&&this.measure(),before!==this.state}measure(){let{speed,scalars,
-slices}=this.header,every=Math.ceil(slices.times.length/MEASURED_STEPS),steps=slices.times.flatMap((_,step)=>step%every?
-[]:[this.flow(step).speeds]),[sum,count2,least,most]=[0,0,1/0,0];for(let value of steps.flatMap(speeds=>Array.from(speeds)))
-value&&([sum,count2]=[sum+value**2,count2+1],[least,most]=[Math.min(least,value),Math.max(most,value)]);if(!count2)return;
-slices.trace?.timed||(speed.typical=Math.sqrt(sum/count2));let choice=scalars.choices[scalars.number];choice&&Object.assign(
-choice,{least,most})}flow(step){let to=this.header.geometry.shape.map(n=>n-1);return this.grid.flow({level:this.header.pyramid?.
-depth??0,from:[0,0],to},step,this.parameters)}look(camera,names){let{ends:ends2}=this.grid,side=Math.max(...ends2.map(([
-low,high])=>high-low)),size=side/2**Math.floor(Math.log2(side/(2*WINDOW_VIEWS*camera.height*Math.max(camera.aspect,1)))),
-step=size/WINDOW_STEPS,window2=ends2.map(([low,high],k)=>{let middle=low+step*Math.round((camera.state.focal_point[k]-low)/
-step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),isPart=size<side&&window2.every(([low,high])=>low<
-high);return String(this.window)===String(isPart?window2:null)?[]:(this.window=isPart?window2:null,[...names].filter(name=>name.
-startsWith("nullclines/")).map(name=>this.marks("nullclines",stepOf(name))))}load=(key,steps,_signal,_has,mark)=>mark?Promise.
-resolve(steps.map(step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){
-let{grid,header}=this,{rate,gradient}=grid.rate(header.slices.times[step],this.parameters),points=kind==="nullclines"?[]:
-fixedPoints(rate,gradient,grid.ends),kinds=header.structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid.localOf(
-at),number],rows=[];if(kind==="nullclines")nullclines(rate,grid.ends,this.window).forEach((pieces,component)=>rows.push(
-...pieces.flat().map(at=>row2(at,component))));else if(kind==="critical")rows.push(...points.map(point=>row2(point.at,kinds.
-indexOf(point.kind))));else{closedOrbits(rate,grid.ends,points).forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.
-leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,number)))});let saddles=points.filter(({ways})=>ways.length).
-slice(0,MOST_SADDLES);separatrices(rate,gradient,grid.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.
-saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
-[]).map(at=>row2(at,number+LINE.orbit)))})}let part=this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
-rows.length,4]});return kind==="nullclines"?{...part,digest:`${part.digest} ${this.window}`}:part}trajectory([x,y]){let{
-grid,header}=this;if(header.slices.times.length>1)return null;let{rate,gradient}=grid.rate(header.slices.times[0],this.parameters),
-inSpace=([u,v2])=>[u,v2,0],velocity=inSpace(rate(x,y));if(!velocity.every(Number.isFinite))return null;let points=fixedPoints(
-rate,gradient,grid.ends);return{path:trajectory(rate,grid.ends,points,[x,y]).map(inSpace),velocity}}whole(steps){let{shape:shape2}=this.
-header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,
-[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
-return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
-shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
-start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid}=this,{mesh,
-pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are missin\
-g");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid.shape(level),first=place.map(at=>at*cells),
-last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.
-min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.
-map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid.padded(window2),share=2**-grid.doublings(
-level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*
-Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),
-levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],unit:slices.
-unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),
-middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}\
-/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);return[this.named(
-`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(
-nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){
-let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),data=new Float32Array(rows*columns*
-PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,
-column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??
-[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<MOST_SPEED&&(speeds[n]=speed,data.set([u/dx*size/speed,v2/
+dy*size/speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}speeds(time,parameters){let{rate}=this.
+rate(time,parameters),[rows,columns]=this.header.geometry.shape,root=this.header.pyramid?.depth??0,speeds=[];for(let j=0;j<
+rows;j+=1){let y=this.at(0,root,j);for(let i=0;i<columns;i+=1){let speed=Math.hypot(...rate(this.at(1,root,i),y));speed<
+MOST_SPEED&&speeds.push(speed)}}return speeds}padded({level,from,to}){let middle=this.local(level,.5*(from[0]+to[0]),.5*
+(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(3*rows*columns);for(let j=0,n=0;j<
+rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+j-1,from[1]+i-1),middle),n);return{
+middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;if(!formula)return null;
+let grid=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid.shape(level),corner=far=>grid.local(level,
+Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[corner(0),
+corner(1)],cell=Math.hypot(...subtract2(grid.local(level,0,1),grid.local(level,0,0))),own=low.map((x,k)=>.5*(x+high[k])),
+{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,0)),.5*Math.hypot(
+...subtract2(high,low))+cell,cell]}}var MEASURED_STEPS=8,FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;rules;parameters={};hasMoved=!1;state="";window=null;constructor(header,formula){
+this.header=header,this.grid=new Grid(header,formula),this.rules=formula.range,this.follow(header.settings)}follow(settings){
+let own=Object.entries(settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(
+([name,value])=>[name.slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.
+header.formula,this.header.geometry,this.parameters]),before!==this.state}fit(){let{table}=this.header,isMoved=table.some(
+({name,default:own})=>name.startsWith(PARAMETER)&&this.parameters[name.slice(PARAMETER.length)]!==own);return(isMoved||this.
+hasMoved)&&this.measure(),this.hasMoved||=isMoved,this.hasMoved}measure(){let{speed,scalars,slices}=this.header,every=Math.
+ceil(slices.times.length/MEASURED_STEPS),values=[...slices.times.keys()].filter(step=>step%every===0).flatMap(step=>this.
+grid.speeds(slices.times[step],this.parameters)),moving=values.filter(value=>value>0),sum=moving.reduce((total2,value)=>total2+
+value**2,0);!slices.trace?.timed&&moving.length&&(speed.typical=Math.sqrt(sum/moving.length));let range=rangeOf(Float64Array.
+from(values),this.rules),choice=scalars.choices[scalars.number];choice&&range&&Object.assign(choice,range)}look(camera,names){
+let{ends:ends2}=this.grid,side=Math.max(...ends2.map(([low,high])=>high-low)),size=side/2**Math.floor(Math.log2(side/(2*
+WINDOW_VIEWS*camera.height*Math.max(camera.aspect,1)))),step=size/WINDOW_STEPS,window2=ends2.map(([low,high],k)=>{let middle=low+
+step*Math.round((camera.state.focal_point[k]-low)/step);return[Math.max(middle-size/2,low),Math.min(middle+size/2,high)]}),
+isPart=size<side&&window2.every(([low,high])=>low<high);return String(this.window)===String(isPart?window2:null)?[]:(this.
+window=isPart?window2:null,[...names].filter(name=>name.startsWith("nullclines/")).map(name=>this.marks("nullclines",stepOf(
+name))))}load=(key,steps,_signal,_has,mark)=>mark?Promise.resolve(steps.map(step=>this.marks(mark,step))):Promise.resolve(
+key?this.tile(key,steps):this.whole(steps));marks(kind,step){let{grid,header}=this,{rate,gradient}=grid.rate(header.slices.
+times[step],this.parameters),points=kind==="nullclines"?[]:fixedPoints(rate,gradient,grid.ends),kinds=header.structure?.
+kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid.localOf(at),number],rows=[];if(kind==="nullclines")nullclines(rate,
+grid.ends,this.window).forEach((pieces,component)=>rows.push(...pieces.flat().map(at=>row2(at,component))));else if(kind===
+"critical")rows.push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid.ends,points).
+forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,
+number)))});let saddles=points.filter(({ways})=>ways.length).slice(0,MOST_SADDLES);separatrices(rate,gradient,grid.ends,
+points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(
+leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}
+let part=this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]});return kind==="nullcl\
+ines"?{...part,digest:`${part.digest} ${this.window}`}:part}trajectory([x,y]){let{grid,header}=this;if(header.slices.times.
+length>1)return null;let{rate,gradient}=grid.rate(header.slices.times[0],this.parameters),inSpace=([u,v2])=>[u,v2,0],velocity=inSpace(
+rate(x,y));if(!velocity.every(Number.isFinite))return null;let points=fixedPoints(rate,gradient,grid.ends);return{path:trajectory(
+rate,grid.ends,points,[x,y]).map(inSpace),velocity}}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.
+pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){
+return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{
+let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);
+for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}
+let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
+{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
+if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
+mesh.tileCells,count2=grid.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
+1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
+from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
+to},{middle,part:padded}=grid.padded(window2),share=2**-grid.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
+pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
+shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
+sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
+trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
+unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
+parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
+`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
+this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
+map(n=>Math.ceil((n-1)/mesh.tileCells)),data=new Float32Array(rows*columns*PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.
+tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,
+PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -664,14 +675,15 @@ var Requests=class{tiles;wholes;marks;given;formula=null;constructor(source,take
 ()=>this.source,taker),this.wholes=new Queue(()=>this.source,taker),this.marks=new Queue(()=>this.source,taker)}get source(){
 return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.source?.hasMarks??
 !1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):null}follow(settings){
-return this.formula?.follow(settings)??!1}trajectory(position){return this.formula?.trajectory(position)??null}open(){let{
-taker}=this.tiles;this.source?.open?.().catch(error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.
-want(keys.map(key=>[key,steps]))}wantSteps(steps){let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.
-includes(step)))return;let wanted=[...new Set([...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(
-wanted.map(step=>[null,[step]]))}wantMarks(marks){let jobs=marks.map(([kind,step])=>[null,[step],kind]);String(jobs)!==String(
-this.marks.jobs)&&this.marks.want(jobs)}stop(){this.tiles.stop(),this.wholes.stop(),this.marks.stop()}},Messages=class{hasSteps=!0;hasMarks=!0;send;requests=new Map;constructor(send){
-this.send=send}load=(key,steps,signal,_has,mark)=>{let request=String(Math.random());return this.send({kind:"load",request,
-key,steps,...mark&&{mark}}),signal.addEventListener("abort",()=>{this.requests.delete(request),this.send({kind:"drop",request})}),
+return this.formula?.follow(settings)??!1}fit(){return this.formula?.fit()??!1}trajectory(position){return this.formula?.
+trajectory(position)??null}open(){let{taker}=this.tiles;this.source?.open?.().catch(error=>taker.lack(wordsOf(ALL_COARSE,
+error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){let before=this.wholes.jobs.
+flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set([...steps,...before])].
+slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}wantMarks(marks){let jobs=marks.map(
+([kind,step])=>[null,[step],kind]);String(jobs)!==String(this.marks.jobs)&&this.marks.want(jobs)}stop(){this.tiles.stop(),
+this.wholes.stop(),this.marks.stop()}},Messages=class{hasSteps=!0;hasMarks=!0;send;requests=new Map;constructor(send){this.
+send=send}load=(key,steps,signal,_has,mark)=>{let request=String(Math.random());return this.send({kind:"load",request,key,
+steps,...mark&&{mark}}),signal.addEventListener("abort",()=>{this.requests.delete(request),this.send({kind:"drop",request})}),
 new Promise((resolve,reject)=>{this.requests.set(request,error=>error?reject(new Error(error)):resolve([]))})};end({request,
 error}){this.requests.get(request)?.(error),this.requests.delete(request)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
 return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.radius:0)}function viewState({header,camera,
@@ -2126,15 +2138,16 @@ card.close(),isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:nul
 null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&!keepsCamera||name.
 includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),this.change()}keepParts(names){
 for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.remove(name),this.scene?.forget(
-name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),Object.
-assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.showLegend(),this.
-change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.background===
-null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.onColours)return this.
-options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
-header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let isOther=super.setPart(
-part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),isOther}setSettings(settings){
+name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),this.
+fitColours(),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.
+showLegend(),this.change()}fitColours(){this.header&&this.requests.fit()&&Object.assign(this.header,recoloured(this.header,
+{},this.parts).colours)}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.
+background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.onColours)
+return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(
+viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let isOther=super.
+setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),isOther}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-requests.follow(this.settings)&&(this.renew(),this.panel.showLegend(),this.card.update()),this.panel.update(),this.change())}renew(){
+requests.follow(this.settings)&&(this.recolour({}),this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){
 this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&
 this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
 this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.

@@ -79,59 +79,59 @@ return a[0]=n*c-s*o,a[1]=s*i-r*c,a[2]=r*o-n*i,a}function an(a,e,t){var r=e[0],n=
 i,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/i,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/i,a}function mr(a,e,t){var r=e[0],n=e[1],s=e[2];
 return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var Oc=(function(){var a=Na();return function(e,t,r,n,s,i){var o,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,o=r;o<c;o+=t)a[0]=e[o],a[1]=e[o+1],a[2]=e[o+2],s(a,a,i),e[o]=a[0],e[o+1]=a[1],e[o+2]=a[2];return e}})();var G=a=>a,te=()=>[0,0,0],on=a=>new Array(a).fill(0),L=(a,e)=>nn(G(a),G(e)),F=a=>Zr(G(a)),E=(a,e)=>Qr(te(),G(a),G(e)),k=(a,e)=>en(
-te(),G(a),e),I=(a,e)=>sn(te(),G(a),G(e)),U=a=>rn(te(),G(a)),T=(a,e,t=1)=>tn(te(),G(a),G(e),t);function rt(a,e,t){let r=Jr(
+te(),G(a),e),I=(a,e)=>sn(te(),G(a),G(e)),U=a=>rn(te(),G(a)),P=(a,e,t=1)=>tn(te(),G(a),G(e),t);function rt(a,e,t){let r=Jr(
 on(16),t*Math.PI/180,G(e));return r===null?te():an(te(),G(a),r)}function O(a,e){let t=Kr(on(9),a);return mr(te(),G(e),t)}
-function Z(a,e){return mr(te(),G(e),a)}function A(a,e,t){return Math.min(Math.max(a,e),t)}var Ca="own cmap";var cn=256;function Ua({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
+function Z(a,e){return mr(te(),G(e),a)}function T(a,e,t){return Math.min(Math.max(a,e),t)}var Ca="own cmap";var cn=256;function Ua({scalars:a},e,t,r){let{entries:n,flip:s,maps:i}=a,o=r?r.slice():new Uint8Array(4*n).fill(255),c=o.
 length/4-1||1;return o.map((l,h)=>{let[m,u]=[h>>2,h&3],p=Math.round((s?c-m:m)/c*(cn-1));return u===3?l:e[3*(i.indexOf(t)*
 cn+p)+u]})}function ln(a,{beyond:e}){let t=a.length/4,r=a instanceof Float32Array;return Float32Array.from({length:a.length+
-12},(n,s)=>{let[i,o]=[s>>2,s&3],c=a[4*A(i-1,0,t-1)+o];return o===3?r?i?c:1:0:(i>t?e[i-t]:i?null:e[0])?.[o]??c/255})}function hn(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:y})=>y===e.scalars);
+12},(n,s)=>{let[i,o]=[s>>2,s&3],c=a[4*T(i-1,0,t-1)+o];return o===3?r?i?c:1:0:(i>t?e[i-t]:i?null:e[0])?.[o]??c/255})}function hn(a,e,t){let r={...a.scalars};e.scalars===!1&&(r.name=null);let n=r.choices.findIndex(({name:y})=>y===e.scalars);
 if(n>=0){let{name:y,label:b,unit:v,steps:x,flat:w}=r.choices[n];Object.assign(r,{name:y,label:b,unit:v,steps:x,flat:w,number:n,
 auto:!0})}if(e.cmap&&(r.cmap=e.cmap),Array.isArray(e.clim)&&([r.low,r.high]=e.clim),e.clim!==void 0&&(r.auto=!e.clim),r.
-auto&&r.choices[r.number]){let{low:y,high:b,cmap:v=""}=r.choices[r.number],w=(y<0&&b>0||r.diverging.includes(v))&&r.diverging.
-includes(r.cmap),M=Math.max(-y,b);[r.low,r.high]=w?[-M,M]:[y,b]}let{coastlines:s=a.earth?.coastlines,graticule:i=a.earth?.
-graticule}=e,o=a.earth&&{...a.earth,coastlines:s,graticule:i},{opacity:c=a.opacity}=e,l={scalars:r,earth:o,opacity:c},[h,
-m]=[t.get("maps"),t.get("cmap")?.data],u=m instanceof Float32Array,p=u&&(e.clim!==void 0||e.scalars!==void 0);if(!h||!(e.
-cmap||p))return{colours:l,part:null};p&&Object.assign(r,{ticks:[],beyond:[null,null,r.beyond[2]]});let f=u&&!p,d=e.cmap?
-Ua(a,h.data,e.cmap,f?m:void 0):Uint8Array.from(m??[]),g=[Ca,e.cmap,f].join();return{colours:l,part:{name:"cmap",data:d,shape:[
-d.length/4,4],digest:g}}}var ur=[0,0,1],mn=Math.sin(89*Math.PI/180),Va=.2,pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
+auto&&r.choices[r.number]){let{cmap:y="",least:b,...v}=r.choices[r.number],x=r.log&&b>0,[w,M]=x?[b,v.most]:[v.low,v.high],
+S=(w<0&&M>0||r.diverging.includes(y))&&r.diverging.includes(r.cmap),A=Math.max(-w,M);[r.low,r.high]=S?[-A,A]:[w,M]}let{coastlines:s=a.
+earth?.coastlines,graticule:i=a.earth?.graticule}=e,o=a.earth&&{...a.earth,coastlines:s,graticule:i},{opacity:c=a.opacity}=e,
+l={scalars:r,earth:o,opacity:c},[h,m]=[t.get("maps"),t.get("cmap")?.data],u=m instanceof Float32Array,p=u&&(e.clim!==void 0||
+e.scalars!==void 0);if(!h||!(e.cmap||p))return{colours:l,part:null};p&&Object.assign(r,{ticks:[],beyond:[null,null,r.beyond[2]]});
+let f=u&&!p,d=e.cmap?Ua(a,h.data,e.cmap,f?m:void 0):Uint8Array.from(m??[]),g=[Ca,e.cmap,f].join();return{colours:l,part:{
+name:"cmap",data:d,shape:[d.length/4,4],digest:g}}}var ur=[0,0,1],mn=Math.sin(89*Math.PI/180),Va=.2,pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
 this.state=pr(e),this.start=pr(e),this.limits=t,this.flat=r,this.globe=s,this.aspect=n,this.homeHeight=this.height,this.
 nearest=this.distance/t.closest}get height(){let{parallel:e,parallel_scale:t,view_angle:r}=this.state;return e?t:this.distance*
 pe(r)}get distance(){return F(E(this.state.focal_point,this.state.position))}get zoom(){return this.homeHeight/this.height}get axes(){
 let e=U(E(this.state.focal_point,this.state.position)),t=U(I(e,this.state.up));return[t,I(t,e),e]}sight(e){let{parallel:t,
 position:r,view_angle:n}=this.state;return t?{eye:null,halfHeight:this.height,pixels:e}:{eye:r,halfHeight:pe(n),pixels:e}}get planes(){
 let[e,t,r]=this.axes,{parallel:n,parallel_scale:s,view_angle:i}=this.state,{position:o,focal_point:c}=this.state,l=n?s:pe(
-i);return[e,k(e,-1),t,k(t,-1)].map((h,m)=>{let u=m<2?l*this.aspect:l;if(n)return[...h,u-L(h,c)];let p=T(h,r,u);return[...p,
+i);return[e,k(e,-1),t,k(t,-1)].map((h,m)=>{let u=m<2?l*this.aspect:l;if(n)return[...h,u-L(h,c)];let p=P(h,r,u);return[...p,
 -L(p,o)]})}get eye(){return this.state.parallel?[...k(this.axes[2],-1),0]:[...this.state.position,1]}at(e){let t=this.axes[2];
 if(this.state.parallel)return{height:this.height,ray:t};let r=E(e,this.state.position);return{height:L(r,t)*pe(this.state.
 view_angle),ray:U(r)}}project(e){let[t,r]=this.axes,{height:n}=this.at(e);if(!(n>0))return null;let{parallel:s,position:i,
 focal_point:o}=this.state,c=E(e,s?o:i);return[L(t,c)/n/this.aspect,L(r,c)/n]}pan(e,t){let[r,n]=this.axes,{height:s}=this;
-this.shift(T(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=U(
+this.shift(P(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=U(
 r.up),i=E(r.position,r.focal_point);i=rt(i,s,-n.turn*e*Math.min(this.aspect,n.widest_turn));let o=U(I(s,i));i=rt(i,o,n.turn*
-t),r.position=T(r.focal_point,i),r.up=U(I(i,o))}roam(e,t){let{state:r,limits:n,globe:s}=this,i=F(r.position),o=Math.max(
+t),r.position=P(r.focal_point,i),r.up=U(I(i,o))}roam(e,t){let{state:r,limits:n,globe:s}=this,i=F(r.position),o=Math.max(
 i-s,0)*pe(r.view_angle),c=r.parallel?r.parallel_scale:o,l=Math.min(c/s*180/Math.PI,n.turn),h=Math.hypot(r.position[0],r.
 position[1])/i,m=Math.min(l*this.aspect/Math.max(h,Va),n.turn);this.turn(ur,-m*e);let[u]=this.axes,p=Math.abs(r.position[2])/
-i,f=pr(r);this.turn(u,l*t),Math.abs(r.position[2])/i>Math.max(mn,p)&&(this.state=f);let[,,g]=this.axes,y=T(ur,g,-L(ur,g));
+i,f=pr(r);this.turn(u,l*t),Math.abs(r.position[2])/i>Math.max(mn,p)&&(this.state=f);let[,,g]=this.axes,y=P(ur,g,-L(ur,g));
 F(y)>1-mn&&(this.state.up=U(y))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=rt(r[n],e,t)}zoomBy(e,t=0,r=0){
-if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=A(e,n/
-this.zoom,s/this.zoom),[o,c,l]=this.axes,h=this.height*(1-1/i);this.shift(T(k(o,t*this.aspect*h),c,r*h)),this.state.parallel?
-this.state.parallel_scale/=i:this.approach(this.height/i,l)}ray(e,t){let[r,n,s]=this.axes,{height:i,state:o}=this,c=T(T(
-o.focal_point,r,e*this.aspect*i),n,t*i);return o.parallel?[T(c,s,-this.distance),s]:[T(o.position,[0,0,0]),U(E(c,o.position))]}approach(e,t){
-let r=Math.max(e/pe(this.limits.view_angle),this.nearest);this.state.position=T(this.state.focal_point,t,-r),this.state.
+if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,i=T(e,n/
+this.zoom,s/this.zoom),[o,c,l]=this.axes,h=this.height*(1-1/i);this.shift(P(k(o,t*this.aspect*h),c,r*h)),this.state.parallel?
+this.state.parallel_scale/=i:this.approach(this.height/i,l)}ray(e,t){let[r,n,s]=this.axes,{height:i,state:o}=this,c=P(P(
+o.focal_point,r,e*this.aspect*i),n,t*i);return o.parallel?[P(c,s,-this.distance),s]:[P(o.position,[0,0,0]),U(E(c,o.position))]}approach(e,t){
+let r=Math.max(e/pe(this.limits.view_angle),this.nearest);this.state.position=P(this.state.focal_point,t,-r),this.state.
 view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=L(E(r,this.state.
-position),n);s>0&&(this.state.focal_point=T(this.state.position,n,s))}shift(e){this.state.focal_point=T(this.state.focal_point,
-e),this.state.position=T(this.state.position,e)}};function pr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
+position),n);s>0&&(this.state.focal_point=P(this.state.position,n,s))}shift(e){this.state.focal_point=P(this.state.focal_point,
+e),this.state.position=P(this.state.position,e)}};function pr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
 ...e],focal_point:[...t],up:[...r]}}function z(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:i,frame:o}=a,[c,l,h]=e.axes.map(S=>O(o,S)),m=S=>E(O(o,E(S,s)),
 t),u=m(r.focal_point),p=k(t,-1),f=Math.max(.51*i,a.reach??0),d=new Array(16).fill(0),g=r.parallel?r.parallel_scale:pe(r.
-view_angle);if([c.map(S=>S/g/n),l.map(S=>S/g)].forEach((S,P)=>{for(let R=0;R<3;R+=1)d[4*R+P]=S[R];d[12+P]=-L(S,u)}),r.parallel){
+view_angle);if([c.map(S=>S/g/n),l.map(S=>S/g)].forEach((S,A)=>{for(let R=0;R<3;R+=1)d[4*R+A]=S[R];d[12+A]=-L(S,u)}),r.parallel){
 for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-L(h,p)/f,d[15]=1,d}let b=m(r.position),v=L(E(p,b),h),x=Math.max(v+f,.001*
 f),w=Math.max(v-f,.001*x),M=(x+w)/(x-w),_=-2*x*w/(x-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-L(
 h,b),d[14]=d[15]*M+_,d}function un({center:a,frame:e},t,r,n,s){let[i,o]=t.axes,{height:c,state:l,aspect:h}=t,[m,u]=[k(i,
-2*c*h/n),k(o,2*c/s)],p=T(T(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,fn=9,Da=.2,Ba=1.4,pn=55,za=125,Ha=.5,Ga=4,dn=4e-5,gn=2e-6;function bn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
+2*c*h/n),k(o,2*c/s)],p=P(P(E(l.focal_point,a),m,-n/2),u,-s/2);return{u_rayCorner:E(O(e,p),r),u_rayX:O(e,m),u_rayY:O(e,u)}}var ae=8,fn=9,Da=.2,Ba=1.4,pn=55,za=125,Ha=.5,Ga=4,dn=4e-5,gn=2e-6;function bn(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+ae)<=s)return{scale:1,samples:r};let i=Math.min(fn,r),o=Math.sqrt(s/(i+ae)/t);return o<1?{scale:Math.max(
-o,Da),samples:i}:{scale:1,samples:A(Math.floor(s/t-ae),i,r)}}function yn(a,e,t,r,n){if(!n)return pn;let s=Math.min(fn,r),
-i=e+a*t*Ha**2*(s+ae);return A(i,pn,za)}function vn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),Ga)}function xn(a){
+o,Da),samples:i}:{scale:1,samples:T(Math.floor(s/t-ae),i,r)}}function yn(a,e,t,r,n){if(!n)return pn;let s=Math.min(fn,r),
+i=e+a*t*Ha**2*(s+ae);return T(i,pn,za)}function vn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+ae))),Ga)}function xn(a){
 return(2*a+ae)/(a+ae)}function wn(a,e,t,r,n){let s=Math.max(e,.05)/(t*(r+ae)*n);return a+(s-a)*(s>a?.7:.3)}function Mn(a,e,t){
-let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:A(
+let[r,n,s]=[a.grain,a.spacing,a.samples].map(Number),i=Math.max(r*t,Math.min(r,1)),c=s*n*r*t/(e*i);return{u_grain:i,u_spacing:T(
 c,.1,Math.max(Ba,n))}}var Wa=`#version 300 es
 precision highp float;
 precision highp int;
@@ -243,7 +243,7 @@ r?r[i]:1;for(let o of[0,1])s[4*i+1+o]=n?n[2*i+o]:0}return s}padded(){let e=this.
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,i=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
 flows.set(e,i);for(let[o,c]of this.flows){if(this.flows.size<=ni)break;this.flows.delete(o),this.textures.delete(c),this.
-graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=A(Math.ceil((t-e)*this.fastest/si),1,ai),n=s=>s===r?t:e+
+graphics.free("Texture",c)}return i}partsOf({from:e,to:t}){let r=T(Math.ceil((t-e)*this.fastest/si),1,ai),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,i)=>[n(i),n(i+1)])}*slices(e){let{graphics:t,trace:r,header:n}=this,s=t.context,
 {geometry:i,slices:o}=n,[c,l]=r.nodes,[h,m]=[i.rows.size,i.columns.size],u={width:m,height:h,layers:o.count,channels:4,levels:i.
 levels},p=s.createTexture();this.result=p,s.activeTexture(s.TEXTURE0),Qe(s,p,u);let{poles:f}=this,d=this.texture(f.size.
@@ -255,15 +255,15 @@ u_first:[r.first[1],r.first[0]],u_texels:[m,h],u_offsetJ:r.offset.slice(0,3),u_o
 speed??0,u_rest:r.rest,u_pace:r.pace,u_unit:o.unit,u_cell:o.cell/o.unit,u_planar:Number(i.planar),u_mostReach:2*v[v.length-
 1]},_=([C,J],we,he,Pe)=>{s.viewport(0,0,C,J);for(let j of[s.SCISSOR_TEST,s.DEPTH_TEST,s.BLEND,s.CULL_FACE])s.disable(j);
 we.forEach((j,ee)=>{s.activeTexture(s.TEXTURE0+ee),s.bindTexture(s.TEXTURE_2D,j)}),s.bindVertexArray(null),t.programs.use(
-he,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},S=this.frame(),P=(C,J,we,he)=>{s.bindFramebuffer(s.FRAMEBUFFER,S),s.framebufferTextureLayer(
+he,{...M,...Pe}),s.drawArrays(s.TRIANGLES,0,3)},S=this.frame(),A=(C,J,we,he)=>{s.bindFramebuffer(s.FRAMEBUFFER,S),s.framebufferTextureLayer(
 s.FRAMEBUFFER,s.COLOR_ATTACHMENT0,p,0,C),_([m,h],[d,...y,...we],J,he)},{follow:R,compose:N,slopes:B,tangents:K}=st(t,n,r);
-P(0,K,[],{u_inCells:0}),w>1+x*v.length&&P(w-1,K,[],{u_inCells:1});let se=0;for(let C=0;C<x;C+=1){let J=C?1:-1,we=1+C*v.length,
+A(0,K,[],{u_inCells:0}),w>1+x*v.length&&A(w-1,K,[],{u_inCells:1});let se=0;for(let C=0;C<x;C+=1){let J=C?1:-1,we=1+C*v.length,
 [he,Pe,j]=[b[0],b[0],b[0]];for(let[ee,Je]of v.entries()){let[Ir,Cr]=[v[ee-1]??0,v[ee-2]??0],Ur=Je>ri&&Cr>0?N:null,Ze=j;for(let ar of ci(
 n,e,J,Ir,Je)){let[Sa,Aa]=ar.steps.map(ir=>this.flowTexture(ir)),Ta=Ur?[[Ir,Je]]:this.partsOf(ar);for(let[ir,_a]of Ta){let Vr=b.
 find(Pa=>![he,Pe,j,Ze].includes(Pa))??b[0];s.bindFramebuffer(s.FRAMEBUFFER,Vr[1]),_([l,c],[Sa,...y,Ze[0],Pe[0],Aa,g],Ur??
 R,{u_lagEarlier:Cr,u_from:ir,u_to:_a,u_side:J,u_between:ar.between}),Ze=Vr,!((se+=c*l)<ii)&&(s.readPixels(0,0,1,1,s.RGBA_INTEGER,
 s.UNSIGNED_INT,new Uint32Array(4)),se=0,yield)}}[Pe,j]=[j,Ze],ee||(he=j);let Ma=r.uncertain&&ee===ei,Ea=ee===1&&!C?Ja:Ma?
-Qa:Ka;ee&&P(we+ee,B,[j[0],j[0]],{u_fourth:Ea,u_lag:J*Je})}P(we,B,[he[0],j[0]],{u_fourth:Za,u_lag:J*v[0]})}return s.activeTexture(
+Qa:Ka;ee&&A(we+ee,B,[j[0],j[0]],{u_fourth:Ea,u_lag:J*Je})}A(we,B,[he[0],j[0]],{u_fourth:Za,u_lag:J*v[0]})}return s.activeTexture(
 s.TEXTURE0),s.bindTexture(s.TEXTURE_2D_ARRAY,p),u.levels&&s.generateMipmap(s.TEXTURE_2D_ARRAY),p}};var li={slices:[12,4],flow:[100,24]},hi=24,it=class{all=new Map;graphics;constructor(e){this.graphics=e}set(e){let{name:t,
 digest:r}=e;if(r&&this.all.get(t)?.digest===r)return!1;let n=this.graphics.hold(e);return this.remove(t),this.all.set(t,
 n),!0}remove(e){this.graphics.release(this.all.get(e)),this.all.delete(e)}clear(e=()=>!0){for(let t of[...this.all.keys()])
@@ -295,19 +295,19 @@ let{geometry:r,constants:n}=a,{times:s,pace:i}=a.slices,o=s.length>1,c=!o&&e.spe
 i/r.extent,m=o?l/(Math.round(h)||h):e.period,u=(o?t.time-s[0]:t.clock)/m%n.mostTurns,p=m*(o?i:e.speed),f=u%n.clockStep;return{
 u_clock:[u-f,f],u_travel:p*(c?t.density:1),u_travelInPixels:c,u_travelBySpeed:o||e.motion==="speed",u_wave:n.wavePixels*
 t.density}}function ui(a,e,t){let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:i}=a.geometry,o=O(s,E(e.
-focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>A(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*
+focus,i)),c=2**(r-n)-1,l=2**n,h=o.map(p=>T(Math.round(p/t/l),-c,c)*l),m=h.map(p=>p/Math.SQRT2),u=m.map(p=>Math.floor(p/l)*
 l);return{u_noiseOrigin:h.map((p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:u,u_noiseRestOdd:m.map((p,f)=>p-
 u[f])}}function pi({size:a,stepSize:e,repeat:t},r,n){return{u_stepSize:e.map(s=>s*n),u_imageSize:a.map(s=>s*n*r),u_imageRound:[
 Number(t[1]),Number(t[0])],u_tiles:r}}function gr(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)
-t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,A(r,0,1)]}var fi=.5,di=6,gi=60,bi=.5,ht=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,T(r,0,1)]}var fi=.5,di=6,gi=60,bi=.5,ht=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return gr(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
-times[t]-this.times[e])}seek(e){this.time=A(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
+times[t]-this.times[e])}seek(e){this.time=T(e,...this.span)}stepFrom(e){let{times:t,time:r}=this,n=t.findIndex(o=>e>0?o>
 r:o>=r),s=t.length,i=n<0?s:n;return t[(e>0?i:i-1+s)%s]}start(){this.playing=!0,this.lastFrame=0}range(e){if(this.varies)
 return{first:this.span[0],last:this.span[1],now:this.time};let t=Number(e.period);return{first:0,last:t,now:this.clock%t}}advance(e,t){
 let r=this.lastFrame?Math.min((e-this.lastFrame)/1e3,bi)*this.pace:0;if(this.lastFrame=e,!this.varies)return this.clock+=
-r,!0;let[n,s]=this.span,i=A(fi*(this.times.length-1),di,gi),o=this.time+r*(s-n)/i,[c,l]=gr(this.times,Math.min(o,s));return t(
+r,!0;let[n,s]=this.span,i=T(fi*(this.times.length-1),di,gi),o=this.time+r*(s-n)/i,[c,l]=gr(this.times,Math.min(o,s));return t(
 [c,l])?(this.time=o>s?n:o,!0):!1}};var On=()=>null,mt=class{};var V="",Fn=5,H=a=>a.join("/"),oe=a=>a.split("/").map(Number);function Nn(a,e){let[t,r,n]=["samples","spacing","grain"].
 map(i=>Number(e[i])),s=.5*t*r*n;return a.cellPixels*Math.max(1,2*s/(a.cellPixels*a.pathCells))}var ut=class{header;place;constructor(e,t){
 this.header=e;let r=0,n=e.blocks.map(([s,i])=>(r+=s*i)-s*i);this.place=typeof t=="function"?t:(s,i,o)=>{let c=Fn*(n[s]+i*
@@ -342,11 +342,11 @@ fault:t,message:r=String(e),detail:n=""}=e;return console.warn(r,n),t==="other"?
 this.given=e,this.tiles=new ke(()=>this.source,t),this.wholes=new ke(()=>this.source,t),this.marks=new ke(()=>this.source,
 t)}get source(){return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.
 source?.hasMarks??!1}setHeader(e){this.stop(),this.formula=e.formula?new mt(e,e.formula):null}follow(e){return this.formula?.
-follow(e)??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.tiles;this.source?.open?.().
-catch(t=>e.lack(Vn(wi,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.wholes.jobs.flatMap(([
-,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+xi);this.wholes.want(r.map(
-n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&this.marks.want(t)}stop(){
-this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
+follow(e)??!1}fit(){return this.formula?.fit()??!1}trajectory(e){return this.formula?.trajectory(e)??null}open(){let{taker:e}=this.
+tiles;this.source?.open?.().catch(t=>e.lack(Vn(wi,t)))}wantTiles(e,t){this.tiles.want(e.map(r=>[r,t]))}wantSteps(e){let t=this.
+wholes.jobs.flatMap(([,n])=>n);if(e.every(n=>t.includes(n)))return;let r=[...new Set([...e,...t])].slice(0,e.length+xi);
+this.wholes.want(r.map(n=>[null,[n]]))}wantMarks(e){let t=e.map(([r,n])=>[null,[n],r]);String(t)!==String(this.marks.jobs)&&
+this.marks.want(t)}stop(){this.tiles.stop(),this.wholes.stop(),this.marks.stop()}};function Dn({header:a,camera:e,anchor:t,player:r,rows:n},s,i){let{geometry:o,constants:c}=a,l=e.state.focal_point,h=O(o.
 frame,E(l,o.center)),m=c.anchorRange*2*e.height,u=p=>p.some(f=>Math.abs(f)>m);return{focus:l,anchor:u(E(h,t))?u(h)?h:[0,
 0,0]:t,eye:e.eye,between:s[2],time:r.timeOf(s),clock:r.clock,still:!r.playing,density:i,pixel:2*e.height/Math.max(n*i,1)}}var Si=-1e9,Bn=500;function dt(a,e){if(a instanceof Float32Array&&!e.some(Boolean))return a;let t=new Float32Array(a.length);
 for(let r=0;r<a.length;r+=1)t[r]=a[r]-e[r%3];return t}function zn({shape:a,rows:e,columns:t}){return Float32Array.from({
@@ -354,11 +354,11 @@ length:2*a[0]*a[1]},(r,n)=>{let[s,{before:i,size:o}]=n%2?[Math.floor((n>>1)/a[1]
 function Hn(a,e){let t=Math.max(a.length,e.length);return Float32Array.from({length:2*t},(r,n)=>(n%2?e:a)[n>>1]??0)}function Gn(a){
 let e=Float32Array.from(a);for(let t=0;t<a.length;t+=3){let r=Math.hypot(a[t],a[t+1],a[t+2])||1;for(let n=t;n<t+3;n+=1)e[n]/=
 r}return e}function gt(a,e){let t=a[0]?.length??0,r=new Float32Array(2*t),n=cr(e);return a.forEach((s,i)=>{for(let o=0;o<
-t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?A(c,-Bn,Bn):Si}}),r}function Wn([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
+t;o+=1){let c=n(s[o]);r[2*o+i]=Number.isFinite(c)?T(c,-Bn,Bn):Si}}),r}function Wn([a,e],[t,r]){let[n,s]=[Math.min(Math.floor(
 t),e-2),Math.min(Math.floor(r),a-2)],[i,o]=[t-n,r-s],c=s*e+n,[l,h]=[Math.min(i,o),Math.max(i,o)],m=c+(i>=o?1:e);return[[
 c,1-h],[m,h-l],[c+e+1,l]]}function bt(a,e){return a.reduce((t,[r,n])=>t+n*e(r),0)}var Ai=1-1e-7;function $n(a,e){return Uint32Array.
 from({length:4*e.length},(t,r)=>r%4<3?a[3*(r>>2)+r%4]:e[r>>2])}function Oe(a,e,t){return[t,a+Math.min(Math.max(e,0),Ai)]}
-function jn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((i,o)=>[a[3*r+o],i])}var Yn=180/Math.PI;var Ti=1e-4;function _i(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Xn(a,e){let t=a*(e-1),r=A(
+function jn(a,[e,t]){let r=Math.floor(t),[n,s]=[t-r,e];return[1-n-s,n,s].map((i,o)=>[a[3*r+o],i])}var Yn=180/Math.PI;var Ti=1e-4;function _i(a){let[e,t,r]=[a-1,a-2,a-3];return[-(e*t*r)/6,a*t*r/2,-(a*e*r)/2,a*e*t/6]}function Xn(a,e){let t=a*(e-1),r=T(
 Math.floor(t)-1,0,e-4);return[r,_i(t-r)]}function xr([a,e,t,r],{data:n,shape:s},i){let[o,c]=s,[l,h]=Xn((i[0]-a)/(t-a),c),
 [m,u]=Xn((i[1]-e)/(r-e),o),p=[0,0,0];return u.forEach((f,d)=>{h.forEach((g,y)=>{for(let b=0;b<3;b+=1)p[b]+=g*f*n[3*((m+d)*
 c+l+y)+b]})}),p}function yt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?xr(a.map,t,e):e,i=[Math.atan2(n,r),Math.
@@ -367,41 +367,41 @@ map&&r){let{map:p,radius:f}=a,d=Ti*(p[2]-p[0])/(Math.hypot(...t)||1),[g,y]=[-d,d
 n=xr(p,r,e),s=y.map((b,v)=>f*(b-g[v])/(2*d))}let[i,o,c]=n,[l,h]=[Math.hypot(i,o)||1,Math.hypot(i,o,c)||1],m=(i*s[1]-o*s[0])/
 l,u=(i*s[0]+o*s[1])/l;return[m,(l*s[2]-c*u)/h]}var Kn=8,Pi=4,Ri=10,Li=.05,ki=.25,Qn=1e-6,Oi=.001;function Fi({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.
 header.geometry;if(i){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[o,c]=[e[0]+t+s.before,e[1]+r+
-n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=A(
-l+(f&1),0,s.size-1);return[A(h+(f>>1),0,n.size-1)*s.size+d,p]})}function es(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
+n.before],[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((p,f)=>{let d=T(
+l+(f&1),0,s.size-1);return[T(h+(f>>1),0,n.size-1)*s.size+d,p]})}function es(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
 header,s=Fi(a,e),[i,o,c]=r,l=s.map(([p])=>p),h=(i===o?[i]:[i,o]).map(p=>t.texels(p,l)),m=i===o?[1]:[1-c,c],u=me(t.header)?
 Ni(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let y=p+(p>n.lags.length?
 -1:1)*n.lags.length,b=u[g]<0&&p>0?y:p;h.forEach((v,x)=>{m[x]&&v(b,g).forEach((w,M)=>{f[M]+=d*m[x]*w*(M<3?u[g]:1)})})}),f}}
-function Ni(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function Ii(a,e,t,r,n){
+function Ni(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=L(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function Ii(a,e,t,r,n){
 let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let m=a(t+h+
 1).slice(0,3);for(let u=1;u<=Kn;u+=1){let p=u/Kn,f=Math.min(i+p*(e[h]-i),c),d=(f-i)/(e[h]-i),g=s.map((y,b)=>y+d*(m[b]-y));
 if(l.push(k(g,r*f*n)),f===c)break}[s,i]=[m,e[h]]}return l}function ts({scene:a,place:e,position:t}){let{image:r,geometry:n}=a.
-header;if(!r)return l=>T(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Jn(s,e[0]),Jn(i,e[1])],c=Fe(a,e);return([l,h])=>{let m=[
-Zn(s,o[0]+l),Zn(i,o[1]+h)];return m.some(Number.isNaN)?null:T(t,E(Fe(a,m),c))}}function Ne(a,e){return T(Fe(a,e),a.header.
+header;if(!r)return l=>P(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Jn(s,e[0]),Jn(i,e[1])],c=Fe(a,e);return([l,h])=>{let m=[
+Zn(s,o[0]+l),Zn(i,o[1]+h)];return m.some(Number.isNaN)?null:P(t,E(Fe(a,m),c))}}function Ne(a,e){return P(Fe(a,e),a.header.
 geometry.center)}function Fe(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>bt(r,i=>t[3*i+s]));return Z(
 a.header.geometry.frame,n)}function Ci(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>Fe(a,Oe(Math.floor(
-e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>A(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
+e[1]),c,l));return[E(o(1,0),o(0,0)),E(o(0,1),o(0,0))]}let[n,s]=e.map((o,c)=>T(o,.5,t[1-c]-1.5)),i=(o,c)=>Fe(a,[n+o,s+c]);
 return[E(i(.5,0),i(-.5,0)),E(i(0,.5),i(0,-.5))]}function Jn(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Zn(a,e){let t=a.findIndex(
 r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Ui({scene:a,place:e,position:t},r,n,s){let{
 geometry:i,image:o}=a.header,c=I(...Ci(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(L(U(c),h)),Li),u=2*l/s;if(o){let[
 y,b]=[o.alongI,o.alongJ].map((x,w)=>{let M=Math.min(Math.floor(e[w]),x.length-2);return(x[M+1]-x[M])*o.stepSize[w]}),v=Math.
 sqrt(F(c)/(y*b));return r.lod?Math.max(u/Math.sqrt(m),v):v}let p=i.extent/Number(r.resolution),f=L(h,n.at(n.state.focal_point).
 ray),g=u*Math.sqrt(Math.max(f,ki/m)/m)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Vi(a,e,t){let r=[],
-[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(T(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r}
+[n,s]=[a,t];for(let i of e){let o=F(E(i,n));if(o>=s){s>0&&r.push(P(n,E(i,n),s/(o||1)));break}r.push(i),s-=o,n=i}return r}
 function wr(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.header,i=es(a),[o,c,l]=i(0),h=[o,c,l],m=k(h,Oi*(n?
 1/n.stepSize[0]:r.cell)/(F(h)||1)),u=F(h)>Qn?E(ts(a)(m)??t,t):h;return k(U(u),i(2)[3]*s.typical)}function rs(a,e,t,r){let{
 scene:n,position:s}=a,{slices:i,image:o}=n.header,c=es(a),l=!me(n.header),h=c(0),m=[h[0],h[1],h[2]],u=ts(a),p=[],f=e.two_sided||
-!l?i.sides:1;for(let w=0;w<f&&F(m)>Qn;w+=1){let M=o?1:h[3]*i.unit,S=Ii(c,i.lags,w*i.lags.length,w?1:-1,M).map(u),P=S.findIndex(
-R=>R===null);p.push(S.slice(0,P<0?void 0:P))}let d=Number(e.samples),g=ct(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):
+!l?i.sides:1;for(let w=0;w<f&&F(m)>Qn;w+=1){let M=o?1:h[3]*i.unit,S=Ii(c,i.lags,w*i.lags.length,w?1:-1,M).map(u),A=S.findIndex(
+R=>R===null);p.push(S.slice(0,A<0?void 0:A))}let d=Number(e.samples),g=ct(n.header,e,!0)?2*d-1:d,y=f===2?Math.floor(g/2):
 g-1,b=Number(e.spacing)*Ui(a,e,t,r),v=w=>{let[M=[],_=[]]=p.map(S=>Vi(s,S,w));return[...M.reverse(),s,..._]};return{path:v(
 Pi*Math.max(y,Ri)*b),sampled:v(y*b),directed:l,velocity:wr(a)}}var Di=8,Bi=1e-6,zi=.001,Hi=89.99,Gi=a=>a-360*Math.round(a/360);function Mr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
-function vt({header:a},e){return e.map((t,r)=>A(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ns=([a,e])=>[(1-a)*(1-e),a*
+function vt({header:a},e){return e.map((t,r)=>T(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ns=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function ss(a,e,[t,r],n){let{earth:s}=a.header,i=Mr(e).map(d=>s&&yt(s,Ne(a,d),n));if(i.some(d=>!d||Math.
 abs(d[1])>Hi))return null;let[o,c,l,h]=i.map(d=>[Gi(d[0]-t),d[1]-r]),[m,u]=[c,l].map(d=>[d[0]-o[0],d[1]-o[1]]),p=Math.max(
 ...[...m,...u].map(Math.abs)),f=m[0]*u[1]-m[1]*u[0];return!f||[0,1].some(d=>Math.abs(o[d]-c[d]-l[d]+h[d])>zi*p)?null:[(o[1]*
 u[0]-o[0]*u[1])/f,(o[0]*m[1]-o[1]*m[0])/f]}function as(a,e,t,r){let{earth:n,geometry:s}=a.header,i=n&&!s.triangles&&yt(n,
 t,r);if(!i)return e;let o=vt(a,e);for(let c=0;c<Di;c+=1){let l=ss(a,o,i,r);if(!l)return e;let h=l.map(u=>Math.abs(u-.5)>
-.5+Bi?u:0),m=vt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+A(l[p],0,1));o=m}return e}function is(a,e){
+.5+Bi?u:0),m=vt(a,o.map((u,p)=>u+h[p]));if(String(m)===String(o))return o.map((u,p)=>u+T(l[p],0,1));o=m}return e}function is(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=vt(a,e),s=ns(e.map((i,o)=>i-n[o]));return Mr(
 n).map(([i,o],c)=>[o*r.shape[1]+i,s[c]])}function os(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:i}=t.header,
 o=s&&yt(s,n,e);if(!o)return null;let c=u=>qn(s,u.position,wr(u),e),l=vt(t,r);if(i.triangles||!ss(t,l,o,e))return c(a);let h=ns(
@@ -409,13 +409,13 @@ r.map((u,p)=>u-l[p])),m=Mr(l).map(u=>c({...a,place:u,position:Ne(t,u)}));return[
 0))}var Wi=16;function ls(a,e,t,r,[n,s]){let{layer:i,coordinate:o,triangle:c}=a,{geometry:l}=i.scene.header,h=l.triangles?Oe(
 c,...o):$i(l,...o),m=t.ray(n,s),u=cs(i.scene,h,m)[1],[p,f]=cs(i.scene,u,m),d=as(i.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
 d:ji(e.header,i,d);return{point:{position:p,index:g,values:Yi(i.scene,r,d)},layer:i,place:d}}function $i({rows:a,columns:e,
-shape:t},r,n){let s=(i,{size:o,before:c},l)=>A(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function ji(a,{key:e},[t,
+shape:t},r,n){let s=(i,{size:o,before:c},l)=>T(i*o-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function ji(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:i,formula:o}=a,[c,l,h]=e,[m,u]=n?.shapes[0]??s.shape,p=i.tileCells*(n?.tileBlocks??0),
 f=o?2**(n?.depth??0):1,d=(g,y,b)=>pt(g+y*p,c,b)/f;return[d(t,h,u),d(r,l,m)]}function cs(a,e,[t,r]){let{geometry:n}=a.header,
-{data:s}=a.part("position"),i=a.cornersAt(e).map(([x])=>x),[o,c,l]=i.map(x=>T(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),
-[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=T(t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.
-max(Math.abs(d),Math.abs(g))<Wi)){let x=Ne(a,e);return[T(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
-e[1]),d,Math.max(g,0))];let[y,b]=n.shape,v=(x,w)=>{let[M,_,S]=i.map(x);return A(M+d*(_-M)+g*(S-M),0,w-1)};return[p,[v(x=>x%
+{data:s}=a.part("position"),i=a.cornersAt(e).map(([x])=>x),[o,c,l]=i.map(x=>P(Z(n.frame,[...s.subarray(3*x,3*x+3)]),n.center)),
+[h,m]=[E(c,o),E(l,o)],u=I(h,m),p=P(t,r,L(u,E(o,t))/L(u,r)),f=E(p,o),[d,g]=[I(f,m),I(h,f)].map(x=>L(x,u)/L(u,u));if(!(Math.
+max(Math.abs(d),Math.abs(g))<Wi)){let x=Ne(a,e);return[P(t,r,L(E(x,t),r)/L(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
+e[1]),d,Math.max(g,0))];let[y,b]=n.shape,v=(x,w)=>{let[M,_,S]=i.map(x);return T(M+d*(_-M)+g*(S-M),0,w-1)};return[p,[v(x=>x%
 b,b),v(x=>Math.floor(x/b),y)]]}function Yi(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:i}=r,o=is(a,t),c=i.triangles?
 Math.floor(t[1]):o[0][0],[l,h,m]=e,u={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
 l,h,f),[g,y]=d.map(v=>n.get(v)?.data);if(f.name===null||f.name in u||!g||!y)continue;let b=v=>g[v]+m*(y[v]-g[v]);u[f.name]=
@@ -426,7 +426,7 @@ shape:a,data:e},t,r,n,s){let[i,o]=a,c={...t.sight(r),planes:t.planes},l=new Int8
 l.length;m+=1){let[u,p]=[Math.floor(m/o),m%o],f=e.subarray(hs*m,hs*(m+1));if(n.some(([y,b,v])=>u>=y&&u<y+v&&p>=b&&p<b+v)||
 !br(c,f))continue;let g=Math.floor(Math.log2(Xi/yr(c,f)));l[m]=Math.min(Math.max(g,0),s[m]),qi(t,f).forEach((y,b)=>h[b]=
 b<2?Math.min(h[b],y):Math.max(h[b],y))}return{levels:l,box:h}}function qi(a,[e,t,r,n]){let[s,i,o]=a.axes,{parallel:c,position:l,
-focal_point:h}=a.state,m=E([e,t,r],c?h:l),u=[-n,n].map(d=>a.at(T([e,t,r],o,d)).height);if(!(u[0]>0))return[-1,-1,1,1];let[
+focal_point:h}=a.state,m=E([e,t,r],c?h:l),u=[-n,n].map(d=>a.at(P([e,t,r],o,d)).height);if(!(u[0]>0))return[-1,-1,1,1];let[
 p,f]=[-n,n].map(d=>[L(m,s)/a.aspect,L(m,i)].map((g,y)=>u.map(b=>(g+d/(y?1:a.aspect))/b)));return[...p.map(d=>Math.min(...d)),
 ...f.map(d=>Math.max(...d))]}var Ki=1024,ps=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),xt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let i=e.map(({scene:p,covered:f})=>[p.number,p.version,
@@ -441,8 +441,8 @@ this.bind(),c.bindVertexArray(null),i.forEach(({scene:f,key:[d,...g]},y)=>{let{l
 triangles:M}=f.header.geometry,[_,S]=g.map(R=>R*l.tileCells*(h?.tileBlocks??0)*2**d);f.bindNodes(r),s.programs.use(e,{...n,
 u_matrix:t,u_layer:y+1,u_blocks:b.reduce((R,N,B)=>R|(N<0?0:1<<B),0),u_part:[S,_,d],u_lastNode:[p-1,u-1,this.squares],u_closed:[
 Number(m.periodic[1]),Number(m.periodic[0])],u_blockCells:l.tileCells,u_slicesSize:[v.size,x.size],u_padding:[v.before,x.
-before]}),M&&c.drawArrays(c.TRIANGLES,0,f.part("triangles").data.length);let P=f.blocks.shape[1];b.forEach((R,N)=>{if(R<
-0||M)return;let B=[N%P,Math.floor(N/P)].map(C=>C*l.tileCells),[K,se]=B.map((C,J)=>Math.ceil(Math.min(l.tileCells,w[1-J]-
+before]}),M&&c.drawArrays(c.TRIANGLES,0,f.part("triangles").data.length);let A=f.blocks.shape[1];b.forEach((R,N)=>{if(R<
+0||M)return;let B=[N%A,Math.floor(N/A)].map(C=>C*l.tileCells),[K,se]=B.map((C,J)=>Math.ceil(Math.min(l.tileCells,w[1-J]-
 1-C)/2**R));s.programs.use(e,{u_block:[...B,R,K]}),c.drawArrays(c.TRIANGLES,0,6*K*se)})})}sum(e,t,r,n){let{graphics:s,width:i,
 height:o,target:c}=this,l=s.context,h=o-t-r;l.bindFramebuffer(l.FRAMEBUFFER,c?.frames[1]??null),l.viewport(0,0,i,o),l.enable(
 l.SCISSOR_TEST),l.disable(l.DEPTH_TEST),l.disable(l.BLEND),l.bindVertexArray(null),this.layers.forEach(({scene:m},u)=>{let[
@@ -451,7 +451,7 @@ x]=[Math.min(Math.ceil(d),i)-y,Math.min(Math.ceil(g),h+r)-b];if(v<=0||x<=0)retur
 s.programs.use(e,{...w,u_layer:u+1}),l.drawArrays(l.TRIANGLES,0,3)}),l.readPixels(0,0,1,1,l.RGBA,l.UNSIGNED_BYTE,new Uint8Array(
 4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}show(e){let t=this.graphics.context;this.bind(),t.bindVertexArray(null),this.graphics.
 programs.use(e,{u_bottom:0}),t.drawArrays(t.TRIANGLES,0,3)}at(e,t){let{graphics:r,target:n,layers:s}=this,i=r.context,[o,
-c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=A(Math.floor(o-.5),0,this.width-2),h=A(Math.floor(c-.5),0,this.height-
+c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=T(Math.floor(o-.5),0,this.width-2),h=T(Math.floor(c-.5),0,this.height-
 2),m=new Uint32Array(16);i.bindFramebuffer(i.FRAMEBUFFER,n?.frames[0]??null),i.readPixels(l,h,2,2,i.RGBA_INTEGER,i.UNSIGNED_INT,
 m),i.bindFramebuffer(i.FRAMEBUFFER,null);let u=+(o>=l+1)+2*+(c>=h+1),p=4*([u,u^1,u^2,u^3].find(g=>m[4*g+3])??u),[f,d]=new Float32Array(
 m.buffer,4*p,2);return m[p+3]?{layer:s[m[p+3]-1],coordinate:[f,d],triangle:m[p+2]}:null}dispose(){let{graphics:e,target:t}=this;
@@ -459,9 +459,9 @@ for(let r of t?.textures??[])e.free("Texture",r);for(let r of t?.frames??[])e.fr
 key=""}sendStrides(){let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:i,geometry:o}=s.header,
 c=o.triangles?[1,1]:i?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/Ki)),0);let l=2**
 -this.squares,[h,m]=c.map(p=>Math.ceil(p*l)),u=new Uint8Array(h*m);e.forEach(({scene:p,key:[f,...d]},g)=>{let y=p.blocks.
-shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,S]]=[Math.floor(x/y),x%y].map((P,R)=>{
-let N=(P+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});for(let P=w;P<M;P+=1)for(let R=_+
-P*m;R<S+P*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+ps[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??
+shape[1],b=2**f*l;t[g].levels.forEach((v,x)=>{if(v<0||o.triangles)return;let[[w,M],[_,S]]=[Math.floor(x/y),x%y].map((A,R)=>{
+let N=(A+d[R]*(i?.tileBlocks??0))*b;return[Math.floor(N),Math.min(Math.ceil(N+b),[h,m][R])]});for(let A=w;A<M;A+=1)for(let R=_+
+A*m;R<S+A*m;R+=1)u[R]=Math.max(u[R],f+v)})}),n.activeTexture(n.TEXTURE0+ps[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??
 null),n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,m,h,0,n.RED_INTEGER,n.UNSIGNED_BYTE,u)}make(e,t){
 let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:i}=this,o={width:Math.max(e,r?.
 width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0].map(h=>{let m=n.
@@ -488,7 +488,7 @@ viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.isCoarse&&
 o=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(i),l=this.viewer.player.playing&&!this.viewer.
 isHeld,h=yn(c,this.fixed,n*s,i,l),m=Math.max(h/o,Zi),u=bn(c,this.fixed,n*s,i,m),p=Math.max(Math.round(n*u.scale),1),f=Math.
 max(Math.round(s*u.scale),1);this.draftVersion=this.version;let d=u.scale<1?this.reuse():null;if(!d?.covers){let y=performance.
-now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(A(performance.now()-y-b,.5,500)-
+now();this.place(t,p,f);let b=this.sum(e,t,0,f,u.samples);this.show(t,!1),this.fixed+=.5*(T(performance.now()-y-b,.5,500)-
 this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),bs(this.pen,this.last),
 this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=u.scale<1||u.samples<i;let g=!this.isCoarse&&!this.content.smooth;return g&&
 this.complete(),this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(this.viewer.settings.
@@ -540,11 +540,11 @@ abs(y-1)+Math.abs(x-1)+Math.abs(b)+Math.abs(v)<Er;if(w)for(let M of[4,5])o[M]=Ma
 shifts:w}}var At=4,Tt=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
 Float64Array.from({length:e.corners.length/At},(n,s)=>r+=this.area(Sr(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
-surface;return Ie(r,n.subarray(At*e,At*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return T(Z(t,e),
+surface;return Ie(r,n.subarray(At*e,At*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return P(Z(t,e),
 r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(i=>s*t*St(e,i)<=n*St(r,i)&&this.sees(e,i,
 0))}cornersOf({planes:e}){let{center:t,extent:r}=this.surface.geometry,n=c=>e[c].slice(0,3),s=I(n(0),n(2)),i=.5*r*F(s);return[
-0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[m,u]=[n(c),n(l)],p=T(k(I(u,s),-e[c][3]),I(
-s,m),-e[l][3]),f=I(m,u);return k(T(p,f,L(s,t)+h*i),1/L(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*St(e,t);return e.
+0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[m,u]=[n(c),n(l)],p=P(k(I(u,s),-e[c][3]),I(
+s,m),-e[l][3]),f=I(m,u);return k(P(p,f,L(s,t)+h*i),1/L(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*St(e,t);return e.
 planes.every(s=>L(s,t)+s[3]>=-n*F(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:i}=this,{extent:o,center:c}=this.surface.
 geometry,l=s[s.length-1]??0,h=t.eye?Math.max(F(E(c,t.eye))-.5*o,0):1,m=n.closer*r*Ar(t,h),u=o,p=i[0],f=null;for(let d=0;d<
 n.mostOctaves;d+=1){let g=n.candidateArea*u**2;if(l<=n.mostCandidates*g)i[d+1]??=this.grown(p,this.spread(d,g),u),p=i[d+
@@ -587,22 +587,22 @@ constants.arrows.pieces+1),t.length),o.depthMask(!0),o.disable(o.BLEND),o.bindVe
 seeds=this.last=this.drawn=null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.
 array),this.array=this.buffer=null,this.forget()}inTile({corners:e,place:t,radius:r},n,[s,i,o]){let{geometry:c,pyramid:l,
 mesh:h}=this.header;if(!l||c.triangles)return null;let m=h.tileCells*l.tileBlocks,[u,p]=n.header.geometry.shape,f=c.shape[1],
-d=(v,x,w,M)=>{let _=l.shapes[0][x],S=Cn(pt(v,l.depth,_),s,_)-w*m,P=Math.min(Math.max(Math.floor(S),0),M-1);return S<0||S>
-M?null:[P,S-P]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*
+d=(v,x,w,M)=>{let _=l.shapes[0][x],S=Cn(pt(v,l.depth,_),s,_)-w*m,A=Math.min(Math.max(Math.floor(S),0),M-1);return S<0||S>
+M?null:[A,S-A]},g=d(e[0]%f+t[0],1,o,p-1),y=d(Math.floor(e[0]/f)+t[1],0,i,u-1);if(!g||!y||n.parts.get("cells")?.data[y[0]*
 (p-1)+g[0]]===0)return null;let b=y[0]*p+g[0];return{corners:[b,b+1,b+p,b+p+1],place:[g[1],y[1]],radius:r,cell:b}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of As)e.enableVertexAttribArray(n),e.vertexAttribPointer(
 n,s,e.FLOAT,!1,oo*Es,r),e.vertexAttribDivisor(n,1),r+=s*Es;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 i=t.map(h=>this.parts.get(h)?.data??new Float32Array),o=gt(i,s),c=this.nodes,l=n.triangles?null:zn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:m,radius:u,cell:p})=>{let[f,d]=m,[g,y,b,v]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
-x=I(E(T(y,v),T(g,b)),E(T(b,v),T(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
+x=I(E(P(y,v),P(g,b)),E(P(b,v),P(g,y)));return[...E(Ie(c,h,m,3),r),...l?Ie(l,h,m,2):[f*(1-d),d],...U(x),...s.flat?o.subarray(
 2*p,2*p+2):Ie(o,h,m,2),...Array.from(h).slice(0,3),u]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let i=this.parts.get("triangles")?.data??[];for(let o=0;o<i.length;o+=3)n.push(
 i[o],i[o+1],i[o+2],i[o+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let i=0;i<(t-1)*(r-1);i+=1){
 if(s&&!s[i])continue;let o=i+Math.floor(i/(r-1));n.push(o,o+1,o+r,o+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Ts=8,[lo,ho]=[24,8],Te=[1,2],mo=.2;function Ue(a,e,t){
 let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let i=0;i<t;i+=1)n[t*s+i]=a[t*e[s]+i];return n}function uo({
-geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Ts),o=i.map(({way:l,turns:h})=>{let m=T(T(k(r,l[0]),
+geometry:a,bodies:e},t){let[r,n,s]=t.axes,i=(e?.lights??[]).slice(0,Ts),o=i.map(({way:l,turns:h})=>{let m=P(P(k(r,l[0]),
 n,l[1]),s,-l[2]);return O(a.frame,h?m:l)}),c=l=>Float32Array.from({length:3*Ts},(h,m)=>l.flat()[m]??0);return{u_lightWays:c(
 o),u_lightColours:c(i.map(({color:l})=>l))}}var Rt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
 e,this.header=t,this.parts=r}get labels(){return this.header.bodies?.labels??[]}get runs(){let{bodies:e}=this.header;return e&&
@@ -618,9 +618,9 @@ runs.filter(({clear:_})=>_===o);if(!c.length)return;let{header:l,graphics:h}=thi
 programs,d=this.drawn??=this.make(),g=z(m,e,t),[y,b,v,x]=e.eye,w=O(m.frame,E([y,b,v],k(m.center,x)));o&&(u.enable(u.BLEND),
 u.blendFuncSeparate(u.SRC_ALPHA,u.ONE_MINUS_SRC_ALPHA,u.ZERO,u.ONE),u.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,
 u_eye:[...E(w,k(t,x)),x],...uo(l,e)}),u.bindVertexArray(d.faces),u.enable(u.POLYGON_OFFSET_FILL),u.polygonOffset(Te[1],Te[1]);
-for(let{faces:[_,S],ambient:P,diffuse:R}of c)S&&(h.programs.use(p,{u_ambient:P,u_diffuse:R}),u.drawElements(u.TRIANGLES,
+for(let{faces:[_,S],ambient:A,diffuse:R}of c)S&&(h.programs.use(p,{u_ambient:A,u_diffuse:R}),u.drawElements(u.TRIANGLES,
 3*S,u.UNSIGNED_INT,12*_));u.disable(u.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
-1]};h.programs.use(f,M),u.bindVertexArray(d.pieces);for(let{pieces:[_,S],width:P}of c)if(S){h.programs.use(f,{u_width:P*
+1]};h.programs.use(f,M),u.bindVertexArray(d.pieces);for(let{pieces:[_,S],width:A}of c)if(S){h.programs.use(f,{u_width:A*
 s});for(let[R,N,B,K,se]of[[d.ends,3,u.FLOAT,lo,0],[d.colours,4,u.UNSIGNED_BYTE,ho,2]]){u.bindBuffer(u.ARRAY_BUFFER,R);for(let C of[
 0,1])u.vertexAttribPointer(se+C,N,B,N===4,K,K*(_+C/2))}u.drawArraysInstanced(u.TRIANGLE_STRIP,0,4,S)}u.bindVertexArray(null),
 u.depthMask(!0),u.disable(u.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,i=this.drawn??=
@@ -653,11 +653,11 @@ drawn.delete(e)}}get lines(){let{earth:e}=this.header;return e?Wr.filter(t=>e[t]
 header:r,graphics:n}=this,{earth:s,shaders:i}=r,o=n.programs.get(i.lineVertex,i.lineFragment);if(!s||!o.ready)return;let c=n.
 context,{camera:l,anchor:h,width:m,height:u,ratio:p}=e;c.bindFramebuffer(c.FRAMEBUFFER,null),c.viewport(0,0,m,u),c.enable(
 c.SCISSOR_TEST),c.scissor(0,0,m,u),c.disable(c.DEPTH_TEST),c.enable(c.BLEND),c.blendEquation(c.MAX),c.clearColor(0,0,0,0);
-let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y=2*l.height*p/u,b=A(Math.sqrt(u/p/s.usualHeight),
+let f=this.horizon(l),g=[...l.planes,...f?[f]:[]].map(w=>this.localPlane(w,h)),y=2*l.height*p/u,b=T(Math.sqrt(u/p/s.usualHeight),
 ...s.widthRange),v=s.spacingPixels*y,x=s.spacings.find(w=>w<=v)??0;for(let{option:w,color:M,opacity:_,width:S}of s.strokes){
-if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let P=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
+if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let A=this.take(w,h,()=>this.linesOf(w,h,x),x);n.programs.
 use(o,{u_matrix:z(r.geometry,l,h),u_picture:[m,u],u_width:S*b*p,u_lineColour:[...M,_],u_horizon:f?g[g.length-1]:[0,0,0,1]}),
-c.bindVertexArray(P.array),c.bindBuffer(c.ARRAY_BUFFER,P.buffers[0]);for(let[R,N]of yo(P.groups,g)){for(let B=0;B<ks;B+=
+c.bindVertexArray(A.array),c.bindBuffer(c.ARRAY_BUFFER,A.buffers[0]);for(let[R,N]of yo(A.groups,g)){for(let B=0;B<ks;B+=
 1)c.vertexAttribPointer(B,3,c.FLOAT,!1,Ls,(R+B)*Ls);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,N)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders;
 return!this.lines.length||this.graphics.programs.get(e,t).ready}drawGround({camera:e,anchor:t}){let{header:r,graphics:n}=this,
@@ -670,7 +670,7 @@ l.TRIANGLES,u.count,l.UNSIGNED_INT,0),l.depthMask(!0)}l.bindVertexArray(null)}}h
 t.map)return null;let{radius:r}=t,[n,s,i,o]=e.eye,c=o*Math.hypot(n,s,i);return[...U([n,s,i]),c?-(r**2)/c:0]}localPlane(e,t){
 let{frame:r,center:n}=this.header.geometry,s=e.slice(0,3),i=O(r,s);return[...i,L(i,t)+L(s,n)+e[3]]}disc(e,t,r){let{frame:n,
 center:s}=this.header.geometry,[i,o,c,l]=this.horizon(e)??[0,0,1,0],h=[i,o,c],m=Math.sqrt(Math.max(t**2-l**2,0)),u=U(I(e.
-axes[1],h)),p=I(h,u),f=T(k(h,-l),s,-1);return{u_middle:E(O(n,f),r),u_aside:k(O(n,u),m),u_upward:k(O(n,p),m),u_away:e.state.
+axes[1],h)),p=I(h,u),f=P(k(h,-l),s,-1);return{u_middle:E(O(n,f),r),u_aside:k(O(n,u),m),u_upward:k(O(n,p),m),u_away:e.state.
 parallel?0:F(e.state.position)/t}}take(e,t,r,n=0){let s=this.drawn.get(e);if(s&&String([s.anchor,s.spacing])===String([t,
 n]))return s;this.drop(e);let i={...r(),anchor:t,spacing:n};return this.drawn.set(e,i),i}emptyArray(){let{graphics:e}=this;
 return{array:e.counted(e.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(e,t){
@@ -700,16 +700,16 @@ nullclines:c=[]}=this.header.structure??{},[l,h]=this.shown(e,t,"separatrices"),
 saddles:l}).lines).filter(([,u])=>u.length).map(([u])=>({name:u,color:o[u]}));return this.shown(e,t,"nullclines")[0]&&m.
 push(...c),[...i.filter((u,p)=>s.has(p)),...m.map(u=>({...u,isLine:!0}))]}draw({camera:e,anchor:t,width:r,height:n,ratio:s},i,o){
 let{header:c,graphics:l}=this,{structure:h,geometry:m}=c,u=h&&this.layers(h,i,o);if(!h||!u?.length)return;let p=l.context,
-[f,d,g,y]=e.eye,b=O(m.frame,E([f,d,g],k(m.center,y))),v=s*A(Math.sqrt(n/s/h.usualHeight),...h.widthRange),x=y?1:e.distance/
+[f,d,g,y]=e.eye,b=O(m.frame,E([f,d,g],k(m.center,y))),v=s*T(Math.sqrt(n/s/h.usualHeight),...h.widthRange),x=y?1:e.distance/
 Math.hypot(...b);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:z(m,e,t),u_anchor:t,u_eye:[...E(b,k(t,y)),
-y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:S,width:P,
-above:R}of u){let[N,B,K,se=1]=S;l.programs.use(w,{u_width:P*v,u_nearer:xo*x*(1+wo*R)});for(let C of[0,1])p.vertexAttribPointer(
+y],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:_,color:S,width:A,
+above:R}of u){let[N,B,K,se=1]=S;l.programs.use(w,{u_width:A*v,u_nearer:xo*x*(1+wo*R)});for(let C of[0,1])p.vertexAttribPointer(
 C,3,p.FLOAT,!1,Fs,Fs*(M+C/2)),p.vertexAttrib4f(2+C,N,B,K,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,_)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[i,o],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,i,o?.digest,c?.digest,Tr(r)]);if(this.drawn?.key===l)return this.
 drawn.layers;let h=Is(s?.data??[],o?.data??[],{points:n,saddles:i}),{line:m,dot:u,rim:p,middle:f}=e,d=[],g=[],y=0,b=(w,M,_,S)=>{
-let P=w.length/6;P&&d.push({first:y,count:P,color:M,width:_,above:S}),g.push(w),y+=P},v=e.nullclines.map((w,M)=>Mo(c?.data??
+let A=w.length/6;A&&d.push({first:y,count:A,color:M,width:_,above:S}),g.push(w),y+=A},v=e.nullclines.map((w,M)=>Mo(c?.data??
 [],M));v.forEach(w=>b(w,p,m[0],0)),v.forEach((w,M)=>b(w,e.nullclines[M].color,m[1],1)),b(Ve(Object.values(h.lines).flat()),
 p,m[0],1.5),Object.entries(h.lines).forEach(([w,M],_)=>b(Ve(M),e.lines[w],m[1],2+_));let x=e.kinds.map((w,M)=>h.points[M]??
 []);return b(Ve(x,!0),p,u[0],6),e.kinds.forEach(({color:w},M)=>b(Ve([x[M]],!0),w,u[1],7)),b(Ve(x.filter((w,M)=>e.kinds[M].
@@ -718,7 +718,7 @@ counted(r.createVertexArray()),this.buffer??=t.counted(r.createBuffer()),r.bindV
 this.buffer),r.bufferData(r.ARRAY_BUFFER,Float32Array.from(e.flatMap(n=>[...n])),r.STATIC_DRAW);for(let n of[0,1])r.enableVertexAttribArray(
 n),r.vertexAttribDivisor(n,1);r.bindVertexArray(null)}at({place:e,position:t,height:r},n,s,i){let{geometry:o,structure:c}=this.
 header,[l,h]=this.shown(s,i,"critical"),m=2*n.height/Math.max(r,1),[u,p]=["",Ns];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
-1){let[d,g,y,b]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),v=T(Z(o.frame,[d,g,y]),o.center),x=n.project(v);if(!x||Math.hypot(
+1){let[d,g,y,b]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),v=P(Z(o.frame,[d,g,y]),o.center),x=n.project(v);if(!x||Math.hypot(
 ...E(v,t))>4*Ns*m)continue;let w=.5*r*Math.hypot((x[0]-e[0])*n.aspect,x[1]-e[1]);w<p&&([u,p]=[c?.kinds[b]?.name??"",w])}
 return u}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
 buffer=this.drawn=null}};function Tr([a,e,t]){return t<.5?a:e}var Eo={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
@@ -923,7 +923,7 @@ void main()
   gl_Position = projectTile(place);
 }
 `;var Bs=1e-5,It=Math.atan(Math.sinh(Math.PI))*180/Math.PI,X=Math.PI/180,Co=88*X,zs='export it with projection="mercator"';
-function ge({lng:a,lat:e}){let t=Math.sin(A(e,-It,It)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ct=class{origin;slope;box;constructor(e,t){
+function ge({lng:a,lat:e}){let t=Math.sin(T(e,-It,It)*X);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ct=class{origin;slope;box;constructor(e,t){
 let r=e?.map;if(!r||!t)throw new Error(`the flow is not on a map; ${zs}`);this.box=r;let[n,s]=t.shape,i=(d,g)=>{let[y,b,
 v]=t.data.subarray(3*(d*s+g)),x=ge({lng:Math.atan2(b,y)/X,lat:Math.asin(v/Math.hypot(y,b,v))/X}),w=[r[0]+(r[2]-r[0])*g/(s-
 1),r[1]+(r[3]-r[1])*d/(n-1)];return{place:x,position:w}},[o,c,l]=[i(1,1),i(n>>1,s>>1),i(n-2,s-2)],h=d=>d+Math.ceil(o.place[0]-
@@ -934,11 +934,11 @@ this.slope[t]*e[t])}lngLatOf(e){let[t,r]=this.placeOf(e);return[360*(t-.5),Math.
 let[t,r]=e.map((s,i)=>(s-this.origin[i])/this.slope[i]),n=1/this.slope[0];return[t+n*Math.round((.5*(this.box[0]+this.box[2])-
 t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,s]=this.positionOf(ge(e.center)),i=f=>e.globe?this.globeLook(
 e,r,[f,s,t]):this.flatLook(e,r,[f,s,t]),o=[i(n)],[c,l]=e.globe?[.5*r*o[0].width,.5*r*o[0].width]:[.5*r*Math.min(e.width,
-e.height),r*Hs(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-A(u,h,m))<l&&
+e.height),r*Hs(e)],[h,,m]=this.box,u=n+(n<.5*(h+m)?1:-1)/this.slope[0];return!(n-c<=h&&n+c>=m)&&Math.abs(u-T(u,h,m))<l&&
 o.push(i(u)),o}flatLook({width:e,height:t,bearing:r,pitch:n,fov:s},i,[o,c,l]){let[h,m]=[r*X,n*X],u=.5*t*i,p=u/Math.tan(.5*
 s*X);return{state:{position:[o-p*Math.sin(m)*Math.sin(h),c-p*Math.sin(m)*Math.cos(h),l+p*Math.cos(m)],focal_point:[o,c,l],
 up:[Math.sin(h),Math.cos(h),0],parallel:n===0,parallel_scale:u,view_angle:s},width:e,height:t}}globeLook(e,t,[r,,n]){let s=1/
-(t*this.slope[0]),i=A(e.center.lat,-It,It)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(Hs(e)/o,1)),[l,h]=[i-c,i+c].
+(t*this.slope[0]),i=T(e.center.lat,-It,It)*X,o=s/(2*Math.PI*Math.cos(i)),c=Math.asin(Math.min(Hs(e)/o,1)),[l,h]=[i-c,i+c].
 map(g=>ge({lng:0,lat:g/X})[1]),m=Math.abs(i)+c<=Math.PI/2?Math.asin(Math.sin(c)/Math.cos(i)):Math.PI,u=(.5*(l+h)-this.origin[1])/
 this.slope[1],[p,f]=[m/Math.PI,l-h];return{state:{position:[r,u,n+1/this.slope[0]],focal_point:[r,u,n],up:[0,1,0],parallel:!0,
 parallel_scale:.5*f/this.slope[0],view_angle:e.fov},width:p*s,height:f*s}}};function Hs({width:a,height:e,pitch:t,fov:r}){
@@ -955,10 +955,10 @@ LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercato
 shaderData,c=r.get(`${o}
 ${i}
 ${Ds}`,Vs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(A(e.zoom,0,Uo)),m=n.placeOf(l.state.focal_point),u=2**h,
-p=[Math.floor(m[0]*u),A(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=P=>P.map((R,N)=>(R*u-
-p[N])*Pr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(P=>g(n.placeOf(P)));t.bindVertexArray(e.array);let _=s?Vo:1,S=s?0:Math.
-round(ge(e.center)[0]-m[0]);for(let P of e.isRepeated&&!s?[-1,0,1]:[0]){let R={wrap:f+S+P,canonical:d},N=e.getProjectionData(
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(T(e.zoom,0,Uo)),m=n.placeOf(l.state.focal_point),u=2**h,
+p=[Math.floor(m[0]*u),T(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=A=>A.map((R,N)=>(R*u-
+p[N])*Pr),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(A=>g(n.placeOf(A)));t.bindVertexArray(e.array);let _=s?Vo:1,S=s?0:Math.
+round(ge(e.center)[0]-m[0]);for(let A of e.isRepeated&&!s?[-1,0,1]:[0]){let R={wrap:f+S+A,canonical:d},N=e.getProjectionData(
 {tileID:R,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:N.mainMatrix,u_projection_fallback_matrix:N.fallbackMatrix,u_projection_tile_mercator_coords:N.
 tileMercatorCoords,u_projection_clipping_plane:N.clippingPlane,u_projection_transition:N.projectionTransition,u_box:[...w,
 M[0]-w[0],M[1]-w[1]],u_mapCells:_,u_flowMatrix:Do(this.view.header,l,n,p,1/(u*Pr)),u_flowPicture:0,u_opacity:e.opacity}),

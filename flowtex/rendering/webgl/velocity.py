@@ -25,6 +25,7 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.blocks import BLOCK_CELLS
 from flowtex.textures.tiles.pyramid import PATH_CELLS, TILE_BLOCKS
+from flowtex.textures.tiles.shared import range_rules
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
 from flowtex.trace.slices import drawn_lags
 from flowtex.trace.structure.formula_lines import formula_rates
@@ -273,6 +274,7 @@ def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
             "gradient": gradient_trees(formula),
             "names": list(formula.ranges),
             "ends": [list(ends) for ends in formula.ranges.values()],
+            "range": range_rules(),
         },
         "pyramid": {
             "depth": DEPTH,

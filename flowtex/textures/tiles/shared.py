@@ -79,6 +79,17 @@ def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple
     return low if low - least > tail else least, high if most - high > tail else most
 
 
+def range_rules() -> dict[str, object]:
+    """Return the numbers by which :func:`usual_ends` and :func:`widened` find a range, by name."""
+    return {
+        "percentiles": list(ROBUST_PERCENTILES),
+        "tail": LONG_TAIL,
+        "leastShare": LEAST_SHARE,
+        "same": SAME_VALUE_SHARE,
+        "widening": WIDENED_SHARE,
+    }
+
+
 def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tuple[float, float]:
     """Return a range for colours, also for equal values up to rounding, and for none."""
     halves = name == "speed" and name not in field.scalars and has_pyramid(field)
