@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pyvista as pv
@@ -19,7 +20,7 @@ from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField, Surface
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.rendering.camera import CAMERA_LIMITS, apply_camera, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, apply_camera, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.annotations import difference_text
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -48,6 +49,8 @@ class FlowtexComponent:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = plotter
         self._handles: list[FlowHandle] = []
+        #: The camera of a renderer as it was pointed at flows.
+        self._pointed: WeakKeyDictionary[Any, Camera] = WeakKeyDictionary()
 
     @accepts_options(FieldOptions, Appearance)
     def add(
@@ -78,8 +81,8 @@ class FlowtexComponent:
             As for ``plotter.add_mesh``, without arguments for the colours. Sizes, places and fonts
             that are not given follow from the size of the view, those of horizontal bars too.
         reset_camera
-            Whether to move the camera so that it shows everything; by default for the first mesh
-            only.
+            Whether to move the camera so that it shows everything; by default for the first mesh,
+            and for a plane that the camera would see edge-on, unless it has been moved.
         name, label, pickable, show_edges, edge_color, line_width
             As for ``plotter.add_mesh``: a flow or mesh of the same name is replaced, and
             ``plotter.add_legend()`` shows the label. Edges are those of the drawn triangles.
@@ -136,7 +139,22 @@ class FlowtexComponent:
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
             point_camera(self._plotter, scene.whole.surface)
+            self._pointed[self._plotter.renderer] = read_camera(self._plotter.camera)
+        elif reset_camera is None:
+            self._turn_to(scene.whole.surface)
         return handle
+
+    def _turn_to(self, surface: Surface) -> None:
+        """Show all flows from aside if one is seen edge-on from where the camera was pointed."""
+        plotter, renderer = self._plotter, self._plotter.renderer
+        present = read_camera(plotter.camera)
+        if present != self._pointed.get(renderer) or not present.sees_edge_on(surface):
+            return
+        shown = [handle for handle in self._handles if handle.renderer is renderer]
+        surfaces = [handle.scene.whole.surface for handle in shown]
+        points = np.concatenate([each.points[each.valid] for each in surfaces])
+        apply_camera(Camera.aside(points, aspect_of(plotter)), plotter.camera)
+        self._pointed[renderer] = read_camera(plotter.camera)
 
     def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
         """Return the first flow, its arguments, and the other meshes of the plotter.
@@ -210,10 +228,8 @@ def point_camera(
     the clipping range follows the bounds of the objects, and otherwise stays. Raises a FieldError
     when the view's camera, zoom or focus, or the margin, is invalid.
     """
-    (width, height), renderer = plotter.window_size, plotter.renderer
-    left, bottom, right, top = renderer.GetViewport()
-    aspect = float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
-    apply_camera(view.first_camera(surface, aspect, margin), plotter.camera)
+    renderer = plotter.renderer
+    apply_camera(view.first_camera(surface, aspect_of(plotter), margin), plotter.camera)
     plotter.camera_set = True
     bounds = renderer.ComputeVisiblePropBounds()
 
@@ -226,6 +242,13 @@ def point_camera(
 
     renderer.reset_camera_clipping_range()
     renderer.AddObserver("StartEvent", follow_bounds)
+
+
+def aspect_of(plotter: Any) -> float:
+    """Return the width over the height of the part of the window that is being added to."""
+    width, height = plotter.window_size
+    left, bottom, right, top = plotter.renderer.GetViewport()
+    return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
 
 
 def open_plotter(
@@ -286,7 +309,7 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
     labels: list[Label] = []
     left_out: list[str] = []
     room = MOST_VERTICES
-    renderer = shown._renderer
+    renderer = shown.renderer
     for name, actor in _actors(plotter, shown):
         try:
             if actor not in renderer.actors.values():

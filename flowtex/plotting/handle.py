@@ -148,6 +148,11 @@ class FlowHandle(AppearanceAttributes):
         self._draw()
 
     @property
+    def renderer(self) -> Any:
+        """The renderer of the part of the window with the texture."""
+        return self._renderer
+
+    @property
     def closed(self) -> bool:
         """Whether the texture has been removed."""
         return self._plotter is None

@@ -33,6 +33,7 @@ UP = (0.0, 0.0, 1.0)  #: The direction up.
 #: The same for all of a globe: above longitude 0 and 20 degrees north.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 LEAST_ASIDE = 0.2  #: Share of the radius from which a direction counts.
+LEAST_FACING = 0.1  #: Cosine between the view and the normal of a surface that is seen edge-on.
 MOST_LARGER = 4.0  #: Greatest ratio of the extents of two surfaces that share a camera.
 MOST_APART = 0.5  #: Greatest distance of their centres over the larger extent.
 FARTHEST_REACH = 1e9  #: Farthest that a camera may be, in extents: beyond, numbers end.
@@ -207,10 +208,8 @@ class Camera:
         right /= np.linalg.norm(right)
         half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
         axes = np.stack([right, np.cross(ahead, right), ahead])
-        x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
-        # Near points are seen larger.
-        beside = np.maximum(np.abs(x) / aspect, np.abs(y)) / (half * share)
-        distance = float(np.max(z + beside))
+        offsets = surface.points[surface.valid] - surface.center
+        distance = _distance_to_all(offsets, axes, aspect, share)
         # The middle of a sphere is not on it, so without a point the view only narrows.
         closer = min(zoom, CAMERA_LIMITS.closest if focus is not None else 1.0)
         return cls(
@@ -221,6 +220,34 @@ class Camera:
             parallel_scale=float(distance / closer * half * closer / zoom),
             view_angle=float(2 * np.degrees(np.arctan(half * closer / zoom))),
         )
+
+    @classmethod
+    def aside(cls, points: Floats, aspect: float, margin: float = CAMERA_LIMITS.margin) -> Self:
+        """Return the camera that shows points in space (N, 3) from above and aside.
+
+        Parameters
+        ----------
+        points
+            Points in the mesh's coordinates, (N, 3).
+        aspect
+            Width of the picture over its height.
+        margin
+            Share of the picture that stays empty at each side.
+        """
+        center = (points.min(axis=0) + points.max(axis=0)) / 2
+        ahead = np.array(ASIDE) / np.linalg.norm(ASIDE)
+        right = np.cross(UP, ahead)
+        right /= np.linalg.norm(right)
+        axes = np.stack([right, np.cross(ahead, right), ahead])
+        distance = _distance_to_all(points - center, axes, aspect, 1 - 2 * margin)
+        return cls(position=_point(center + ahead * distance), focal_point=_point(center), up=UP)
+
+    def sees_edge_on(self, surface: Surface) -> bool:
+        """Return whether a flat surface is seen edge-on, or nearly so."""
+        if surface.frame is None:
+            return False
+        normal = np.cross(*surface.frame)
+        return bool(abs(self.axes[2] @ normal) < LEAST_FACING)
 
     @classmethod
     def from_dict(cls, values: Any, base: Camera | None = None) -> Self:
@@ -390,6 +417,15 @@ def can_share_camera(first: Surface, second: Surface) -> bool:
     is_flat = first.frame is not None
     near = distance <= MOST_APART * larger <= MOST_APART * MOST_LARGER * smaller
     return near and is_flat == (second.frame is not None)
+
+
+def _distance_to_all(offsets: Floats, axes: Floats, aspect: float, share: float) -> float:
+    """Return the distance from which points (N, 3) around the middle fit into a picture."""
+    half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
+    x, y, z = axes @ offsets.T
+    # Near points are seen larger.
+    beside = np.maximum(np.abs(x) / aspect, np.abs(y)) / (half * share)
+    return float(np.max(z + beside))
 
 
 def _side(center: Floats) -> tuple[Point, Point]:
