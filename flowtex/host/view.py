@@ -97,7 +97,7 @@ class WebView:
         """Return the same with the values of all scalars, for pages without a server."""
         data, names = self.data(), self.scene.scalar_names
         others = tuple(
-            (n, steps_of(data.field, name))
+            (n, self.scene.scalar_steps(name, data.field))
             for n, name in enumerate(names)
             if name != self.scene.scalar_name
         )
@@ -151,7 +151,7 @@ def colours_of(
         choices=choices_of(scene),
         cmap=look.cmap if isinstance(look.cmap, str) else "",
         auto=look.clim is None and look.norm is None,
-        values=None if name is None else steps_of(field, name),
+        values=None if name is None else scene.scalar_steps(name, field),
         flat=name in scene.field.on_cells,
         scale=scene.colour_scale,
         entries=look.n_colors or ENTRIES,

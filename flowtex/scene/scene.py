@@ -30,6 +30,7 @@ from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
+from flowtex.field.steps import Steps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
@@ -75,6 +76,7 @@ class Scene:
     ) -> None:
         self.settings = settings or Settings()
         self._appearance = appearance or Appearance()
+        self._given = field  # without scalars that only the colours need
         self.field = with_scalars(field, self._appearance.scalar_name)
         self.image = image
         if image is None and self.appearance.image is not None:
@@ -120,7 +122,7 @@ class Scene:
                 f"beside has {', '.join(field_names)}, which selects data; both views show the "
                 "same field, so expected settings"
             )
-        field, settings = field or self.field, dict(self.settings)
+        field, settings = field or self._given, dict(self.settings)
         if "image" in changes:  # an image keeps its own colours
             del settings["noise"], settings["strength"]
         options = Options.split("appearance", **{**settings, **changes})
@@ -140,7 +142,9 @@ class Scene:
 
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
-        before, self.field = self.field, with_scalars(self.field, value.scalar_name)
+        before = self.field
+        if value.scalar_name not in (SPEED, *before.scalars):
+            self.field = with_scalars(self._given, value.scalar_name)
         same_image = value.image is None or value.image is self._appearance.image
         try:
             self._check_colours(value)
@@ -148,11 +152,14 @@ class Scene:
         except BaseException:
             self.field = before
             raise
-        if before is not self.field and self.pyramid is not None:
+        has_new_tiles = before is not self.field and self.pyramid is not None
+        if has_new_tiles:
             self._pyramid = self._store = self._textures = None
         self._appearance = value
         if picture is not None:
             self._lay(picture)
+        if has_new_tiles:  # which have the values of the new scalar
+            self._changed.emit("trace")
         self._changed.emit("appearance")
 
     @property
@@ -174,8 +181,11 @@ class Scene:
 
     @property
     def scalar_names(self) -> tuple[str, ...]:
-        """Names of the scalars that can colour the surface."""
-        return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
+        """Names of the scalars that can colour the surface, with the one that does."""
+        names = dict.fromkeys((SPEED, *self._given.scalars))
+        if self.scalar_name is not None:
+            names[self.scalar_name] = None
+        return tuple(names)
 
     def title_of(self, name: str) -> str:
         """Return the title of a legend: words and unit."""
@@ -308,7 +318,11 @@ class Scene:
 
         They are those of a part of the field, or of a coarser form of it, where one is given.
         """
-        return at_moment(steps_of(field or self.field, name), self.moment)
+        return at_moment(self.scalar_steps(name, field), self.moment)
+
+    def scalar_steps(self, name: str, field: FlowField | None = None) -> Steps:
+        """Values at all times, (T or 1, J, I); :meth:`scalar` has the parameters."""
+        return steps_of(with_scalars(field or self.field, name), name)
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         name, chosen = appearance.scalar_name, appearance.clim
@@ -340,7 +354,7 @@ class Scene:
         """Raise a FieldError if the scalar does not exist, or has no logarithm."""
         if (name := appearance.scalar_name) is None:
             return
-        steps_of(self.field, name)
+        self.scalar_steps(name)
         if appearance.norm is not None:
             scale_of(appearance, self._limits(appearance))
         low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
@@ -389,12 +403,13 @@ class Scene:
         if (values := typical.volume_values.get(name)) is not None:
             return values
         if self.pyramid is None or name in self.field.scalars:
-            return np.asarray(np.asarray(steps_of(typical, name))[:, valid])
+            return np.asarray(np.asarray(self.scalar_steps(name, typical))[:, valid])
         return drawn_speeds(typical, self.whole)
 
     def copy(self) -> Scene:
         """Return an independent scene that shows the same, for a thread."""
         scene = Scene(self.field)
+        scene._given = self._given
         scene.settings, scene._appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise = self.image, self._noise
         scene._show_time(self._time)

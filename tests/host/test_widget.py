@@ -551,6 +551,23 @@ def test_an_appearance_is_sent_without_the_slices(
     assert not headers[-1]["scalars"]["bar"]
 
 
+def test_derived_scalars_are_sent_and_offered_while_they_are_shown(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(coloured(2))
+    heard = Heard(widget, monkeypatch)
+    heard.settle()
+    for name in ("vorticity", "velocity_x"):
+        heard.arrays.clear()
+        widget.scalars = name
+        heard.wait(lambda: "scalars/0/2" in heard.arrays)
+        expected = make(coloured(2), scalars=name)
+        np.testing.assert_array_equal(
+            heard.arrays["scalars/0/2"], np.float32(expected.field.scalars[name][0])
+        )
+        assert widget._header["scalars"] == expected._header["scalars"]
+
+
 def test_colours_that_are_chosen_in_the_browser_are_taken(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:

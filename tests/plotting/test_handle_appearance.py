@@ -43,6 +43,8 @@ CHANGES: list[dict[str, Any]] = [
     {"clim": "robust", "opacity": 0.4},
     {"scalars": "height", "cmap": "coolwarm"},
     {"scalars": False, "color": "tomato"},
+    {"scalars": "vorticity"},
+    {"scalars": "velocity_x", "clim": (-0.1, 0.2)},
     {"visible": False},
     {"clim": (0.01, 0.3), "log_scale": True, "show_scalar_bar": False},
 ]

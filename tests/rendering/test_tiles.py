@@ -139,9 +139,10 @@ def test_an_image_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
     plotter.close()
 
 
-def test_tiles_have_the_colours_of_this_moment(_tiled: None) -> None:
+@pytest.mark.parametrize("scalars", ["depth", "vorticity"])
+def test_tiles_have_the_colours_of_this_moment(_tiled: None, scalars: str) -> None:
     first: dict[str, Any] = {"scalars": "speed", "cmap": "viridis"}
-    then: dict[str, Any] = {"scalars": "depth", "cmap": "magma", "clim": (0.2, 1.5), "opacity": 0.7}
+    then: dict[str, Any] = {"scalars": scalars, "cmap": "magma", "clim": (0.2, 1.5), "opacity": 0.7}
     depth = flat().points[..., 0]
     pictures = []
     for options, changes in ((first, then), (then, {})):
