@@ -24,9 +24,11 @@ from flowtex.cli.options import (
     pixels,
 )
 from flowtex.examples import NAMES
+from flowtex.field.earth import GLOBE
 from flowtex.field.formula.make import KNOWN
 
 if TYPE_CHECKING:
+    from flowtex.app import Library
     from flowtex.field import FlowField
     from flowtex.sources.open_source import MeshSource
 
@@ -137,15 +139,47 @@ def _show_page(
 
     is_store = len(files) == 1 and has_parts(files[0])
     is_one_flow = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
-    if is_store or (is_one_flow and any(name in choice for name in FIELD_OPTIONS)):
+    if is_one_flow and not is_store:
+        library = Library.of(list(files))
+        part = _part_of(library, choice)
+        if part is not None:
+            return serve_library(library, page, {**options, **part})
+    if is_store or is_one_flow:
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         raise UsageError(
             f"--{misplaced[0].replace('_', '-')} can be used with one file, not with several "
             "files or a folder"
         )
-    library = Library.of(list(files)) if is_one_flow else Library.of(*files)
-    return serve_library(library, page, {**options, **choice})
+    return serve_library(Library.of(*files), page, {**options, **choice})
+
+
+def _part_of(library: Library, choice: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the part of a file that options choose, from which the page can go to others.
+
+    ``None`` where options choose a flow that the controls of the page do not have, such as that on
+    an oblique plane.
+    """
+    part = dict(choice)
+    given = [name for name in FIELD_OPTIONS if name in choice]
+    if not given:
+        return part
+    if not {"slice", "projection", "globe"}.issuperset(given):
+        return None
+    source = library.source(library.names[0])
+    if "slice" in part:
+        plane = source.part(part.get("block")).plane_of(str(part.pop("slice")))
+        if plane is None or "plane" in choice:
+            return None
+        part["plane"] = plane
+    projection = str(part.pop("projection", ""))
+    if part.pop("globe", False):
+        projection = projection or GLOBE
+    if projection:
+        if projection not in source.blocks or "block" in choice:
+            return None
+        part["block"] = projection
+    return part
 
 
 def _is_folder(path: Path) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
 import pyvista as pv
@@ -51,6 +51,8 @@ class FlowtexComponent:
         self._handles: list[FlowHandle] = []
         #: The camera of a renderer as it was pointed at flows.
         self._pointed: WeakKeyDictionary[Any, Camera] = WeakKeyDictionary()
+        #: Renderers whose camera sees planes of several directions from aside.
+        self._turned: WeakSet[Any] = WeakSet()
 
     @accepts_options(FieldOptions, Appearance)
     def add(
@@ -148,13 +150,16 @@ class FlowtexComponent:
         """Show all flows from aside if one is seen edge-on from where the camera was pointed."""
         plotter, renderer = self._plotter, self._plotter.renderer
         present = read_camera(plotter.camera)
-        if present != self._pointed.get(renderer) or not present.sees_edge_on(surface):
+        if present != self._pointed.get(renderer):
+            return
+        if renderer not in self._turned and not present.sees_edge_on(surface):
             return
         shown = [handle for handle in self._handles if handle.renderer is renderer]
         surfaces = [handle.scene.whole.surface for handle in shown]
         points = np.concatenate([each.points[each.valid] for each in surfaces])
         apply_camera(Camera.aside(points, aspect_of(plotter)), plotter.camera)
         self._pointed[renderer] = read_camera(plotter.camera)
+        self._turned.add(renderer)
 
     def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
         """Return the first flow, its arguments, and the other meshes of the plotter.

@@ -7,6 +7,7 @@ is read again.
 from __future__ import annotations
 
 import math
+import re
 import threading
 import warnings
 from collections.abc import Sequence
@@ -40,6 +41,8 @@ from flowtex.sources.reader_errors import errors_of_file
 MAX_SERIES_BYTES = 2_000_000_000
 #: Places of a plane that cuts a volume, evenly spaced along an axis; one of them in the middle.
 CUTS = 101
+#: A cut across an axis, through the middle or a place.
+_ACROSS = re.compile(r"\s*([xyz])\s*(?:=\s*([-+.\w]+)\s*)?")
 #: The surface around a volume, among its planes.
 OUTER = "outer"
 
@@ -94,6 +97,14 @@ class FlowSource:
         # Enough digits to distinguish neighbouring positions.
         digits = 3 - math.floor(math.log10(high - low))
         return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
+
+    def plane_of(self, cut: str) -> str | None:
+        """Return the plane of a cut across an axis, such as ``"z=1"`` or ``"z"``, if it is one."""
+        found = _ACROSS.fullmatch(cut)
+        if found is None or found[1] not in self.ends:
+            return None
+        axis, value = found[1], found[2]
+        return self.plane_at(axis, CUTS // 2) if value is None else f"{axis}={value}"
 
     def plane_number(self, plane: str) -> int | None:
         """Return the number of a plane, or of the nearest; ``None`` if it does not exist."""

@@ -35,7 +35,7 @@ def window() -> Iterator[Any]:
         yield made
 
 
-@pytest.mark.parametrize("order", permutations(SLICES), ids=str)
+@pytest.mark.parametrize("order", list(permutations(SLICES)), ids=str)
 def test_orthogonal_slices_are_all_seen(window: Any, order: tuple[str, ...]) -> None:
     mesh = box()
     handles = [window.flowtex.add(mesh, slice=cut, samples=3) for cut in order]
