@@ -28,6 +28,8 @@ from flowtex.errors import FieldError, install_extra
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.field.quantities import values_at
+from flowtex.field.steps import LazySteps
 from flowtex.host.export import PREVIEW, page_text, write_page
 from flowtex.host.feed import Feed
 from flowtex.host.still import still_png
@@ -36,7 +38,7 @@ from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.fields import read_field, share_field
-from flowtex.scene.options import Appearance, AppearanceAttributes, ViewOptions
+from flowtex.scene.options import SPEED, Appearance, AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
@@ -164,9 +166,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     playing
         Whether the animation runs.
     point
-        The point clicked last: ``position``, ``index`` (i, j) and ``values``; ``None`` before the
-        first click. On a surface of triangles, j is the index of the triangle plus the barycentric
-        coordinate of its second corner, and i the barycentric coordinate of its third.
+        The point clicked last: ``position``, ``index`` (i, j) and ``values`` at the time shown;
+        ``None`` before the first click, and after another field is assigned. On a surface of
+        triangles, j is the index of the triangle plus the barycentric coordinate of its second
+        corner, and i the barycentric coordinate of its third.
     size
         Width and height in CSS pixels; a width of 0 fills the cell.
     bar
@@ -302,6 +305,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         for view in self._views:
             view.show(field)
         self._frame = self._still = None
+        self.point = None  # of the surface before
         if not can_share_camera(before, field.surface):
             self.camera = Camera.fit(field.surface, PREVIEW[0] / PREVIEW[1]).to_dict()
 
@@ -471,6 +475,19 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def _to_time(self, change: Any) -> None:
         if change["new"] != self.scene.time:
             self.scene.time = change["new"]
+        if self.point is not None and self.field.formula is None:  # whose parameters browsers know
+            self.point = self._point_now(self.point)
+
+    def _point_now(self, point: dict[str, Any]) -> dict[str, Any] | None:
+        """Return a point with its values at the time shown; none where they would be read late."""
+        index = point.get("index")
+        if index is None or isinstance(self.field.velocity, LazySteps):
+            return None
+        i, j = index
+        found = values_at(self.field, (j, i), self.scene.time)
+        present = {SPEED: found.speed, **found.scalars}
+        names = [name for name in point.get("values", {}) if name in present]
+        return {**point, "values": {name: float(present[name]) for name in names}}
 
     def _set(self, name: str, value: Any) -> None:
         if getattr(self, name) != value:

@@ -582,3 +582,22 @@ def test_colours_that_are_chosen_in_the_browser_are_taken(
         heard.say(kind="appearance", changes=wrong)
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
     assert widget.opacity == 1.0
+
+
+def test_the_point_follows_the_time_and_ends_with_its_field() -> None:
+    y, x = np.mgrid[0:1:9j, 0:2:17j]
+    steps = np.array([1.0, 2.0, 4.0])[:, None, None, None] * np.ones((*x.shape, 2))
+    points = np.stack([x, y], axis=-1)
+    field = flowtex.FlowField.from_arrays(points, steps, times=[0.0, 5.0, 10.0])
+    widget = flowtex.FlowWidget(field)
+    clicked = {"position": [1.0, 0.5, 0.0], "index": [8.0, 4.0], "values": {"speed": 2**0.5}}
+    widget.set_state({"point": clicked})
+    for time in (5.0, 7.5, 0.0):
+        widget.time = time
+        expected = field.at(1.0, 0.5, time=time)
+        assert expected is not None
+        assert widget.point["values"]["speed"] == pytest.approx(expected.speed)
+        assert widget.point["position"] == clicked["position"]
+    widget.field = flowtex.FlowField.from_arrays(points, steps[0])
+    assert widget.point is None
+    widget.close()

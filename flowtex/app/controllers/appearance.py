@@ -35,6 +35,8 @@ COMPARISONS: dict[str, dict[str, Any]] = {
             {"fixed_grain": True},
             {"samples": 10},
             {"show_level": True},
+            {"lines": "pathlines"},
+            {"lines": "streamlines"},
         )
     },
 }
@@ -166,4 +168,6 @@ class Appearance(Controller):
         others = [f"{TIME}{times[n]:.12g}" for n in steps if len(times) > 1]
         others += [COLOUR_BY + name for name in self.area.scene.scalar_names]
         data = self.beside.data
-        return [*COMPARISONS, *others, *(FILE + name for name in data.names if name != data.name)]
+        steady = self.viewport.field.steady
+        settings = [n for n, changes in COMPARISONS.items() if not (steady and "lines" in changes)]
+        return [*settings, *others, *(FILE + name for name in data.names if name != data.name)]

@@ -35,6 +35,19 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     viewport.set_time(now)
 
 
+def test_lines_of_another_kind_stand_beside_those_of_a_flow_that_varies(
+    series: FlowApp, flat: FlowApp
+) -> None:
+    assert not [name for name in flat.state.get("comparisons") if "streamlines" in name]
+    series.area.settings.lines = "pathlines"
+    (choice,) = [name for name in series.state.get("comparisons") if "streamlines" in name]
+    series.state.set(compare=choice)
+    series.appearance.take_comparison()
+    assert [pane.scene.lines for pane in series.viewport.panes] == ["pathlines", "streamlines"]
+    series.state.set(compare="nothing")
+    series.appearance.take_comparison()
+
+
 def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     area, appearance = flat.area, flat.appearance
     before = area.scene.appearance
