@@ -106,6 +106,16 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
     return mesh
 
 
+def is_stored(place: Any) -> bool:
+    """Return whether a place is a store that flowtex built, whose field has its map already."""
+    if not isinstance(place, (str, Path)) or checked_source(place).is_file():
+        return False  # before anything is loaded
+    from flowtex.pyramid import is_store
+    from flowtex.pyramid.source import has_parts
+
+    return has_parts(place) and is_store(place)
+
+
 def _stored(place: Any, options: FieldOptions, time: float | str | None) -> FlowField | None:
     """Return the field of a pyramid in a store, where there is one."""
     if not isinstance(place, (str, Path)) or checked_source(place).is_file():

@@ -13,7 +13,6 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.earth import GLOBE, NAMES, Projection, between, tears
 from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.models.model_mesh import Mesh
 
 #: Rows or columns, by numbers or as a slice.
 Lines: TypeAlias = Indices | slice
@@ -24,6 +23,7 @@ CYLINDERS = (FLAT, "mercator")
 POLAR_MAPS = ("north", "south")
 #: Latitudes that a map shows, if not all.
 LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0.0)}
+ROUNDED = 1e-5  #: Degrees of rounding of these.
 #: Latitude of the middle of a region from which on it is drawn around a pole.
 POLAR = 66.0
 #: Span of longitudes from which on a region is around the Earth.
@@ -407,7 +407,7 @@ def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
     points = projection.positions(lon, lat)
     least, most = LATITUDES.get(projection.family, (-90.0, 90.0))
     with np.errstate(invalid="ignore"):
-        points[(lat < least) | (lat > most)] = np.nan
+        points[(lat < least - ROUNDED) | (lat > most + ROUNDED)] = np.nan
     if projection.family not in ("robinson", "equalearth", *CYLINDERS):
         scale = projection.scales(lon, lat)
         finite = scale[np.isfinite(scale)]
@@ -471,13 +471,17 @@ class MeshMap:
         return self.projection.vectors(self.lon, self.lat, east, north)
 
 
-def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
-    """Put a mesh on a map, by its name; by default a flat one that suits the region."""
+def mesh_on_map(
+    lon: Floats, lat: Floats, triangles: Indices, places: Places, name: str | None
+) -> MeshMap:
+    """Put triangles on a map, by its name; by default a flat one that suits the places.
+
+    ``lon`` and ``lat`` are those of the nodes, (N,).
+    """
     projection = projection_of(places, name)
-    numbers = np.arange(len(mesh.a))
+    numbers = np.arange(len(lon))
     nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
     west = projection.center[0] - 180.0
-    lon, lat, (triangles, _) = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
         members = np.arange(len(triangles))

@@ -38,6 +38,9 @@ CLIPPED = ("log", "logit")  #: Scales that matplotlib clips.
 BEYOND = 999.0
 STRETCH_STEP = 0.5  #: Steps in which y is stretched against x, in powers of two.
 
+MOST_COMPARED = 2000  #: Nodes of which positions on two maps are compared.
+SAME_MAP = 1e-5  #: Share of the extent by which positions on equal maps differ.
+
 DegreeText = Callable[..., str]  #: Writes degrees.
 
 
@@ -69,6 +72,31 @@ def unit_of(projection: Projection | None) -> Affine2D:
     lon, standard = projection.center
     scale = DEGREE * math.cos(math.radians(standard))
     return Affine2D().scale(scale, DEGREE).translate(-lon * scale, 0.0)
+
+
+def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> Affine2D | None:
+    """Return the transform from a map to the positions of a field; ``None`` if that differs more.
+
+    The field may lie on a map of another size or origin, and if ``stretched`` with other scales
+    of x and y.
+    """
+    own = field.projection
+    if own is None or own.is_globe or projection.is_globe:
+        return None
+    nodes = np.flatnonzero(field.valid.ravel())
+    nodes = nodes[:: len(nodes) // MOST_COMPARED + 1]
+    theirs = field.points.reshape(-1, 3)[nodes, :2]
+    ours = projection.positions(*own.lonlat(field.points.reshape(-1, 3)[nodes]))[:, :2]
+    spans = np.ptp(theirs, axis=0)
+    if not (np.isfinite(ours).all() and (spans > 0).all() and (np.ptp(ours, axis=0) > 0).all()):
+        return None
+    scales = spans / np.ptp(ours, axis=0)
+    origins = np.mean(theirs - scales * ours, axis=0)
+    errors = np.abs(scales * ours + origins - theirs) / spans
+    is_even = abs(scales[0] / scales[1] - 1) < SAME_MAP
+    if errors.max() > SAME_MAP or not (stretched or is_even):
+        return None
+    return Affine2D().scale(*scales).translate(*origins)
 
 
 def label_degrees(ax: Axes, projection: Projection) -> None:

@@ -23,21 +23,25 @@ from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
 from flowtex.field.dates import time_text
+from flowtex.field.earth import Projection
+from flowtex.field.finer import finest_of
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (
     AxesScales,
     is_geo,
     label_degrees,
     projection_of_axes,
+    same_map,
     unit_of,
     with_polar_scalars,
 )
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.scene.fields import read_field
+from flowtex.scene.fields import is_stored, read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
+from flowtex.sources.reproject import reprojected
 
 Extent = tuple[float, float, float, float]  #: Left, right, bottom and top.
 
@@ -136,7 +140,8 @@ def axes(
         ``projection``, with meridians and parallels as ticks; axes of cartopy already have a
         projection.
     mesh
-        As for :func:`flowtex.render`; its surface must be flat.
+        As for :func:`flowtex.render`; its surface must be flat. On axes of cartopy a field of the
+        Earth is put on their map, whichever it lies on. A large store must lie on their map.
     time, clock, supersampling
         As for :func:`flowtex.render`.
     {options}
@@ -151,7 +156,7 @@ def axes(
     FieldError, SettingsError, OpenGLMissingError
         As for :func:`flowtex.render`.
         When ``ax`` are other axes, the surface is curved, or data on axes of a map are not of the
-        Earth.
+        Earth, or are a large store on another map.
 
     Examples
     --------
@@ -265,19 +270,15 @@ class FlowImage(AxesImage):
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
         self._unit = Affine2D()
         if is_geo(ax):
-            name, self._unit = projection_of_axes(ax)
-            options = _in_projection(mesh, options, name)
+            mesh, options, self._unit = _on_map(ax, mesh, options)
         if _kind(ax)[0] == "polar":
             mesh, options = read_field(mesh, options.field), replace(options, field=FieldOptions())
             scalar = options.appearance.scalar_name
             mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
         (self._scene,) = (scene,) = make_scenes(mesh, options)
         self._projection = projection = scene.field.projection
-        if projection is None and is_geo(ax):
-            raise FieldError(
-                f"ax is a map, and {brief(scene.field)} is not of the Earth; give a dataset on "
-                "longitudes and latitudes, or axes without a projection"
-            )
+        if is_geo(ax):
+            _check_earth(scene.field)
         if not is_geo(ax):
             self._unit = unit_of(projection)
         surface = scene.whole.surface
@@ -523,18 +524,49 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
     return ax.name, ax.get_xscale(), ax.get_yscale()
 
 
-def _in_projection(mesh: Any, options: Options, name: str) -> Options:
-    """Return options with which data are drawn in a projection, and lines if requested."""
+def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, Affine2D]:
+    """Return what is drawn on axes of a map, its options, and the transform from axes to data.
+
+    Datasets are read in the projection of the axes. Fields and stores have one already: where it is
+    that of the axes they are drawn as they are, otherwise fields are put on another map.
+    """
     if options.field.projection is not None or options.field.globe is not None:
         raise FieldError(
             "projection and globe are those of the axes, which are of a map; leave them out, or "
             "give axes without a projection"
         )
+    name, unit = projection_of_axes(ax)
     look = options.appearance
     look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
-    if not isinstance(mesh, FlowField):
-        options = replace(options, field=replace(options.field, projection=name))
-    return replace(options, appearance=look)
+    options = replace(options, appearance=look)
+    if not isinstance(mesh, FlowField) and not is_stored(mesh):
+        field_options = replace(options.field, projection=name)
+        return mesh, replace(options, field=field_options), unit
+    field = read_field(mesh, options.field)
+    options = replace(options, field=FieldOptions())
+    _check_earth(field)
+    is_large = finest_of(field) is not None
+    same = same_map(field, Projection(name), stretched=is_large)
+    if same is not None:
+        return field, options, unit + same
+    if is_large:
+        raise FieldError(
+            f"ax shows the map {name!r}, but the large store lies on {field.projection!r}; draw it "
+            "on axes of that map, or build it on the map of the axes: "
+            f"flowtex.pyramid.build(data, store, projection={name!r})"
+        )
+    return reprojected(field, name), options, unit
+
+
+def _check_earth(field: FlowField) -> None:
+    """Raise a FieldError for a field that cannot be drawn on a map."""
+    if field.projection is None:
+        raise FieldError(
+            f"ax is a map, and {brief(field)} is not of the Earth, as far as is known; give a "
+            "dataset on longitudes and latitudes, or say on which map its points lie, as in "
+            "FlowField.from_arrays(..., projection=flowtex.field.earth.Projection('platecarree')), "
+            "or give axes without a projection"
+        )
 
 
 def _frame(surface: Surface) -> Floats:

@@ -210,7 +210,7 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
         return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:
         return PlaneNodes(mesh.positions), {"triangles": mesh.triangles[0], **_units(flow)}
-    nodes = mesh_on_map(mesh, places, projection)
+    nodes = mesh_on_map(mesh.a, mesh.b, mesh.triangles[0], places, projection)
     if nodes.lost:
         text = f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
         flow.record("surface", f"{text}draw a globe to see all: globe=True", notable=True)

@@ -202,7 +202,10 @@ def test_a_map_of_cartopy_keeps_its_extent_and_its_outline(figure: Figure) -> No
 
 def test_what_does_not_fit_a_map_of_cartopy_is_refused(figure: Figure) -> None:
     ax, _ = _axes(figure, "Robinson")
-    with pytest.raises(FieldError, match=r"^ax is a map, and .* is not of the Earth; give a data"):
+    with pytest.raises(
+        FieldError,
+        match=r"^ax is a map, and .* is not of the Earth, as far as is known; give a data",
+    ):
         flowtex.axes(ax, flowtex.examples.double_gyre_field())
     with pytest.raises(FieldError, match=r"^no\.nc: the file does not exist"):
         flowtex.axes(ax, "no.nc")

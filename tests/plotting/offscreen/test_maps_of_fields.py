@@ -1,0 +1,195 @@
+"""Fields and stores on axes of cartopy lie where the data do, whichever map they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("xarray")
+pytest.importorskip("pyproj")
+pytest.importorskip("cartopy")
+
+import cartopy.crs as ccrs
+from earth_data import components, winds
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import flowtex
+from flowtex import FieldError, FlowField
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.field.earth import Projection
+from flowtex.plotting.offscreen.figure import FlowImage
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+#: Data at 82 to 46 W, and all around the Earth.
+REGION = np.arange(-82.0, -45.0, 2.0), np.arange(10.0, 51.0, 2.0)
+AROUND = np.arange(-180.0, 180.0, 5.0), np.linspace(-90.0, 90.0, 37)
+AXES: dict[str, Any] = {
+    "PlateCarree": ccrs.PlateCarree(),
+    "PlateCarree around 180": ccrs.PlateCarree(central_longitude=180),
+    "Mercator": ccrs.Mercator(),
+    "Web Mercator": ccrs.epsg(3857),
+    "Robinson": ccrs.Robinson(central_longitude=-100),
+    "polar": ccrs.NorthPolarStereo(),
+    "rotated": ccrs.RotatedPole(pole_longitude=100, pole_latitude=50),
+    "Lambert": ccrs.LambertConformal(central_longitude=-60, central_latitude=30),
+}
+
+
+def from_arrays() -> FlowField:
+    lon, lat = np.meshgrid(*REGION)
+    there = Projection("mercator", (-60.0, 0.0))
+    velocity = there.vectors(lon, lat, *components(lon, lat))
+    points = there.positions(lon, lat)
+    return FlowField.from_arrays(points, velocity, projection=there, length_unit="m", time_unit="s")
+
+
+def from_triangles() -> FlowField:
+    field = from_arrays()
+    number = np.arange(field.valid.size).reshape(field.shape)
+    a, b = number[:-1, :-1].ravel(), number[:-1, 1:].ravel()
+    c, d = number[1:, :-1].ravel(), number[1:, 1:].ravel()
+    triangles = np.concatenate([np.stack([a, b, d], axis=-1), np.stack([a, d, c], axis=-1)])
+    flat = field.points.reshape(-1, 3), triangles, field.velocity[0].reshape(-1, 3)
+    return FlowField.from_triangles(*flat, projection=field.projection, length_unit="m")
+
+
+def from_dataset(name: str | None) -> Callable[[], FlowField]:
+    return lambda: FlowField.from_xarray(winds(*REGION), projection=name)
+
+
+SOURCES: dict[str, Callable[[], Any]] = {
+    "dataset": lambda: winds(*REGION),
+    "globe": from_dataset("globe"),
+    "flat": from_dataset(None),
+    "mollweide": from_dataset("+proj=moll +lon_0=20"),
+    "arrays": from_arrays,
+    "triangles": from_triangles,
+}
+
+
+def shown(crs: Any, data: Any, **options: Any) -> tuple[FlowImage, Bytes]:
+    """Draw data on axes of a map, and return the image and the pixels."""
+    figure = Figure(figsize=(4, 3), dpi=60, facecolor="#ff00ff")
+    canvas = FigureCanvasAgg(figure)
+    ax: Any = figure.add_axes((0, 0, 1, 1), projection=crs)
+    ax.set_facecolor("#ff00ff")
+    image = flowtex.axes(ax, data, samples=3, strength=0.0, cmap="gray", **options)
+    canvas.draw()
+    return image, np.asarray(canvas.buffer_rgba())[::-1, :, :3]
+
+
+def pixel(image: FlowImage, lon: Any, lat: Any) -> tuple[Floats, Floats]:
+    """Return the pixels of places."""
+    ax: Any = image.axes
+    places = ax.projection.transform_points(ccrs.PlateCarree(), np.asarray(lon), np.asarray(lat))
+    x, y = ax.transData.transform(places[..., :2]).T
+    return x, y
+
+
+def assert_right(image: FlowImage, shot: Bytes) -> None:
+    """Compare places and colours with cartopy's places and the data."""
+    lon, lat = (at.ravel() for at in np.meshgrid(np.arange(-79.0, -48, 5), np.arange(14.0, 47, 5)))
+    x, y = (np.floor(at).astype(int) for at in pixel(image, lon, lat))
+    inside = (x >= 0) & (y >= 0) & (x < shot.shape[1]) & (y < shot.shape[0])
+    assert inside.mean() > 0.6
+    low, high = image.get_clim()
+    speed = np.hypot(*components(lon, lat))[inside]
+    drawn = shot[y[inside], x[inside]].astype(float)
+    assert np.ptp(drawn, axis=1).max() <= 2, "grey, and not the ground"
+    assert drawn[:, 0] / 255 == pytest.approx((speed - low) / (high - low), abs=0.04)
+    beyond = np.array([-95.0, -30.0, -64.0, -64.0]), np.array([30.0, 30.0, 2.0, 62.0])
+    x, y = (np.floor(at).astype(int) for at in pixel(image, *beyond))
+    inside = (x > 3) & (y > 3) & (x < shot.shape[1] - 4) & (y < shot.shape[0] - 4)
+    assert (shot[y[inside], x[inside]] == (255, 0, 255)).all(), "nothing beside the data"
+
+
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("name", ["PlateCarree", "Robinson"])
+def test_fields_lie_where_the_data_do(name: str, source: str) -> None:
+    assert_right(*shown(AXES[name], SOURCES[source]()))
+
+
+@pytest.mark.parametrize("name", AXES)
+def test_fields_lie_where_the_data_do_on_every_map(name: str) -> None:
+    assert_right(*shown(AXES[name], SOURCES["flat"]()))
+
+
+@pytest.mark.parametrize("source", ["globe", None, "robinson"])
+def test_a_field_around_the_earth_has_no_hole_on_another_map(source: str | None) -> None:
+    field = FlowField.from_xarray(winds(*AROUND), projection=source)
+    lon, lat = (
+        at.ravel() for at in np.meshgrid(np.arange(-177.0, 180, 6), np.arange(-75.0, 76, 10))
+    )
+    for name in ("PlateCarree around 180", "Robinson"):
+        image, shot = shown(AXES[name], field)
+        x, y = (np.clip(np.floor(at).astype(int), 0, None) for at in pixel(image, lon, lat))
+        drawn = shot[np.minimum(y, 179), np.minimum(x, 239)].astype(float)
+        low, high = image.get_clim()
+        wanted = (np.hypot(*components(lon, lat)) - low) / (high - low)
+        error = np.abs(drawn[:, 0] / 255 - np.clip(wanted, 0, 1))
+        assert (np.ptp(drawn, axis=1) <= 2).mean() > 0.97
+        assert np.quantile(error, 0.95) < 0.05
+
+
+def test_a_series_and_its_scalars_are_put_on_another_map() -> None:
+    data = winds(*REGION)
+    data["warmth"] = (data["u"] + 20).drop_attrs().assign_attrs(units="K")
+    days = np.array(["2001-01-01", "2001-01-02"], "M8[ns]")
+    series = data.expand_dims(time=days) * np.array([1.0, 3.0]).reshape(2, 1, 1)
+    for key in "uv":
+        series[key].attrs = data[key].attrs
+    field = FlowField.from_xarray(series)
+    image, _ = shown(AXES["rotated"], field, scalars="warmth")
+    flow = image.flow
+    assert (flow.start, flow.unit_of("speed")) == (field.start, field.speed_unit)
+    for time in (None, field.times[-1], field.times[-1] / 3):
+        one, other = field.at(-60.3, 33.3, time=time), flow.at(-60.3, 33.3, time=time)
+        assert one is not None
+        assert other is not None
+        got = [other.eastward, other.northward, other.speed, other.scalars["warmth"]]
+        wanted = [one.eastward, one.northward, one.speed, one.scalars["warmth"]]
+        assert got == pytest.approx(wanted, rel=1e-3, abs=0.02)
+
+
+def test_fields_without_a_place_on_the_earth_are_refused() -> None:
+    x, y = np.meshgrid(*REGION)
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.ones((*x.shape, 2)))
+    with pytest.raises(FieldError, match=r"not of the Earth.*projection=flowtex\.field\.earth"):
+        shown(AXES["PlateCarree"], field)
+
+
+@pytest.fixture
+def stores(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Path:
+    """Large stores on two maps, and a small one."""
+    pytest.importorskip("zarr")
+    for name, projection in (("flat", None), ("robinson", "+proj=robin +lon_0=-100")):
+        field = FlowField.from_xarray(winds(*REGION), projection=projection)
+        flowtex.pyramid.build(field, tmp_path / f"small_{name}.zarr", progress=False)
+        with monkeypatch.context() as patch:
+            patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
+            flowtex.pyramid.build(field, tmp_path / f"{name}.zarr", progress=False)
+    return tmp_path
+
+
+def test_stores_are_drawn_on_their_own_map(stores: Path) -> None:
+    for name, own in (("flat", "PlateCarree"), ("robinson", "Robinson")):
+        place = stores / f"{name}.zarr"
+        store = flowtex.pyramid.open(place)
+        assert store.valid.size < 200
+        for data in (store, place, str(place)):
+            assert_right(*shown(AXES[own], data))
+        with pytest.raises(
+            FieldError, match=r"ax shows the map .* build it on the map of the axes"
+        ):
+            shown(AXES["polar"], store)
+
+
+def test_small_stores_are_drawn_on_every_map(stores: Path) -> None:
+    for name in ("polar", "PlateCarree around 180"):
+        assert_right(*shown(AXES[name], stores / "small_flat.zarr"))
