@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util import __version__ as __version__
+from flowtex._util import command as _command  # noqa: F401  # before all that is slow to load
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import Settings

@@ -14,6 +14,8 @@ from functools import cache
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from flowtex._util.command import note_end
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.segment import Segment
@@ -71,14 +73,22 @@ class Ended(SystemExit):
 
 
 def announce_end(number: int) -> None:
-    """Print the name of a signal at once: VTK exits where its error passes through."""
+    """Print the name of a signal at once: VTK exits where its error passes through.
+
+    Whoever presses Ctrl-C knows.
+    """
+    if number == signal.SIGINT:
+        return
     with suppress(OSError):  # the terminal may be gone
         os.write(2, f"flowtex: ended by {signal.Signals(number).name}\n".encode())
 
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Raise :class:`Ended` on the first signal, as Ctrl-C raises KeyboardInterrupt.
+    """Raise :class:`Ended` on the first signal, also on that of Ctrl-C.
+
+    VTK ends the program with the code 1 where a KeyboardInterrupt passes through one of its
+    callbacks, and with that of the signal where this error does.
 
     So incomplete files and temporary folders are removed. A later signal does not interrupt the
     end. If a callback of a library swallowed the error, a later signal raises it again. A signal
@@ -88,15 +98,16 @@ def ended_by_signals() -> Iterator[None]:
     # Python tests the folder once with a file, which a signal in between would leave there.
     tempfile.gettempdir()
 
-    def end(number: int, _: FrameType | None) -> None:
+    def end(number: int, frame: FrameType | None) -> None:
         if not received:
             received.append(number)
             announce_end(number)
+            note_end(128 + number, frame)
         elif _is_handled(Ended, sys.exception()):
             return
         raise Ended(received[0])
 
-    before = {s: signal.getsignal(s) for s in SIGNALS}
+    before = {s: signal.getsignal(s) for s in (signal.SIGINT, *SIGNALS)}
     if threading.current_thread() is not threading.main_thread():
         before = {}
     before = {s: handler for s, handler in before.items() if handler not in (signal.SIG_IGN, None)}
@@ -111,6 +122,21 @@ def ended_by_signals() -> Iterator[None]:
     finally:
         for signum, handler in before.items():
             signal.signal(signum, handler)
+
+
+@contextmanager
+def usual_interrupts() -> Iterator[None]:
+    """Let Ctrl-C raise a KeyboardInterrupt, as ``asyncio.run`` expects, which cancels its task."""
+    before = signal.getsignal(signal.SIGINT)
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or before in (signal.SIG_IGN, None):
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _is_handled(kind: type[BaseException], error: BaseException | None) -> bool:

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
+from flowtex._util.terminal import usual_interrupts
 from flowtex.cli.console import (
     announcer,
     complain,
@@ -105,7 +106,7 @@ def serve(
             announce=announcer(describe(field), server.host, end_waiting),
             open_browser=server.open_browser and has_display(),
         )
-        with suppress(KeyboardInterrupt, asyncio.CancelledError):
+        with suppress(KeyboardInterrupt, asyncio.CancelledError), usual_interrupts():
             asyncio.run(serving)
     return 0
 
@@ -120,7 +121,8 @@ def _secret_word(token: str | None, file: Path | None) -> str | None:
         try:
             with file.open(encoding="utf-8", errors="replace") as opened:
                 word, source = opened.read(MOST_TOKEN).strip(), f"{file} contains another text"
-                if os.fstat(opened.fileno()).st_mode & stat.S_IROTH and os.name == "posix":
+                mode = os.fstat(opened.fileno()).st_mode
+                if mode & (stat.S_IRWXG | stat.S_IRWXO) and os.name == "posix":
                     readable = f"{file}; protect it with `chmod 600 {file}`"
         except OSError as error:
             reason = error.strerror or error
@@ -133,7 +135,8 @@ def _secret_word(token: str | None, file: Path | None) -> str | None:
             "omit it to get a random one"
         )
     if readable:
-        complain(UserWarning(f"other users of this machine can read {readable}"), "yellow")
+        warning = f"other users of this machine can read or change {readable}"
+        complain(UserWarning(warning), "yellow")
     return word
 
 

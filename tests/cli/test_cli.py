@@ -93,7 +93,7 @@ def test_a_token_that_others_can_read_warns(run: Run, tmp_path: Path) -> None:
     file = tmp_path / "token"
     file.write_text("x" * 20)
     file.chmod(0o644)
-    warning = "other users of this machine can read"
+    warning = "other users of this machine can read or change"
     err = run("serve", tmp_path, "--token", "x" * 20)[2]
     assert f"{warning} --token in the list of processes; use --token-file or FLOW" in err
     assert f"{warning} {file}" in run("serve", tmp_path, "--token-file", file)[2]

@@ -78,8 +78,10 @@ def test_the_shell_says_what_has_ended_it(
         assert name in capfd.readouterr().err
 
 
-def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) -> None:
-    number = signal.SIGTERM
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_movie_that_is_ended_leaves_nothing(
+    tmp_path: Path, opengl: object, number: signal.Signals
+) -> None:
     mesh, path, temporary = tmp_path / "gyre.vts", tmp_path / "gyre.gif", tmp_path / "tmp"
     examples.double_gyre().save(mesh)
     path.write_bytes(b"old")
@@ -96,6 +98,41 @@ def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) ->
     process.send_signal(number)
     said = process.communicate(timeout=PATIENCE_S)[1]
     assert process.returncode == 128 + number, said
-    assert f"ended by {number.name}" in said and "Traceback" not in said
+    assert (f"ended by {number.name}" in said) == (number != signal.SIGINT)
+    assert "Traceback" not in said
     assert path.read_bytes() == b"old" and sorted(tmp_path.iterdir()) == [path, mesh, temporary]
     assert list(temporary.iterdir()) == []
+
+
+@pytest.mark.parametrize("module", ["numpy", "cyclopts", "pyvista"])
+def test_an_interrupt_during_an_import_ends_quietly(tmp_path: Path, module: str) -> None:
+    """Of the package, of the command line, and of a command."""
+    mesh = tmp_path / "gyre.vts"
+    examples.double_gyre().save(mesh)
+    imitation = tmp_path / "modules" / f"{module}.py"
+    imitation.parent.mkdir()
+    imitation.write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "flowtex", "info", str(mesh)],
+        env={**os.environ, "PYTHONPATH": str(imitation.parent)},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE_S,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (128 + signal.SIGINT, "", "")
+
+
+def test_an_interrupt_in_a_callback_of_vtk_ends_with_its_code() -> None:
+    pytest.importorskip("vtkmodules")
+    code = """
+import signal
+from vtkmodules.vtkCommonCore import vtkObject
+from flowtex._util.terminal import ended_by_signals
+with ended_by_signals():
+    observed = vtkObject()
+    observed.AddObserver("ModifiedEvent", lambda *_: signal.raise_signal(signal.SIGINT))
+    observed.Modified()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 128 + signal.SIGINT

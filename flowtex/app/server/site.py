@@ -26,7 +26,7 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.terminal import SIGNALS, Ended, announce_end
+from flowtex._util.terminal import SIGNALS, Ended, announce_end, usual_interrupts
 from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import (
@@ -215,7 +215,7 @@ def serve_sessions(
             open_browser=open_browser and has_display(),
         )
 
-    with suppress(KeyboardInterrupt, asyncio.CancelledError):
+    with suppress(KeyboardInterrupt, asyncio.CancelledError), usual_interrupts():
         asyncio.run(serve())
 
 
