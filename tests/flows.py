@@ -150,10 +150,19 @@ def folded(w: float = 0.0) -> FlowField:
     return FlowField.from_triangles(points, triangles, np.tile([1.0, 0.6, w], (s.size, 1)))
 
 
-def across() -> FlowField:
-    """A uniform flow through a cube, so that two of its faces have no flow along them."""
+def across(noise: float = 0.0) -> FlowField:
+    """A uniform flow through a cube, so that two of its faces have no flow along them but noise."""
     points, triangles = cube(4)
-    return FlowField.from_triangles(points, triangles, np.tile([1.0, 0.0, 0.0], (len(points), 1)))
+    random = np.random.default_rng(3).normal(0, 1, points.shape)
+    return FlowField.from_triangles(points, triangles, np.array([1.0, 0.0, 0.0]) + noise * random)
+
+
+def arched() -> FlowField:
+    """A uniform flow with noise against a half cylinder, whose middle it crosses."""
+    turn, height = np.meshgrid(np.linspace(-np.pi / 2, np.pi / 2, 61), np.linspace(-1, 1, 31))
+    points = np.stack([np.cos(turn), np.sin(turn), height], axis=-1)
+    random = np.random.default_rng(3).normal(0, 1, points.shape)
+    return FlowField.from_arrays(points, np.array([1.0, 0.0, 0.0]) + 0.01 * random)
 
 
 def ring() -> FlowField:

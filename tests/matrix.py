@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from flows import (
     across,
+    arched,
     dense_gyre,
     folded,
     fountain,
@@ -163,6 +164,8 @@ VIEWS: dict[str, View] = {
     "triangles, curved": View(rippled, ASIDE),
     "triangles, sharp edge": View(folded, ASIDE),
     "triangles, across the flow": View(across, CORNER),
+    "triangles, noise across the flow": View(partial(across, 0.01), CORNER),
+    "noise across the flow": View(arched, CORNER),
     "triangles, holes": View(scattered_holed, MIDDLE),
     "triangles, between two steps": View(
         scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55

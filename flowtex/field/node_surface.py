@@ -55,7 +55,12 @@ class NodeSurface:
 
     @cached_property
     def sharp(self) -> Bools:
-        """Nodes of sharp edges, (J, I), whose velocity has another direction in each face."""
+        """Nodes at tips, (J, I), whose velocity has another direction in each triangle."""
+        return np.zeros(self.valid.shape, dtype=bool)
+
+    @cached_property
+    def at_edge(self) -> Bools:
+        """Nodes of sharp edges, (J, I), beside other nodes at the same place for other faces."""
         return np.zeros(self.valid.shape, dtype=bool)
 
     @cached_property

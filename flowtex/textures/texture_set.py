@@ -7,12 +7,13 @@ s negative backward. It is of order one at every lag, so half precision serves.
 layer                 first three channels                                   fourth channel
 ====================  =====================================================  =================
 0                     slope at lag zero                                      unit of lag
-1 ... M               slopes of the backward slices                          1: reach; 2: speed; 3
+1 ... M               slopes of the backward slices                          1: reach; 2: speed
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
 the last              of streamlines: layer 0 in cells, two channels         speed
 ====================  =====================================================  =================
 
-Layers 3 and M + 3 have the uncertainty of the direction. Slopes are in space, lengths per unit of
+Layers 3 and M + 3 have the uncertainty of the direction. The speed in layer 2 is that of
+:func:`flowtex.textures.crossing.shown_speed`. Slopes are in space, lengths per unit of
 nominal length; in image coordinates per unit of lag for an image in place of the noise.
 """
 
@@ -36,6 +37,7 @@ from flowtex.field import FlowField
 from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
 from flowtex.settings import SettingsError
+from flowtex.textures.crossing import shown_speed
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -160,7 +162,11 @@ class TextureSet:
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # A node at rest has no direction.
         cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
-        parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
+        parting = np.min(cosines, axis=0) < AGREED
+        # Paths go over sharp edges out of the plane of a triangle.
+        at_edge = field.surface.at_edge
+        parting |= np.logical_or.reduce([at_edge[at] for at in corners])
+        parting &= field.surface.cells
         return float(field.surface.cell_lengths[parting].max(initial=0.0))
 
     def forget(self) -> None:
@@ -194,7 +200,7 @@ class TextureSet:
             result[..., :2] = slices.rate[0] * (self.cell / self.unit)
             # Tangents by arc length do not contain the speed.
             timed = self.store.parameter == "time"
-            result[..., 3] = 1.0 if timed else self._speed(slices)
+            result[..., 3] = 1.0 if timed else np.maximum(self._speed(slices), 0.0)
             return result
         side, m = divmod(layer - 1, len(slices.lags))
         sign, displacement, reach = -1.0, slices.displacement, slices.reach
@@ -222,8 +228,8 @@ class TextureSet:
         return result
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
-        speed = self.geometry.field.index_velocity.speed[self._step(slices)]
-        return np.asarray(speed[self.geometry.texels] / self.typical_speed)
+        field, step = self.geometry.field, self._step(slices)
+        return shown_speed(field, step, self.typical_speed)[self.geometry.texels]
 
     def _step(self, slices: TraceSlices) -> int:
         return int(np.argmin(np.abs(self.geometry.field.times - slices.times[0])))

@@ -95,7 +95,10 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   if (flowtexKnown(coordinate, 0.0) < FLOWTEX_ARROW_KNOWN)
     return stroke;
 #endif
-  float pace = u_bySpeed ? clamp(flowtexLayer(coordinate, 2, 0.0).w, FLOWTEX_ARROW_SLOWEST, FLOWTEX_ARROW_FASTEST) : 1.0;
+  float shown = flowtexLayer(coordinate, 2, 0.0).w;
+  if (1.0 + shown < FLOWTEX_ARROW_KNOWN)
+    return stroke;
+  float pace = u_bySpeed ? clamp(shown, FLOWTEX_ARROW_SLOWEST, FLOWTEX_ARROW_FASTEST) : 1.0;
   float step_ = FLOWTEX_ARROW_LENGTH * pace * u_apart / float(u_pieces); // in pixels
   float spacing = radius * step_ / max(length(along), FLOWTEX_ARROW_SHORTEST * pixels.x);
   bool inCell = flowtexEnterCell(coordinate, spacing * float(u_pieces));

@@ -219,8 +219,12 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
+#ifndef FLOWTEX_IMAGE
+  // Where the flow only crosses the surface, the share by which the texture fades, below zero.
+  float shown = flowtexLayer(coordinate, 2, sliceLevel).w;
+#endif
 #if defined(FLOWTEX_MOVING) && !defined(FLOWTEX_IMAGE)
-  flowtexMove(speed, flowtexLayer(coordinate, 2, sliceLevel).w);
+  flowtexMove(speed, max(shown, 0.0));
 #endif
   float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1);
 #ifdef FLOWTEX_UNCERTAIN
@@ -257,8 +261,9 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   value *= mix(FLOWTEX_FADED, 1.0, known);
 #endif
   value *= step(FLOWTEX_LEAST_SPEED, speed); // a particle at rest has no direction
+  value *= clamp(1.0 + shown, 0.0, 1.0);
   if (u_fade > 0.0)
-    value *= smoothstep(0.0, u_fade, flowtexLayer(coordinate, 2, sliceLevel).w);
+    value *= smoothstep(0.0, u_fade, shown);
   return value;
 #endif
 }

@@ -89,7 +89,7 @@ vec4 flowtexTexel(vec2 texel)
   if (u_inCells > 0.5)
   {
     result.xy = rate * u_cell;
-    result.w = u_timed > 0.0 ? 1.0 : texelFetch(u_speed, node, 0).x;
+    result.w = u_timed > 0.0 ? 1.0 : max(texelFetch(u_speed, node, 0).x, 0.0);
   }
   else
   {

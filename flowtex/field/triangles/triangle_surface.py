@@ -90,6 +90,11 @@ class TriangleSurface(NodeSurface):
         """First node at the place of each node, (N,): sharp edges have nodes for each face."""
         return same_places(self.points[0], self.triangles)
 
+    @cached_property
+    def at_edge(self) -> Bools:
+        """Nodes of sharp edges, (1, N), beside other nodes at the same place for other faces."""
+        return (np.bincount(self.places)[self.places] > 1)[None]
+
     @property
     def joined(self) -> Indices:
         """Nodes at the corners, (M, 3), the same ones for all faces at a sharp edge."""
@@ -268,7 +273,7 @@ class TriangleSurface(NodeSurface):
 
     @cached_property
     def sharp(self) -> Bools:
-        """Nodes of sharp edges, (1, N)."""
+        """Nodes at tips, (1, N), which several triangles meet at an angle."""
         sharp = np.zeros(self.shape[1], dtype=bool)
         if self._plane_normal is not None:
             return sharp[None]

@@ -99,8 +99,7 @@ class Summing:
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
         certainty = self.certainty(coordinate, level)
-        moving = values["moving"]
-        lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
+        lookup.move(speed, np.maximum(self._shown(coordinate, level), 0.0))
         cell = self.cell(coordinate, certainty)
         count = self._count * certainty
         self._parting = np.zeros(len(base))
@@ -139,14 +138,22 @@ class Summing:
         return np.asarray(0.5 * change)
 
     def faded(self, coordinate: Places, level: Floats, certainty: Floats) -> Floats:
-        """Return the factor of the texture, (N,), less for uncertain or slow flow, 0 at rest."""
+        """Return the factor of the texture, (N,), less for uncertain or slow flow, 0 at rest.
+
+        It is less where the flow only crosses the surface, too.
+        """
         speed = np.linalg.norm(self._slices.layer(coordinate, 0, level)[:, :3], axis=-1)
         share = (speed >= const.LEAST_SPEED) * (const.FADED + (1 - const.FADED) * certainty)
+        shown = self._shown(coordinate, level)
+        share *= np.clip(1.0 + shown, 0.0, 1.0)
         if self._values["u_fade"] > 0:
-            speed = self._slices.layer(coordinate, 2, level)[:, 3]
-            usual = np.clip(speed / self._values["u_fade"], 0, 1)
+            usual = np.clip(shown / self._values["u_fade"], 0, 1)
             share = share * usual**2 * (3 - 2 * usual)
         return np.asarray(share)
+
+    def _shown(self, coordinate: Places, level: Floats) -> Floats:
+        """Return the speed, (N,), or below zero the share by which the texture fades."""
+        return self._slices.layer(coordinate, 2, level)[:, 3]
 
     def certainty(self, coordinate: Places, level: Floats) -> Floats:
         """Return the certainty of the direction, (N,): 1 where it is known."""

@@ -21,6 +21,7 @@ from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
+from flowtex.textures.crossing import shown_speed
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.blocks import BLOCK_CELLS
@@ -224,10 +225,11 @@ def _is_blanked(valid: Bools) -> bool:
 
 
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
-    """Return the velocity of one time, (J, I, 3 or 5), rounded as paths and colours allow.
+    """Return the velocity of one time, (J, I, 3 to 5), rounded as paths and colours allow.
 
     The channels are the rate along i and j, in cells per length of a cell; the speed, in multiples
-    of the typical speed; and, of an uncertain field, the speed once more and the uncertainty.
+    of the typical speed; where that is another one, or the field is uncertain, the speed as
+    :func:`shown_speed` has it; and the uncertainty.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
@@ -238,8 +240,11 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     cells = components * _sizes(textures)[..., None]
     np.divide(cells, speed[..., None], out=rate, where=moves[..., None])
     channels = [rate[..., 0], rate[..., 1], speed / typical]
+    shown = fill_blanked(shown_speed(field, 0, typical), valid)
     if field.uncertainty:
-        channels += [channels[2], unknown_share(field, 0)]
+        channels += [shown, unknown_share(field, 0)]
+    elif (shown < 0).any():
+        channels.append(shown)
     share, exponent = np.frexp(channels[2:])
     channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
     # Around a pole there are wide cells that no path of a drawn node comes to.

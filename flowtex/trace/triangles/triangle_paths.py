@@ -82,33 +82,36 @@ def integrate(
     tolerance: float,
     last: Floats | None = None,
     most_steps: int | None = None,
+    ended: Bools | None = None,
 ) -> TrianglePaths:
     """Follow particles from shares (2, N) of the corners of triangles (N,), at nodes (N, 3).
 
     Lags (M, N) are positive and increasing for each particle. The tolerance is the error allowed in
     one step, in sizes of its triangle. Particles that hardly move until the ``last`` lag (N,) are
     at rest; by default that is the last of ``lags``. Paths are ended after ``most_steps``, which by
-    default grow with the number of nodes.
+    default grow with the number of nodes. Some have ``ended`` at once, (N,).
     """
     last = lags[-1] if last is None else last
     run = _Run(motion, points, triangle, shares, lags, last, tolerance)
     # Values too large or too small to represent end a path.
     with np.errstate(all="ignore"):
+        if ended is not None:
+            run.end(ended)
         usual = STEPS_PER_ROW * int(np.sqrt(len(points)))
         for _ in range(most_steps or min(max(usual, LEAST_STEPS), MOST_STEPS)):
             if not len(run.state.which):
                 break
             run.advance()
-        run.end_all()
+        run.end(np.ones(len(run.state.which), dtype=bool))
     return TrianglePaths(run.triangle, run.shares, run.further, run.ahead, run.reach)
 
 
-def begin(motion: Motion, nodes: Indices) -> Indices:
-    """Return corners to start at, as three times the triangle plus the corner, (N,).
+def begin(motion: Motion, nodes: Indices) -> tuple[Indices, Bools]:
+    """Return corners to start at, as three times the triangle plus the corner, and which end, (N,).
 
     It is the one around each node (N,), which has at least one, into whose triangle the velocity
     points most. Where it leads out of a face at a sharp edge, the path begins in another one, if
-    the velocity there leads into that.
+    the velocity there leads into that, and else it ends at once.
     """
     mesh = motion.mesh
     inwards, sizes = np.empty(mesh.corners.shape), np.empty(mesh.corners.shape)
@@ -122,11 +125,13 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
     first, last = mesh.place_first[nodes], mesh.place_last[nodes]
     leaves = inwards.take(result) < -EDGE_ROUNDING * sizes.take(result)
     out = np.flatnonzero(leaves & (last - first > mesh.last[nodes] - mesh.first[nodes]))
+    ended = np.zeros(len(nodes), dtype=bool)
     if len(out):
         other = _most_inward(mesh, inwards, first[out], last[out])
         leads = inwards.take(other) > EDGE_ROUNDING * sizes.take(other)
         result[out[leads]] = other[leads]
-    return result
+        ended[out[~leads]] = True
+    return result, ended
 
 
 def _most_inward(mesh: TriangleMesh, inwards: Floats, first: Indices, last: Indices) -> Indices:
@@ -237,11 +242,13 @@ class _Run:
         if not left.all():
             self.state = state.pick(left)
 
-    def end_all(self) -> None:
+    def end(self, ended: Bools) -> None:
+        """End some of the paths under way, (N,), where they are."""
         state = self.state
-        if len(state.which):
+        if ended.any():
             now = self.motion.at(state.triangle, state.shares, state.lag, state.last)
-            self._end(np.arange(len(state.which)), now)
+            self._end(np.flatnonzero(ended), now)
+            self.state = state.pick(~ended)
 
     def _limited(
         self, now: Derivatives, square: Floats, h: Floats, edge: Indices

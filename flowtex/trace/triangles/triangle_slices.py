@@ -83,11 +83,13 @@ def triangle_slices(
     def work(job: tuple[int, int, slice]) -> None:
         side, step, block = job
         motion, nodes = motions[side][step], at[block]
-        triangle, corner = np.divmod(starts[side][step][block], 3)
+        corners, ended = starts[side][step]
+        triangle, corner = np.divmod(corners[block], 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
         units = unit[0, nodes]
         due = lags[:direct, None] * units
         options: dict[str, Any] = {"tolerance": tolerance, "last": float(lags[-1]) * units}
+        options["ended"] = ended[block]
         if compositions:
             options["most_steps"] = DIRECT_STEPS
         paths = integrate(motion, points, triangle, shares, due, **options)
