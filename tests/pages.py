@@ -65,3 +65,41 @@ def acted(page: Page, nth: int = 0) -> Iterator[None]:
     page.wait_for_function(
         f"(n) => Number({view}.dataset.frames) > n && {view}.matches('{COMPLETE}')", arg=before
     )
+
+
+#: Roles of what a person operates, which needs a name.
+OPERATED = {
+    *("button", "checkbox", "combobox", "link", "listbox", "menuitem", "radio", "searchbox"),
+    *("slider", "spinbutton", "switch", "tab", "textbox", "application"),
+}
+
+
+def operated(page: Page) -> list[tuple[str, str]]:
+    """Return role and name of all that a person operates, as a screen reader gets them."""
+    session = page.context.new_cdp_session(page)
+    nodes = session.send("Accessibility.getFullAXTree")["nodes"]
+    session.detach()
+    found = [(node.get("role", {}).get("value"), node) for node in nodes if not node["ignored"]]
+    return [
+        (role, node.get("name", {}).get("value", "").strip())
+        for role, node in found
+        if role in OPERATED and _has(node, "focusable")
+    ]
+
+
+def _has(node: Any, name: str) -> bool:
+    values = {each["name"]: each["value"].get("value") for each in node.get("properties", [])}
+    return bool(values.get(name))
+
+
+#: Gives the name of the element that has the focus, also in a shadow.
+FOCUSED = """() => {
+  let at = document.activeElement;
+  while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+  return at.getAttribute("aria-label") ?? at.textContent;
+}"""
+
+
+def focused(page: Page) -> str:
+    """Return the name of the element that has the focus."""
+    return str(page.evaluate(FOCUSED))

@@ -2,7 +2,7 @@
 
 import { choiceOf, rampOf, mapOf } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
-import { EARTH_LINES, legendLimits, type EarthLines } from "./protocol.ts";
+import { EARTH_LINES, legendLimits, type EarthLines, type Header, type Part } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
 
 /** Colours of a swatch, and the choice of none. */
@@ -17,7 +17,7 @@ export class ColourControls {
   readonly element = dom("div", { class: "colours" });
   private readonly viewer: Viewer;
   private readonly scalars = dom("select", { "aria-label": "Colour by" });
-  private readonly swatches = dom("div", { class: "swatches", role: "group" });
+  private readonly swatches = dom("div", { class: "swatches", role: "group", "aria-label": "Colour map" });
   private readonly ends = ["Lowest value", "Highest value"].map((name) =>
     dom("input", { type: "number", step: "any", "aria-label": name }),
   );
@@ -94,7 +94,7 @@ export class ColourControls {
     const maps = parts.get("maps");
     this.element.hidden = !header?.scalars.choices.length || !maps;
     if (!header || !maps || this.element.hidden) return;
-    const { choices, name, auto, cmap } = header.scalars;
+    const { choices, name, auto } = header.scalars;
     const options = [...choices, { name: PLAIN, label: PLAIN }];
     this.scalars.replaceChildren(...options.map((each) => dom("option", { value: each.name }, [each.label])));
     this.scalars.value = name ?? PLAIN;
@@ -108,16 +108,28 @@ export class ColourControls {
       this.ends[n].value = String(Number(value.toPrecision(4)));
     });
     this.auto.setAttribute("aria-pressed", String(auto));
-    const { settings } = this.viewer;
-    this.swatches.replaceChildren(
-      ...header.scalars.maps.map((each) => {
-        const pressed = String(each === cmap);
-        const attributes = { type: "button", title: each, "aria-label": each, "data-cmap": each };
-        const swatch = dom("button", { ...attributes, "aria-pressed": pressed });
-        swatch.style.background = rampOf(mapOf(header, maps.data, each), header, settings, STOPS);
-        return swatch;
-      }),
-    );
+    this.updateSwatches(header, maps.data);
+  }
+
+  /** Show the colour maps; buttons stay where the names do, as one of them may have the focus. */
+  private updateSwatches(header: Header, maps: Part["data"]): void {
+    const { swatches } = this;
+    const { maps: names, cmap } = header.scalars;
+    const isSame = swatches.childElementCount === names.length && names.every((name, n) => name === this.swatch(n).title);
+    if (!isSame) {
+      swatches.replaceChildren(
+        ...names.map((name) => dom("button", { type: "button", title: name, "aria-label": name, "data-cmap": name })),
+      );
+    }
+    names.forEach((name, n) => {
+      const swatch = this.swatch(n);
+      swatch.setAttribute("aria-pressed", String(name === cmap));
+      swatch.style.background = rampOf(mapOf(header, maps, name), header, this.viewer.settings, STOPS);
+    });
+  }
+
+  private swatch(n: number): HTMLElement {
+    return this.swatches.children[n] as HTMLElement;
   }
 
   private takeRange(): void {

@@ -59,7 +59,7 @@ interface Control {
 type Made = Omit<Control, "row" | "line">;
 
 export class Controls {
-  readonly element = dom("div", { class: "settings glass", hidden: "", "aria-label": "Settings" });
+  readonly element = dom("div", { class: "settings glass", hidden: "", role: "group", "aria-label": "Settings" });
   private readonly viewer: Viewer;
   private readonly controls = new Map<string, Control>();
   private rows: Row[] | null = null;
@@ -75,11 +75,14 @@ export class Controls {
     const kindOf = (some: Row[] | null) => JSON.stringify(some?.map((row) => ({ ...row, default: null })));
     if (kindOf(rows) === kindOf(this.rows)) return false;
     this.rows = rows;
+    const focused = [...this.controls.values()].find(({ input }) => input.matches(":focus"));
     this.controls.clear();
     this.element.replaceChildren();
     for (const row of rows) {
       const control = this.control(row);
       const { input, output } = control;
+      // A label would name the value beside the slider instead, the first element that can have one.
+      input.setAttribute("aria-label", row.label);
       const name = dom("span", { class: "name" }, [row.label]);
       const attributes = { class: "row", "data-setting": row.name };
       const line = dom("label", attributes, [name, ...(output ? [output] : []), input]);
@@ -87,6 +90,7 @@ export class Controls {
       this.controls.set(row.name, { ...control, row, line });
       this.element.append(line);
     }
+    if (focused) this.controls.get(focused.row.name)?.input.focus();
     return true;
   }
 

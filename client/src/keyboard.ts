@@ -18,6 +18,7 @@ export const CAMERA_KEYS: Record<string, string> = {
 export const PLAY_KEY = " ";
 export const FULLSCREEN_KEY = "f";
 export const CLOSE_KEY = "Escape";
+export const HELP_KEY = "?";
 
 /** Directions of the keys that pan, right and up. */
 export const DIRECTIONS: Record<string, [number, number]> = {
@@ -30,6 +31,18 @@ export const DIRECTIONS: Record<string, [number, number]> = {
 /** Whether a key is for the browser. */
 export function hasModifier(event: KeyboardEvent): boolean {
   return event.ctrlKey || event.metaKey || event.altKey;
+}
+
+/** Keys that move a slider. */
+const SLIDER_KEYS = /^(Arrow|Page|Home$|End$)/;
+
+/** Whether a control takes a key for itself. */
+export function isOfControl(control: EventTarget | undefined, key: string): boolean {
+  if (key === CLOSE_KEY || !(control instanceof Element)) return false;
+  const { tagName, type } = control as HTMLInputElement;
+  if (tagName === "BUTTON" || type === "checkbox") return key === PLAY_KEY;
+  if (type === "range") return SLIDER_KEYS.test(key);
+  return tagName === "INPUT" || tagName === "SELECT";
 }
 
 /** Give a view keys that nothing else of the page wants, without a click on it. */

@@ -4,7 +4,9 @@ import { Axes, hasTicks } from "./axes.ts";
 import { ColourControls } from "./colourcontrols.ts";
 import { Controls, hasStreaming } from "./controls.ts";
 import { dom, icon, numberText, pictureOf, withUnit, type IconName } from "./dom.ts";
-import { toggleFullscreen } from "./keyboard.ts";
+import { Focus } from "./focus.ts";
+import { Help, helpButton } from "./help.ts";
+import { HELP_KEY, toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
 import { dateText } from "./lonlat.ts";
@@ -83,6 +85,9 @@ export class Panel {
   private hintTimer: Timer | null = null;
   private lateTimer: Timer | null = null;
   private isFinding = false;
+  private readonly help = new Help(() => this.showHelp(false));
+  private readonly helpRow: HTMLElement;
+  private readonly focus: Focus;
 
   constructor(viewer: Viewer) {
     this.viewer = viewer;
@@ -121,7 +126,9 @@ export class Panel {
     stage.className = "stage";
     stage.append(canvas, card.overlay, this.axes.element, card.element, busy, hintBox, told);
     shadow.append(dom("div", { class: "top" }, [head, legend.kinds, legend.element]), stage, bar, handle);
-    shadow.append(controls.element, note);
+    shadow.append(controls.element, this.help.element, note);
+    this.helpRow = dom("div", { class: "row" }, [helpButton(root, HELP_KEY)]);
+    this.focus = new Focus(shadow, viewer.lifetime, (lost) => this.afterFocus(lost));
     viewer.lifetime.listen(told, "click", () => (told.hidden = true));
     this.arrange();
   }
@@ -156,6 +163,7 @@ export class Panel {
     this.note.hidden = true;
     const isOther = this.controls.build(header);
     if (isOther) this.controls.element.prepend(...this.colours.rows, this.axesRow, this.paceRow);
+    if (isOther) this.controls.element.append(this.helpRow);
     if (isOther) this.parameters.replaceChildren(...this.controls.parameters);
     this.showLegend();
     this.update();
@@ -326,6 +334,26 @@ export class Panel {
     root.classList.toggle("flowtex-tiny", isTiny);
     this.showAxes();
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
+    this.keepFocus();
+  }
+
+  /** Show what keys do, or no longer; by default the other of both. */
+  showHelp(shown = this.help.element.hidden): void {
+    if (shown === !this.help.element.hidden) return;
+    this.help.show(shown);
+    this.keepFocus();
+  }
+
+  /** Give the focus back, if what has it has been hidden. */
+  keepFocus(): void {
+    this.focus.keep();
+  }
+
+  /** What has the focus after an element that is hidden, where nothing else had it before. */
+  private afterFocus(lost: HTMLElement): HTMLElement {
+    const { root } = this.viewer;
+    if (this.bar.hidden) return this.handle.hidden ? root : this.handle;
+    return this.controls.element.contains(lost) ? this.gear : root;
   }
 
   /** Show that parts are arriving, paths are traced, tiles are missing or details are left out, if so. */

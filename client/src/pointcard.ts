@@ -157,6 +157,7 @@ export class PointCard {
   hide(): void {
     this.drawn = null;
     this.element.hidden = true;
+    this.host.panel.keepFocus();
     this.overlay.replaceChildren();
   }
 

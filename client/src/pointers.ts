@@ -1,6 +1,6 @@
 // Pointers, wheel and keys on the picture.
 
-import { CAMERA_KEYS, CLOSE_KEY, DIRECTIONS, FULLSCREEN_KEY, hasModifier, PLAY_KEY } from "./keyboard.ts";
+import { CAMERA_KEYS, CLOSE_KEY, DIRECTIONS, FULLSCREEN_KEY, hasModifier, HELP_KEY, isOfControl, PLAY_KEY } from "./keyboard.ts";
 import type { Timer } from "./lifetime.ts";
 import type { Point } from "./picking.ts";
 import { clamp } from "./vectors.ts";
@@ -221,12 +221,9 @@ export class Pointers {
   }
 
   private onKey(event: KeyboardEvent): void {
-    const { root } = this.viewer;
     const [target] = event.composedPath();
-    const inside = target instanceof Element && target !== root ? target.tagName : "";
-    const isControl =
-      /^(INPUT|SELECT)$/.test(inside) || (inside === "BUTTON" && event.key === PLAY_KEY);
-    if (hasModifier(event) || isControl || !this.command(event)) return;
+    const isTaken = event.defaultPrevented || hasModifier(event) || isOfControl(target, event.key);
+    if (isTaken || !this.command(event)) return;
     event.preventDefault();
     event.stopPropagation();
   }
@@ -252,8 +249,10 @@ export class Pointers {
     else if (key === PLAY_KEY) viewer.togglePlaying();
     else if (key === FULLSCREEN_KEY) panel.fullscreen();
     else if (key === "h") (options.follows?.panel ?? panel).toggle();
+    else if (key === HELP_KEY) panel.showHelp();
     else if (key === CLOSE_KEY) {
       panel.fold();
+      panel.showHelp(false);
       viewer.card.close();
       this.hold(false);
     } else return false;

@@ -135,6 +135,7 @@ Object.assign(globalThis, {
   }),
   Element: FakeElement,
   ResizeObserver: FakeObserver,
+  requestAnimationFrame: (call: () => void) => queueMicrotask(call),
   innerWidth: 400,
   innerHeight: 300,
 });

@@ -30,7 +30,7 @@ function viewed({ flat = true, guarded = false, camera = true, more = {} } = {})
   const [root, canvas] = [new Held(), new Held()];
   const shown = { flat, aspect: 2, limits: { wheel_zoom: 1.25 } };
   const moves = { pan: note("pan"), rotate: note("rotate"), zoomBy: note("zoomBy") };
-  const panel = { read: note("read"), hint: note("hint"), toggle: note("toggle"), fold: note("fold") };
+  const panel = { read: note("read"), hint: note("hint"), toggle: note("toggle"), fold: note("fold"), showHelp: note("showHelp") };
   const host = {
     root,
     canvas,
@@ -141,7 +141,7 @@ test("the wheel is the page's until the view is held, and a notch has one size i
 test("keys move the view, unless somebody else wants them", () => {
   const { send, took, root, host } = viewed();
   const press = (key: string, more: object = {}) => send("keydown", { key, ...more }, root);
-  assert.ok(["ArrowLeft", "+", "-", "0", " ", "f", "h", "Escape"].every((key) => press(key)));
+  assert.ok(["ArrowLeft", "+", "-", "0", " ", "f", "h", "?", "Escape"].every((key) => press(key)));
   assert.deepEqual(took(), [
     ["pan", -0.2, 0],
     ["zoomBy", 1.25],
@@ -150,15 +150,23 @@ test("keys move the view, unless somebody else wants them", () => {
     ["togglePlaying"],
     ["fullscreen"],
     ["toggle"],
+    ["showHelp"],
     ["fold"],
+    ["showHelp", false],
     ["close"],
   ]);
   assert.ok(press("ArrowUp", { shiftKey: true }));
   assert.deepEqual(took(), [["rotate", 0, -0.2]]);
   assert.ok(!press("q") && !press("0", { ctrlKey: true }));
-  const inside = (tagName: string) => ({ composedPath: () => [Object.assign(new FakeElement(), { tagName })] });
+  const inside = (tagName: string, type?: string) => ({
+    composedPath: () => [Object.assign(new FakeElement(), { tagName, type })],
+  });
   assert.ok(!press("0", inside("INPUT")) && !press(" ", inside("BUTTON")) && press("0", inside("BUTTON")));
   assert.deepEqual(took(), [["reset"]]);
+  for (const key of ["ArrowLeft", "Home"]) assert.ok(!press(key, inside("INPUT", "range")));
+  assert.ok(press("0", inside("INPUT", "range")) && press("0", inside("INPUT", "checkbox")));
+  assert.ok(!press(" ", inside("INPUT", "checkbox")) && press("Escape", inside("INPUT", "number")));
+  took();
   let isToggled = false;
   Object.assign(host.options, { follows: { panel: { toggle: () => (isToggled = true) } } });
   assert.ok(press("h") && isToggled); // the bar is that of the other view

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import pytest
 import pyvista as pv
-from pages import new_context, painted
+from pages import focused, new_context, operated, painted
 from PIL import Image
 from served import Served, start
 from waiting import wait_until
@@ -33,7 +33,8 @@ SIZE = {"width": 960, "height": 480}
 WATCH = Watch((240, 130, 600, 336), "RGB")
 #: The first view of the page.
 VIEW = "document.querySelector('.flowtex-views').first"
-AXE = Path(__file__).parents[2] / "client" / "node_modules" / "axe-core" / "axe.min.js"
+ROOT = Path(__file__).parents[2]
+AXE = ROOT / "client" / "node_modules" / "axe-core" / "axe.min.js"
 ADDRESS = re.compile(r"http://\S+").search
 
 
@@ -277,8 +278,41 @@ def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
         settled(page, before)
     page.keyboard.press("?")
     page.locator(".flowtex-help").wait_for()
+    assert page.locator(".help").is_hidden()  # the view's own, in other hosts
     page.keyboard.press("Escape")
     page.locator(".flowtex-help").wait_for(state="hidden")
+
+
+@pytest.mark.parametrize("name", ["Keys and the mouse", "Compare, save, share"])
+def test_a_closed_panel_gives_the_focus_back(page: Page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=True).press("Enter")
+    inside = page.locator(".flowtex-help, .flowtex-panel").locator("button:visible").first
+    inside.focus()
+    page.keyboard.press("Escape")
+    inside.wait_for(state="hidden")
+    painted(page)
+    assert focused(page) == name
+
+
+def test_each_control_has_a_name(page: Page) -> None:
+    controls(page)
+    for name in ("Keys and the mouse", "Compare, save, share"):
+        page.get_by_role("button", name=name, exact=True).click()
+    page.locator(".flowtex-help").wait_for()
+    assert [role for role, name in operated(page) if not name] == []
+    page.keyboard.press("Escape")
+    page.locator(".flowtex-panel").wait_for(state="hidden")
+    fold(page)
+
+
+def test_the_page_explains_the_keys_of_all_views() -> None:
+    def rows(file: Path, pattern: str) -> dict[str, str]:
+        return dict(re.findall(pattern, file.read_text("utf-8")))
+
+    shared = rows(ROOT / "client/src/help.ts", r'\["(.+?)", "(.+?)"\],')
+    here = rows(ROOT / "flowtex/app/ui/page.html", r"<dt>(.+?)</dt><dd>(.+?)</dd>")
+    assert here.pop("t") == "light or dark"
+    assert {**here, "d": shared["d"]} == shared
 
 
 def test_two_files_are_shown_side_by_side(page: Page) -> None:

@@ -1,10 +1,12 @@
 // The keys of the page that trame serves, beside those of the view.
 
-import { CLOSE_KEY, hasModifier } from "../keyboard.ts";
+import { CLOSE_KEY, hasModifier, HELP_KEY } from "../keyboard.ts";
+import { Focus } from "../focus.ts";
+import { Lifetime } from "../lifetime.ts";
 import { vue, type Emit } from "./vue.ts";
 
 /** Keys, and what each one changes of the page. */
-const TOGGLES: Record<string, string> = { [CLOSE_KEY]: "close", t: "theme", "?": "help" };
+const TOGGLES: Record<string, string> = { [CLOSE_KEY]: "close", t: "theme", [HELP_KEY]: "help" };
 /** Elements that keep their keys for themselves. */
 const OWNERS = "input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";
 
@@ -22,14 +24,19 @@ export const keys = {
   name: "flowtex-keys",
   emits: ["toggle", "linked"],
   setup(_: object, { emit }: { emit: Emit }) {
-    const onKeyDown = (event: KeyboardEvent) => press(event, emit);
+    const lifetime = new Lifetime();
+    const capture = { capture: true };
     vue().onMounted(() => {
       // In the capturing phase, as the view keeps Escape for itself.
-      window.addEventListener("keydown", onKeyDown, { capture: true });
+      lifetime.listen(window, "keydown", (event: KeyboardEvent) => press(event, emit), capture);
+      // What a key or a click hides is hidden in the next frame.
+      const focus = new Focus(document, lifetime, () => document.querySelector<HTMLElement>(".flowtex"));
+      const keep = () => requestAnimationFrame(() => focus.keep());
+      for (const kind of ["keydown", "click"]) lifetime.listen(window, kind, keep, capture);
       // A link to a state contains it after the #, which browsers do not send to servers.
       if (window.location.hash.length > 1) emit("linked", window.location.hash);
     });
-    vue().onBeforeUnmount(() => window.removeEventListener("keydown", onKeyDown, { capture: true }));
+    vue().onBeforeUnmount(() => lifetime.end());
     return () => null;
   },
 };

@@ -1518,17 +1518,17 @@ reduce((sum,step)=>sum+Math.max(sign*step,0),0));return Math.min(rise,fall)<MOST
 let turns=0;return degrees.map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/
 360)),value+360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},labelled=(name,input)=>dom("label",{
 class:"row"},[dom("span",{class:"name"},[name]),input]),ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom(
-"select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest v\
-alue"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},
-["auto"]);robust=dom("button",{type:"button",class:"link"},["robust"]);log=dom("input",{type:"checkbox",role:"switch"});opacity=dom(
-"input",{type:"range",min:"0",max:"1",step:"0.05"});logRow=labelled("Log scale",this.log);opacityRow=labelled("Opacity",
-this.opacity);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.viewer=viewer;let{scalars,swatches,
-ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{let name=scalars.value===PLAIN?!1:scalars.
-value;viewer.header&&viewer.chooseColours(choiceOf(viewer.header,name))});for(let end of ends2)lifetime.listen(end,"chan\
-ge",()=>this.takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,
-"click",()=>viewer.chooseColours({clim:"robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.
-log.checked})),lifetime.listen(this.opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.
-robust.title="Ignore the lowest and the highest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.
+"select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"group","aria-label":"Colour map"});ends=[
+"Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{
+type:"button",class:"link"},["auto"]);robust=dom("button",{type:"button",class:"link"},["robust"]);log=dom("input",{type:"\
+checkbox",role:"switch"});opacity=dom("input",{type:"range",min:"0",max:"1",step:"0.05"});logRow=labelled("Log scale",this.
+log);opacityRow=labelled("Opacity",this.opacity);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){
+this.viewer=viewer;let{scalars,swatches,ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{let name=scalars.
+value===PLAIN?!1:scalars.value;viewer.header&&viewer.chooseColours(choiceOf(viewer.header,name))});for(let end of ends2)
+lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.
+listen(this.robust,"click",()=>viewer.chooseColours({clim:"robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours(
+{log_scale:this.log.checked})),lifetime.listen(this.opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),
+this.robust.title="Ignore the lowest and the highest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.
 dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"\
 name"},[name]),...fields]);this.rangeRow=row2("Range",dom("span",{class:"between"},[...ends2,auto,this.robust])),this.mapRow=
 row2("Colour map",swatches),this.mapRow.classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(
@@ -1539,17 +1539,19 @@ nput",{type:"checkbox",role:"switch"});lifetime.listen(input,"change",()=>this.v
 let label=dom("span",{class:"name"},[LINE_NAMES[name]]);return dom("label",{class:"row","data-lines":name},[label,input])})),
 names.forEach((name,n)=>{let input=this.lines.children[n].querySelector("input");input&&(input.checked=header?.earth?.[name]??
 !1)})}update(){let{header,parts}=this.viewer;this.updateLines();let maps=parts.get("maps");if(this.element.hidden=!header?.
-scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto}=header.scalars,options=[
 ...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.
 label]))),this.scalars.value=name??PLAIN;let isHosted=this.viewer.options.onColours!==void 0;this.mapRow.hidden=this.rangeRow.
 hidden=name===null,this.logRow.hidden=this.mapRow.hidden||!isHosted,this.robust.hidden=!isHosted,this.log.checked=header.
 scalars.log,this.opacity.value=String(header.opacity),legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=
-String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.
-swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"\
-button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(
-header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
-this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
-not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,image,variant}){return slices.steps===1&&!image&&!isSignFree({variant})}
+String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto)),this.updateSwatches(header,maps.
+data)}updateSwatches(header,maps){let{swatches}=this,{maps:names,cmap}=header.scalars;swatches.childElementCount===names.
+length&&names.every((name,n)=>name===this.swatch(n).title)||swatches.replaceChildren(...names.map(name=>dom("button",{type:"\
+button",title:name,"aria-label":name,"data-cmap":name}))),names.forEach((name,n)=>{let swatch=this.swatch(n);swatch.setAttribute(
+"aria-pressed",String(name===cmap)),swatch.style.background=rampOf(mapOf(header,maps,name),header,this.viewer.settings,STOPS)})}swatch(n){
+return this.swatches.children[n]}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.title="",
+low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(
+high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,image,variant}){return slices.steps===1&&!image&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({image})=>!image,fixed_grain:({
 image})=>!image,two_sided:({slices})=>slices.sides===2,seed:({image})=>!image,resolution:({image})=>!image,tiles:({image})=>!!image,
 lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,settings},rebuild)=>rebuild&&(slices.steps===1||settings.
@@ -1557,37 +1559,54 @@ lines!=="pathlines"),critical_points:({structure})=>!!structure?.parts.includes(
 parts.includes("separatrices"),nullclines:({structure})=>!!structure?.parts.includes("nullclines"),lod:()=>!1,show_level:()=>!1};
 function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({
 needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||
-holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
-this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
-header,rebuild)),kindOf=some=>JSON.stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))
-return!1;this.rows=rows,this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(
-row2),{input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},
-line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.
-set(row2.name,{...control,row:row2,line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].
-filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,
-{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.
-toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control===
-"checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.
-slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.
-map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,
-low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(
-max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
-this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,
-fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
-range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(
-Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":
-"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
+holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"",role:"group","aria-label":"Set\
+tings"});viewer;controls=new Map;rows=null;constructor(viewer){this.viewer=viewer}build(header){let rebuild=this.viewer.
+options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,header,rebuild)),kindOf=some=>JSON.stringify(some?.map(
+row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))return!1;this.rows=rows;let focused=[...this.controls.
+values()].find(({input})=>input.matches(":focus"));this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){
+let control=this.control(row2),{input,output}=control;input.setAttribute("aria-label",row2.label);let name=dom("span",{class:"\
+name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,...output?[output]:
+[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,line}),this.
+element.append(line)}return focused&&this.controls.get(focused.row.name)?.input.focus(),!0}get parameters(){return[...this.
+controls.values()].filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.
+viewer;for(let[name,{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,
+settings);line.classList.toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){
+return row2.control==="checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.
+numberField(row2):this.slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.
+lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({
+name,choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{
+toSlider,fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("in\
+put",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="unifor\
+m"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,
+show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
 [least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
 2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
-toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
-r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
-left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
-function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
-"keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():
-element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";place=value=>value;element=dom(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var isShown=element=>element.getClientRects().length>0,Focus=class{had=[];current=null;fallback;constructor(scope,lifetime,fallback){
+this.fallback=fallback,lifetime.listen(scope,"focusin",({target})=>{let element=target;this.had=this.had.filter(each=>each!==
+element&&each.isConnected),this.had.push(element),this.current=element}),lifetime.listen(scope,"focusout",({target})=>{queueMicrotask(
+()=>{this.current===target&&isShown(this.current)&&(this.current=null)})})}keep(){let lost=this.current;if(!lost||isShown(
+lost))return;let shown=this.had.filter(isShown);(shown.length?shown[shown.length-1]:this.fallback(lost))?.focus({preventScroll:!0})}};var TITLE="Keys and the mouse",HELP=[["drag","pan a flat surface, turn a curved one"],["Shift and drag","the opposite: t\
+urn, or pan"],["wheel, two fingers","zoom to the pointer"],["click","values and path of a point"],["arrows","pan"],["+ a\
+nd -","zoom"],["space","play or pause"],[", and .","a step back or on"],["0","the whole surface"],["d","level of detail \
+on or off"],["h","the bar of controls"],["f","full screen"],["?","these keys"],["Esc","close panels and messages"]],Help=class{element;button=dom(
+"button",{type:"button",class:"link"},["Close"]);constructor(close){let rows=HELP.flatMap(([keys,effect])=>[dom("dt",{},
+[keys]),dom("dd",{},[effect])]),attributes={class:"help glass",role:"dialog","aria-label":TITLE,hidden:""},head=dom("div",
+{class:"first"},[dom("span",{class:"title"},[TITLE]),this.button]);this.element=dom("div",attributes,[head,dom("dl",{},rows)]),
+this.button.addEventListener("click",close)}show(shown){this.element.hidden=!shown,shown&&this.button.focus()}};function helpButton(root,key){
+let button=dom("button",{type:"button",class:"link"},[`${TITLE} (${key})`]),press={key,bubbles:!0,composed:!0,cancelable:!0};
+return button.addEventListener("click",()=>root.dispatchEvent(new KeyboardEvent("keydown",press))),button}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",HELP_KEY="\
+?",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||
+event.altKey}var SLIDER_KEYS=/^(Arrow|Page|Home$|End$)/;function isOfControl(control,key){if(key===CLOSE_KEY||!(control instanceof
+Element))return!1;let{tagName,type}=control;return tagName==="BUTTON"||type==="checkbox"?key===PLAY_KEY:type==="range"?SLIDER_KEYS.
+test(key):tagName==="INPUT"||tagName==="SELECT"}function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&
+!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.
+fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";place=value=>value;element=dom(
 "div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit3,bar}=header.
 scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom(
 "div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2);let[isBelow,isAbove]=beyondEnds(
@@ -1613,7 +1632,7 @@ filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1
 "whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
 on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
 map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
-"point")]}var TITLE="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
+"point")]}var TITLE2="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
 DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.
 abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(
 ", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -1623,9 +1642,9 @@ lengthUnit):text}function positionText(position,header,camera){let{geometry}=hea
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
 "div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chosen=null;read=null;asked=0;later=null;hasNumbers=!0;drawn=null;constructor(host){
-this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
-utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
-"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
+this.host=host,this.element.setAttribute("aria-label",TITLE2),this.overlay.setAttribute("class","path");let button=dom("\
+button",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
+"div",{class:"first"},[dom("span",{},[TITLE2]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
 canPick,options,together}=this.host;if(lifetime.cancel(this.later),!options.streamed&&!canPick&&performance.now()<until)
 return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;this.close();for(let{card}of together)card!==
 this&&card.begin(x,y,!1);return this.begin(x,y,!0)?.point??null}begin(x,y,hasNumbers){let{options}=this.host;if(this.hasNumbers=
@@ -1637,17 +1656,17 @@ this.clear();"place"in at&&this.hasNumbers&&options.onPoint?.(found.point),this.
 tell(point,path,header,camera),this.show(path,point.position,[])}show(path,point,samples){this.drawn={path,point,samples},
 this.draw()}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
 this.read=null,this.asked+=1,this.hide(),this.host.options.explainer?.clear()}hide(){this.drawn=null,this.element.hidden=
-!0,this.overlay.replaceChildren()}update(){let{chosen}=this;if(this.read)return void this.ask(this.read);let{options,camera,
-shown,header,tiles,settings,stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,
-layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.position,exact=requests.
-trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now2={...exact,sampled:[],
-directed:!0};return this.tell({...point,values:{}},now2,header,camera),this.show(now2,position,[])}let at={scene,moment:shown,
-place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(at,this.
-host.parts.get("lonlat"))??void 0,now={...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2};this.report(now),
-this.tell(now,path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(
-pixel)??[];this.show(path,position,samples)}report(point){let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(chosen.
-point.values)===JSON.stringify(point.values)||(this.chosen={...chosen,point:{...chosen.point,values:point.values}},this.
-host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,
+!0,this.host.panel.keepFocus(),this.overlay.replaceChildren()}update(){let{chosen}=this;if(this.read)return void this.ask(
+this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=this.host;if(!chosen||options.bare||!camera||!shown||
+!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.
+position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now2={
+...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now2,header,camera),this.show(now2,position,[])}let at={
+scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(
+at,this.host.parts.get("lonlat"))??void 0,now={...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2};this.report(
+now),this.tell(now,path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.
+explain(pixel)??[];this.show(path,position,samples)}report(point){let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(
+chosen.point.values)===JSON.stringify(point.values)||(this.chosen={...chosen,point:{...chosen.point,values:point.values}},
+this.host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,
 label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.
 position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set(
 "eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),
@@ -1830,6 +1849,16 @@ dl {
 }
 dt { color: var(--quiet); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
+.help {
+  position: absolute; z-index: 2; inset: 10px; margin: auto; width: fit-content; height: fit-content; max-width: calc(10\
+0% - 20px);
+  max-height: calc(100% - 20px); overflow-y: auto; overscroll-behavior: contain; padding: 8px 12px 10px; scrollbar-width\
+: thin;
+  --glass: color-mix(in srgb, var(--ground) 94%, transparent);
+}
+.help .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
+.help dt { white-space: nowrap; }
+.help dd { text-align: left; white-space: normal; }
 .path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
 .path :not(.dot) { fill: none; }
 .path * { stroke: #000; stroke-linejoin: round; }
@@ -1973,7 +2002,7 @@ p: 5px; }
 :host(.flowtex-tiny) .legend { min-width: 0; max-width: 100%; }
 :host(.flowtex-tiny.flowtex-framed) .top { height: auto; }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
-:host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
+:host(.flowtex-bare) :is(.top, .path, .card, .settings, .help, .bar, .handle) { display: none; }
 `;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,[SMALL_PX,TINY_PX]=[280,160],PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
 platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria\
 -label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
@@ -1985,72 +2014,77 @@ bel",{class:"row",title:"Speed of the animation."},[dom("span",{class:"name"},["
 alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},
 [this.doing,this.count]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"\
 hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
-"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;isFinding=!1;constructor(viewer){
-this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
-lifetime.listen(this.axesMenu,"change",()=>{let kind=this.axesMenu.value;for(let{panel}of viewer.together)panel.chooseAxes(
-kind);options.onAxes?.(kind)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.
-button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button(
-"play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","Step back (,)",()=>viewer.step(
--1)),this.button("next","Step forward (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.
-player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
-value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
-etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
-s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
-wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
-controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,
-this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.kinds,legend.element]),
-stage,bar,handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
-ng (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{
-this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.
-toggle())])}build(){let{header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);
-isOther&&this.controls.element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.parameters.replaceChildren(
-...this.controls.parameters),this.showLegend(),this.update(),this.arrange()}update(){let{header,settings}=this.viewer,{playing,
-varies}=this.viewer.player;this.name(),this.controls.update();let isMarked=this.viewer.options.streamed&&Number(settings.
-critical_points)>0;this.viewer.options.streamed&&this.showKinds(isMarked&&header?.structure?.kinds||[]),this.legendLook!==
-this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
-ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
-playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.
-stepButtons)button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.
-motion==="off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.
-style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.
-differs??[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??
-name2,value=settings[name2];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",
-title=differences.join(", ")||(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.
-player&&this.viewer.player.time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.
-title.textContent=[title,moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.
-toggle("formula",/[=(]/.test(title));let label=options.label??(title||name);root.setAttribute("aria-label",label?`Flow t\
-exture: ${label}`:"Flow texture")}get first(){return this.viewer.together[0]?.player??this.viewer.player}tick(){let{header,
-player,settings}=this.viewer;if(!header||this.track.hidden)return;this.first!==player&&this.name();let{first,last,now}=player.
-range(settings);this.slider.value=String((now-first)/(last-first||1));let text=player.varies?this.moment(header):`${now.
-toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}moment(header){let{player}=this.viewer;
-return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){return dateText(slices.
-dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
-let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
-header,settings,parts.get("cmap")?.data)}showKinds(kinds){this.legend.showKinds(kinds)}read(point,ground=null){let{header}=this.
-viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
-return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
-return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit3}=header.scalars,value=point.values[name??
-""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.legend.point(
-header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=
-shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{
-header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null}chooseAxes(kind){
-this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
-axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&clientHeight>=SMALL_PX?kind:"none";this.
-axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,
-isReady=header!==null,follows=!!options.follows,isTiny=root.clientHeight<TINY_PX;this.bar.hidden=isTiny||!(this.isShown||
-follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=isTiny||this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-fram\
-ed",this.isFramed),root.classList.toggle("flowtex-small",root.clientHeight<SMALL_PX),root.classList.toggle("flowtex-tiny",
-isTiny),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1,isFinding=!1){
-let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
-"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending?doing="Loading tiles":isFinding&&(doing=
-"Finding critical points"):doing="Tracing paths",this.isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-
-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;isFinding=!1;help=new Help(
+()=>this.showHelp(!1));helpRow;focus;constructor(viewer){this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=
+options.controls??!0,this.axes=new Axes(viewer),viewer.lifetime.listen(this.axesMenu,"change",()=>{let kind=this.axesMenu.
+value;for(let{panel}of viewer.together)panel.chooseAxes(kind);options.onAxes?.(kind)}),this.controls=new Controls(viewer),
+this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.
+classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=
+[this.button("previous","Step back (,)",()=>viewer.step(-1)),this.button("next","Step forward (.)",()=>viewer.step(1))],
+viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(
+this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);
+this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Show level",toggle(
+"show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.
+className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.
+adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className=
+"stage",stage.append(canvas,card.overlay,this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"\
+top"},[head,legend.kinds,legend.element]),stage,bar,handle),shadow.append(controls.element,this.help.element,note),this.
+helpRow=dom("div",{class:"row"},[helpButton(root,HELP_KEY)]),this.focus=new Focus(shadow,viewer.lifetime,lost=>this.afterFocus(
+lost)),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("b\
+utton",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,
+"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Contro\
+ls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everything (0)",()=>viewer.
+reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.
+button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){
+let{header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);isOther&&this.controls.
+element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.controls.element.append(this.helpRow),isOther&&
+this.parameters.replaceChildren(...this.controls.parameters),this.showLegend(),this.update(),this.arrange()}update(){let{
+header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update();let isMarked=this.viewer.
+options.streamed&&Number(settings.critical_points)>0;this.viewer.options.streamed&&this.showKinds(isMarked&&header?.structure?.
+kinds||[]),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))
+button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.
+replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);
+let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;
+for(let button of this.stepButtons)button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.
+disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??
+"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.
+viewer,differences=(header?.differs??[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.
+name===name2)?.label??name2,value=settings[name2];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),
+name=header?.name??"",title=differences.join(", ")||(options.named&&this.viewer.together.length<2?"":name),{first}=this,
+isApart=first!==this.viewer.player&&this.viewer.player.time!==first.time,moment=header&&isApart&&this.viewer.player.varies?
+this.moment(header):"";this.title.textContent=[title,moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.
+textContent,this.title.classList.toggle("formula",/[=(]/.test(title));let label=options.label??(title||name);root.setAttribute(
+"aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){return this.viewer.together[0]?.player??this.viewer.
+player}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;this.first!==player&&this.name();
+let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let text=player.varies?
+this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}moment(header){
+let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){
+return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level}\
+ ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.
+colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}showKinds(kinds){this.legend.showKinds(
+kinds)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
+position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
+position,header,parts,camera)])),!point)return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,
+unit:unit3}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label}\
+ ${numberText(value)}`,unit3)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.
+isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.
+onControls?.(shown)}}get isFramed(){let{header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&
+!options.bare&&header!==null}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&
+hasTicks(header)?"ticks":"none",kind=this.axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&
+clientHeight>=SMALL_PX?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){
+let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows,isTiny=root.clientHeight<TINY_PX;this.
+bar.hidden=isTiny||!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.
+handle.hidden=isTiny||this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.
+element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),
+root.classList.toggle("flowtex-framed",this.isFramed),root.classList.toggle("flowtex-small",root.clientHeight<SMALL_PX),
+root.classList.toggle("flowtex-tiny",isTiny),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen)),
+this.keepFocus()}showHelp(shown=this.help.element.hidden){shown!==!this.help.element.hidden&&(this.help.show(shown),this.
+keepFocus())}keepFocus(){this.focus.keep()}afterFocus(lost){let{root}=this.viewer;return this.bar.hidden?this.handle.hidden?
+root:this.handle:this.controls.element.contains(lost)?this.gear:root}wait(missing,isMade,isCoarse=!1,isFinding=!1){let{viewer,
+busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":
+"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending?doing="Loading tiles":isFinding&&(doing="Findi\
+ng critical points"):doing="Tracing paths",this.isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-pending}\
+ of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==
 count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||
 source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
 lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
@@ -2105,16 +2139,15 @@ look=()=>{this.look=null,this.lastLook=performance.now();let{x,y}=place,{streame
 asked={},show=point=>{asked===this.asked&&!this.down.size&&viewer.panel.read(point,viewer.ground(x,y))};reader?.({place:[
 x,y]},!1).then(found=>show(found?.point??null),()=>null)}else viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(
 x,y),viewer.ground(x,y)):viewer.player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.
-sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==
-root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||
-isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,
+sharp?0:HOVER_MS))}onKey(event){let[target]=event.composedPath();event.defaultPrevented||hasModifier(event)||isOfControl(
+target,event.key)||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,
 {camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].
 map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.reportCamera()}else if(command===
 "closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
 reportCamera()}else if(command==="whole")viewer.reset();else if(command==="next"||command==="previous")viewer.step(command===
 "next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===
-FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.
-fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),placeOf2=({geometry:{center,extent,
+FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===HELP_KEY)panel.
+showHelp();else if(key===CLOSE_KEY)panel.fold(),panel.showHelp(!1),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),placeOf2=({geometry:{center,extent,
 shape:shape2}})=>[center,extent,shape2],Viewer=class extends SceneView{options;requests;player=new Player;stage=document.
 createElement("div");card=new PointCard(this);panel;pointers;header=null;settings={};frames=0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;toldMoment="";firstCamera=null;keptCamera=null;constructor(element,options={}){
 super(),this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowte\

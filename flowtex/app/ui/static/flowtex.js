@@ -1,7 +1,15 @@
 // Built from client/src by client/build.js; change that instead.
 "use strict";(()=>{function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function drawsFloats(gl){return["EXT_color_buffer_float","EXT_color_buffer_half_float"].some(name=>gl.getExtension(name)!==
-null)}var CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===
-document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
+null)}var CLOSE_KEY="Escape",HELP_KEY="?";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
+"keydown",event))&&event.preventDefault()}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
+1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
+()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}watch(observer,element,what){
+observer.observe(element,what),this.observers.add(observer)}stats(){let{globalListeners:listeners,observers,timers}=this;
+return{listeners,observers:observers.size,timers:timers.size}}end(){this.controller.abort(),this.globalListeners=0;for(let observer of this.
+observers)observer.disconnect();this.observers.clear();for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};
+function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
 next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}var FINER=1/16;function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
 bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);var OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>
@@ -70,13 +78,18 @@ signal:ended.signal,capture:!0};window.addEventListener("pointerover",hint.point
 in",hint.focus,options);for(let name of["focusout","blur"])window.addEventListener(name,hint.leave,options);for(let name of[
 "pointerdown","keydown"])window.addEventListener(name,hint.hide,options);window.addEventListener("scroll",hint.scroll,options),
 document.documentElement.addEventListener("pointerleave",hint.leave,{signal:ended.signal})}),onBeforeUnmount(()=>ended.abort()),
-()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",hidden:!0})}};var TOGGLES={[CLOSE_KEY]:"close",t:"theme","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider]\
-, .v-overlay--active";function press(event,emit){let[target]=event.composedPath(),{key}=event,isClose=key===CLOSE_KEY;hasModifier(
-event)||!(key in TOGGLES)||!isClose&&target instanceof Element&&target.closest(OWNERS)||(emit("toggle",TOGGLES[key]),isClose||
-event.preventDefault())}var keys={name:"flowtex-keys",emits:["toggle","linked"],setup(_,{emit}){let onKeyDown=event=>press(
-event,emit);return vue().onMounted(()=>{window.addEventListener("keydown",onKeyDown,{capture:!0}),window.location.hash.length>
-1&&emit("linked",window.location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown,{capture:!0})),
-()=>null}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",hidden:!0})}};var isShown=element=>element.getClientRects().length>0,Focus=class{had=[];current=null;fallback;constructor(scope,lifetime,fallback){
+this.fallback=fallback,lifetime.listen(scope,"focusin",({target})=>{let element=target;this.had=this.had.filter(each=>each!==
+element&&each.isConnected),this.had.push(element),this.current=element}),lifetime.listen(scope,"focusout",({target})=>{queueMicrotask(
+()=>{this.current===target&&isShown(this.current)&&(this.current=null)})})}keep(){let lost=this.current;if(!lost||isShown(
+lost))return;let shown=this.had.filter(isShown);(shown.length?shown[shown.length-1]:this.fallback(lost))?.focus({preventScroll:!0})}};var TOGGLES={[CLOSE_KEY]:"close",t:"theme",[HELP_KEY]:"help"},OWNERS="input, textarea, select, [contenteditable], [role=\
+slider], .v-overlay--active";function press(event,emit){let[target]=event.composedPath(),{key}=event,isClose=key===CLOSE_KEY;
+hasModifier(event)||!(key in TOGGLES)||!isClose&&target instanceof Element&&target.closest(OWNERS)||(emit("toggle",TOGGLES[key]),
+isClose||event.preventDefault())}var keys={name:"flowtex-keys",emits:["toggle","linked"],setup(_,{emit}){let lifetime=new Lifetime,
+capture={capture:!0};return vue().onMounted(()=>{lifetime.listen(window,"keydown",event=>press(event,emit),capture);let focus=new Focus(
+document,lifetime,()=>document.querySelector(".flowtex")),keep=()=>requestAnimationFrame(()=>focus.keep());for(let kind of[
+"keydown","click"])lifetime.listen(window,kind,keep,capture);window.location.hash.length>1&&emit("linked",window.location.
+hash)}),vue().onBeforeUnmount(()=>lifetime.end()),()=>null}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
 ?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
 d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
 let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??
