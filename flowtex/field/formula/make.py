@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import checked_array, checked_count, near_names
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.written import UnreadableError, numbers
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, notify
 from flowtex.field.field import FlowField
 from flowtex.field.formula import Formula
 
@@ -28,13 +28,15 @@ MOST_TITLE = 60  #: Letters of a caption.
 MOST_LETTERS = 4000  #: Greatest length of a line of text.
 MOST_TIMES = 200  #: Most time steps of a line of text.
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
-#: Titles and lines of known formulas by name.
+#: Titles and lines of known formulas by name. Their points and orbits lie in the ranges of x and y
+#: for all values of the parameters.
 KNOWN = {
     "pendulum": ("Pendulum", "y; -sin(x) - b*y; x=-7,7; y=-4,4; b=0.2,0,1"),
-    "van_der_pol": ("Van der Pol", "y; mu*(1 - x^2)*y - x; x=-5,5; y=-4,4; mu=1,0,4"),
+    "van_der_pol": ("Van der Pol", "y; mu*(1 - x^2)*y - x; x=-5,5; y=-7,7; mu=1,0,4"),
     "lotka_volterra": (
         "Lotka–Volterra",
-        "x*(a - b*y); -y*(c - d*x); x=0,4; y=0,3; a=1,0,2; b=1,0,2; c=1,0,2; d=1,0,2",
+        "x*(a - b*y); -y*(c - d*x); x=0,4; y=0,3; "
+        "a=1,0.6,1.6; b=1,0.6,1.6; c=1,0.6,1.6; d=1,0.6,1.6",
     ),
     "duffing": ("Duffing", "y; x - x^3 - d*y; x=-2,2; y=-1.5,1.5; d=0.2,0,1"),
     "dipole": (
@@ -44,6 +46,9 @@ KNOWN = {
     ),
     "saddle_node": ("Saddle-node bifurcation", "r + x^2; -y; x=-3,3; y=-2,2; r=-1,-2,2"),
 }
+
+#: Known formulas whose points or orbits move with the parameters.
+MOVING = ("van_der_pol", "lotka_volterra", "dipole", "saddle_node")
 
 
 def formula(
@@ -98,6 +103,11 @@ def formula(
         When an expression cannot be read (the text points at the position), or ranges, parameters
         or times are invalid.
 
+    Warns
+    -----
+    Notice
+        When a parameter of a known formula is beyond the range for which its plane is chosen.
+
     Notes
     -----
     Strings are parsed by a grammar and never run as code. It has ``+ - * / ^`` (or ``**``),
@@ -113,6 +123,7 @@ def formula(
     (147, 257)
     """
     if len(expressions) == 1:
+        expressions_move = str(expressions[0]).replace(" ", "_") in MOVING
         title, expressions, defaults = _known_formula(expressions[0])
         name = name or title
         ends = defaults.pop("x"), defaults.pop("y")
@@ -120,6 +131,8 @@ def formula(
         for key in parameters:
             if key not in defaults:
                 raise FieldError(f"{title} has no parameter {key!r}; {near_names(key, defaults)}")
+        if expressions_move and x == ends[0] and y == ends[1]:
+            _check_ranges(title, parameters, defaults)
         parameters = {**defaults, **parameters}
     steps = None if times is None else _times(times)
     ranges = {"x": x, "y": y, "u": u, "v": v}
@@ -165,6 +178,21 @@ def _known_formula(name: Any) -> tuple[str, tuple[str, ...], dict[str, Any]]:
     title, line = KNOWN[key]
     expressions, arguments = line_arguments(line)
     return title, tuple(expressions), arguments
+
+
+def _check_ranges(title: str, given: dict[str, Any], defaults: dict[str, Any]) -> None:
+    """Notify if parameters are beyond those for which a plane has been chosen."""
+    for name, values in given.items():
+        _, low, high = defaults[name]
+        try:
+            numbers_given = np.asarray(values, dtype=float)
+        except (TypeError, ValueError):
+            continue  # the formula's own error says what is wrong
+        if (numbers_given < low).any() or (numbers_given > high).any():
+            notify(
+                f"{name} is {values}, beyond {low:g} to {high:g}, for which the plane of {title} "
+                "is chosen: points and orbits may lie outside; pass x=(low, high) and y=(low, high)"
+            )
 
 
 def _times(times: ArrayLike) -> Floats:
