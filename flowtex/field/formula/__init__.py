@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -14,11 +15,12 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.formula.grammar import Tree, Values, evaluate, parse
+from flowtex.field.formula.grammar import Tree, Values, evaluate, parse, size
 
 __all__ = ["Formula", "Parameter"]
 
 RANGE = (-5.0, 5.0)  #: Default range of a coordinate.
+MOST_SIZE = 20_000  #: Most operations and values of a rate, or of one of its derivatives.
 MOST = 1e30  #: Greatest speed and length; values beyond are blanked.
 TANGENT_SHARE = 1e-5  #: Step of the differences for tangents, as a share of a range.
 VARIABLES = ("x", "y", "z", "u", "v", "t")  #: Names of positions and of the time.
@@ -190,12 +192,14 @@ class Formula:
         read = {name: Parameter.of(name, value) for name, value in parameters.items()}
         names = (*defaults, *read)
         values = (*names, *("xyz" if places else ""), *("t" if timed else ""))
-        return cls(
+        result = cls(
             tuple(Expression.of(each, values) for each in expressions),
             {name: _range(name, ranges[name] or defaults[name]) for name in defaults},
             tuple(Expression.of(each, names) for each in places),
             read,
         )
+        gradient_trees(result)  # raises an error where it is too large
+        return result
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -291,15 +295,20 @@ def derivative(tree: Tree, name: str) -> Tree:
     if not isinstance(tree, tuple):
         return 1.0 if tree == name else 0.0
     operation, *parts = tree
-    if operation in ("min", "max") and len(parts) > 2:
-        parts = [(operation, *parts[:-1]), parts[-1]]
+    if operation == "*":
+        parts = _powers(parts)
+        if len(parts) == 1:
+            return derivative(parts[0], name)
+    if operation in ("*", "min", "max"):
+        parts = _halves(operation, parts)
     rates = [derivative(part, name) for part in parts]
     match operation:
         case "+":
             return simple("+", *rates)
         case "*":
-            products = [[*parts[:n], rate, *parts[n + 1 :]] for n, rate in enumerate(rates)]
-            return simple("+", *(simple("*", *factors) for factors in products))
+            first, second = parts
+            changes = simple("*", rates[0], second), simple("*", first, rates[1])
+            return simple("+", *changes)
         case "min" | "max":
             is_first = ("<=" if operation == "min" else ">=", *parts)
             return ("where", is_first, *rates) if any(rates) else 0.0
@@ -311,6 +320,24 @@ def derivative(tree: Tree, name: str) -> Tree:
         if rate != 0
     ]
     return simple("+", *terms)
+
+
+def _powers(factors: Sequence[Tree]) -> list[Tree]:
+    """Return factors of which those that repeat are powers: x*x*x is x^3."""
+    powers: list[Tree] = []
+    for factor, count in Counter(factors).items():
+        powers.append(simple("^", factor, float(count)))
+    return powers
+
+
+def _halves(operation: str, parts: Sequence[Tree]) -> list[Tree]:
+    """Return the two halves of an operation; the derivative grows with n log n of its n parts."""
+    middle = len(parts) // 2
+    halves: list[Tree] = []
+    for half in (parts[:middle], parts[middle:]):
+        whole = half[0] if len(half) == 1 else (operation, *half)
+        halves.append(whole)
+    return halves
 
 
 @cache
@@ -423,9 +450,24 @@ def _trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:
     if len(trees) == COMPONENTS:
         along = [[simple("*", a, b) for a, b in zip(row, trees, strict=True)] for row in tangents]
         trees = [simple("+", *row) for row in along]
+    _check_sizes(trees, "a rate")
     return trees, tangents if places else []
 
 
 def gradient_trees(formula: Formula) -> list[Tree]:
     """Return the trees of the derivatives of the rates, row by row; none for functions."""
-    return [derivative(tree, name) for tree in _trees(formula)[0] for name in formula.ranges]
+    trees, _ = _trees(formula)
+    gradient = [derivative(tree, name) for tree in trees for name in formula.ranges]
+    _check_sizes(gradient, "a derivative")
+    return gradient
+
+
+def _check_sizes(trees: Sequence[Tree], what: str) -> None:
+    """Raise a FieldError for a tree of too many operations and values."""
+    for tree in trees:
+        count = size(tree)
+        if count > MOST_SIZE:
+            raise FieldError(
+                f"{what} of the formula has {count:,} operations and values; expected at most "
+                f"{MOST_SIZE:,}. Simplify its expressions"
+            )

@@ -82,6 +82,20 @@ def evaluate(tree: Tree, values: Values) -> Any:
     return function(*arguments) if count else reduce(function, arguments)
 
 
+def size(tree: Tree) -> int:
+    """Return the number of operations and values of a tree; parts that it repeats count again."""
+    known: dict[int, int] = {}
+
+    def counted(part: Tree) -> int:
+        if not isinstance(part, tuple):
+            return 1
+        if id(part) not in known:
+            known[id(part)] = 1 + sum(map(counted, part[1:]))
+        return known[id(part)]
+
+    return counted(tree)
+
+
 class _Reader:
     """A reader of one formula, whose nodes come from the parser of Python."""
 

@@ -16,7 +16,8 @@ from strategies import property_test
 
 import flowtex
 from flowtex import FieldError
-from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
+from flowtex.field.formula import MOST_SIZE, derivative
+from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse, size
 from flowtex.field.formula.make import KNOWN, is_line, line_field, with_parameter
 from flowtex.rendering.webgl.velocity import client_formula
 from flowtex.scene.scene import Scene
@@ -225,3 +226,45 @@ def test_a_field_that_was_changed_is_not_drawn_from_its_formula(
     field = replace(field, **{name: make(field) for name, make in change.items()})
     for shown in (field, field.at_step(2)):
         assert (client_formula(Scene.of(shown).textures) is not None) == drawn
+
+
+LONG = {
+    "equal factors": "*".join(["x"] * 1000),
+    "factors": "*".join(f"(1 + x/{n})" for n in range(2, 150)),
+    "terms": "+".join(f"x^{n}/{n}" for n in range(2, 200)),
+    "quotients": "/".join(["x", *["(x + 2)"] * 50]),
+    "maximum": f"max({','.join(f'x*{n}' for n in range(300))})",
+    "minimum": f"min({','.join(['x', '2*x'] * 300)})",
+    "nested": "sin(" * 50 + "x" + ")" * 50,
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_derivatives_of_long_formulas_are_short_and_right(name: str) -> None:
+    tree = parse(LONG[name], "x")
+    rate = derivative(tree, "x")
+    assert size(rate) < MOST_SIZE
+    x = 0.99
+    step = 1e-6
+    ends = [evaluate(tree, {"x": x + sign * step}) for sign in (1, -1)]
+    assert_allclose(evaluate(rate, {"x": x}), (ends[0] - ends[1]) / (2 * step), rtol=1e-5)
+
+
+def test_equal_factors_are_a_power() -> None:
+    assert size(derivative(parse("*".join(["x"] * 1000), "x"), "x")) < 10
+    rate = derivative(parse("x*x*y*x", "xy"), "x")
+    assert evaluate(rate, {"x": -2.0, "y": 5.0}) == 3 * 4 * 5
+
+
+@pytest.mark.parametrize(
+    ("rate", "surface", "words"),
+    [
+        ("*".join(["x"] * 500), ("+".join(["u", "v"] * 300), "v", "u"), "a rate of the formula"),
+        (f"{'hypot(x, ' * 55}{'+'.join(['x*y'] * 250)}{')' * 55}", None, "a derivative of the"),
+    ],
+)
+def test_a_formula_that_grows_too_large_names_the_limit(
+    rate: str, surface: Any, words: str
+) -> None:
+    with pytest.raises(FieldError, match=rf"{words}.* at most {MOST_SIZE:,}"):
+        flowtex.formula(rate, "1", surface=surface, resolution=9)
