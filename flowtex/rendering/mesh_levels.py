@@ -51,18 +51,25 @@ class MeshLevels:
         #: Greatest distance of a node from the triangles of each level, (L, rows, columns) of
         #: blocks; of its outline, and along the surface, shares of it.
         self.error = self._errors(points)
-        # No coarse cell covers blanked cells and others.
-        mixed = _in_blocks(cells, [BLOCK_CELLS] * 2)
-        mixed &= _in_blocks(~cells, [BLOCK_CELLS] * 2)
-        self.error[1:, mixed] = np.inf
+        size = [BLOCK_CELLS, BLOCK_CELLS]
+        #: Blocks of which something is drawn, (rows, columns).
+        self._has_cells = _in_blocks(cells, size)
+        # No coarse cell covers blanked cells and others, nor lies beside blanked ones of the next
+        # block: where sides of drawn cells there are moved along the border, gaps would open.
+        edges: Any = ["wrap" if closed else "nearest" for closed in periodic]
+        near_blank = scipy.ndimage.maximum_filter(~cells, 3, mode=edges)
+        self.error[1:, self._has_cells & _in_blocks(near_blank, size)] = np.inf
+        #: Blocks with blanked cells and others along their border, (rows, columns).
+        self.ragged = self._has_cells & _in_blocks(~cells & _beside_borders(cells.shape), size)
         #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0 has every node.
 
-        The eye is (3,), or ``None`` where all rays are parallel; half the height of what is seen is
-        a length then, and else for a distance of one. The picture is so many ``pixels`` high.
+        Blocks without cells have -1. The eye is (3,), or ``None`` where all rays are parallel; half
+        the height of what is seen is a length then, and else for a distance of one. The picture is
+        so many ``pixels`` high.
         """
         radius, cell_size = self.blocks[..., 3], self.blocks[..., 4]
         distance = np.ones(radius.shape)
@@ -78,6 +85,8 @@ class MeshLevels:
         fits &= side <= MAX_SIDE_HEIGHTS * pixels
         fits[0] = True
         levels: Ints = np.argmin(fits, axis=0) - 1 + len(fits) * fits.all(axis=0)
+        # They are no neighbours of others, whose outline keeps its nodes.
+        levels[~self._has_cells] = -1
         return levels
 
     def triangles(self, levels: Ints, joins: Ints | None = None) -> Indices:
@@ -172,6 +181,13 @@ def _in_blocks(values: AnyArray, per_block: Sequence[int], most: np.ufunc = np.m
     return values
 
 
+def _beside_borders(shape: tuple[int, ...]) -> Bools:
+    """Return which cells (J, I) lie along the borders of blocks."""
+    row, column = (np.arange(count) % BLOCK_CELLS for count in shape)
+    ends = [0, BLOCK_CELLS - 1]
+    return np.asarray(np.isin(row, ends)[:, None] | np.isin(column, ends))
+
+
 def _directions(points: Floats) -> Floats:
     """Return normals and directions of lines at nodes, (3, J, I, 3), zero where missing."""
     # Only directions count, so no number is too large to be squared.
@@ -203,6 +219,7 @@ class Region(NamedTuple):
     row: int  #: The block at which it begins.
     column: int
     levels: Ints  #: Of its own blocks; -1 where another part covers them.
+    ragged: Bools | None = None  #: As :attr:`MeshLevels.ragged`; ``None`` for none.
 
 
 def join(
@@ -211,8 +228,9 @@ def join(
     """Return the levels of the borders of each part's blocks, so that no crack opens.
 
     Levels of the parts are made finer in place, where a neighbour is so much finer that its corner
-    would lie inside of a side. ``blocks`` are rows and columns of blocks of the finest nodes; along
-    a periodic axis, j or i, the first line of blocks follows on the last one.
+    would lie inside of a side, and beside finer nodes with blanked cells. ``blocks`` are rows and
+    columns of blocks of the finest nodes; along a periodic axis, j or i, the first line of blocks
+    follows on the last one.
     """
     # Doublings from the finest nodes to those of each block; blocks not drawn are no neighbours.
     nodes = np.full(blocks, NOT_DRAWN)
@@ -220,12 +238,15 @@ def join(
         _put(nodes, part, np.full_like(part.levels, part.step))
     edges: Any = ["wrap" if closed else "nearest" for closed in periodic]
     finest = scipy.ndimage.minimum_filter(nodes, 3, mode=edges)
+    limits = _beside_holes(parts, blocks, edges)
     strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
     for part in parts:
         size = 1 << part.step
         least = _in_blocks(_covered(finest, part), [size] * 2, np.minimum)
         limit = least + BLOCK_CELLS.bit_length() - 1 - part.step
         np.minimum(part.levels, limit, out=part.levels)
+        doublings = _in_blocks(_covered(limits, part), [size] * 2, np.minimum) - part.step
+        np.minimum(part.levels, np.maximum(doublings, 0), out=part.levels)
         _put(strides, part, part.levels + part.step)
     # Lines between blocks, (2, rows + 1, columns + 1): below them, and left of them.
     below = np.pad(strides, ((0, 1), (0, 0))), np.pad(strides, ((1, 0), (0, 0)))
@@ -241,6 +262,25 @@ def join(
             joins.append(_joined(part, lines))
         if all(np.array_equal(*pair) for pair in zip(before, lines, strict=True)):
             return joins
+
+
+def _beside_holes(parts: Sequence[Region], blocks: tuple[int, int], edges: Any) -> Ints:
+    """Return the most doublings of nodes in each of the finest blocks, beside holes of others.
+
+    Where finer nodes have blanked cells along the border of a coarser block, that and all blocks
+    around it have no larger sides.
+    """
+    ragged = np.full(blocks, NOT_DRAWN)
+    for part in parts:
+        if part.ragged is not None:
+            _put(ragged, part, np.where(part.ragged, part.step, NOT_DRAWN))
+    ragged = scipy.ndimage.minimum_filter(ragged, 3, mode=edges)
+    limits = np.full(blocks, NOT_DRAWN)
+    for part in parts:
+        size = 1 << part.step
+        finest = _in_blocks(_covered(ragged, part), [size] * 2, np.minimum)
+        _put(limits, part, np.where(finest < part.step, part.step, NOT_DRAWN))
+    return np.asarray(scipy.ndimage.minimum_filter(limits, 3, mode=edges))
 
 
 def _joined(part: Region, lines: list[Ints]) -> Ints:
@@ -291,6 +331,8 @@ def _snapped(places: Ints, level: Ints) -> Ints:
 
 class TriangleBlocks:
     """The triangles of a surface without rows and columns, drawn by blocks as a whole."""
+
+    ragged = None  #: Its blocks share their triangles.
 
     def __init__(self, geometry: TriangleGeometry) -> None:
         #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).

@@ -108,6 +108,33 @@ def test_no_triangle_covers_what_is_blanked() -> None:
     assert np.isfinite(points.reshape(-1, 3)[triangles]).all()
 
 
+def holes(shape: tuple[int, int], seed: int) -> Any:
+    """Cells without those around some blanked nodes, many of which lie along borders of blocks."""
+    rng = np.random.default_rng(seed)
+    valid = np.ones(shape, dtype=bool)
+    for _ in range(8):
+        border = BLOCK_CELLS * rng.integers(0, 4, 2) + rng.integers(-2, 3, 2)
+        anywhere = rng.integers(0, shape)
+        first = np.maximum(np.where(rng.random(2) < 0.7, border, anywhere), 0)
+        size = np.where(rng.random() < 0.2, [150, 150], rng.integers(1, 20, 2))
+        valid[first[0] : first[0] + size[0], first[1] : first[1] + size[1]] = False
+    return valid[1:, 1:] & valid[:-1, 1:] & valid[1:, :-1] & valid[:-1, :-1]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_crack_leads_from_a_hole_along_a_border(seed: int) -> None:
+    shape = (200, 270)
+    points, cells = grid(shape), holes(shape, seed)
+    periodic = (False, seed % 2 == 1)
+    mesh = MeshLevels(points, cells, periodic=periodic)
+    levels = mesh.levels(None, 100.0, 600)
+    drawn = levels[levels >= 0]
+    assert drawn.max() > 3 and drawn.min() == 0
+    # A seam closes in space, so that of a flat grid stays open.
+    triangles = mesh.triangles(levels)
+    assert area(points, triangles) == pytest.approx(cells.sum())
+
+
 def test_a_seam_has_the_same_nodes_on_both_sides() -> None:
     shape = (65, 129)
     mesh = MeshLevels(grid(shape), whole(shape), periodic=(False, True))
@@ -191,3 +218,19 @@ def test_tiles_of_different_levels_join_without_cracks(seed: int, monkeypatch: A
             (k == end).all() for k, n in ((j, shape[0]), (i, shape[1])) for end in (0, n - 1)
         )
         assert count == (1 if outside else 2)
+
+
+def test_coarser_tiles_keep_their_nodes_beside_holes_of_finer_ones() -> None:
+    """A hole beside the border of a tile, of which the coarser nodes know nothing."""
+    cells = whole((65, 257))
+    cells[:8, 41:60] = False
+    fine, coarse = MeshLevels(grid((65, 257)), cells), MeshLevels(grid((65, 129)), whole((65, 129)))
+    parts = []
+    for mesh, step, row in ((fine, 0, 2), (coarse, 1, 0)):
+        levels = mesh.levels(None, 100.0, 600)
+        parts.append(Region(step, row, 0, levels, mesh.ragged))
+    joins = join(parts, (3, 4))
+    assert parts[1].levels[0, 0] == 0
+    assert joins[0][0, 0, 0] == 1
+    lost = cells.sum() - area(grid((65, 257)), fine.triangles(parts[0].levels, joins[0]))
+    assert abs(lost) <= 1.0

@@ -361,7 +361,8 @@ class FlowSurface:
                     levels[finer_part(pyramid, child, key)] = -1
             place = TileKey(depth, 0, 0) if key is None else key
             row, column = (TILE_BLOCKS * index << place.level for index in place[1:])
-            regions[key] = Region(place.level, row, column, levels)
+            ragged = layer.mesh_levels.ragged
+            regions[key] = Region(place.level, row, column, levels, ragged)
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
         if drawn == self._drawn:
             return

@@ -391,7 +391,7 @@ class FlowLayer:
         prop = self.actor.prop
         levels = self.mesh_levels.levels(view.eye, view.half_height, renderer.GetSize()[1])
         if prop.show_edges or prop.style != "Surface":
-            levels = np.zeros_like(levels)
+            levels = np.minimum(levels, 0)
         blocks = self.mesh_levels.blocks
         return np.where(view.sees(blocks[..., :3], blocks[..., 3]), levels, -1)
 
