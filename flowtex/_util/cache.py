@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import threading
 import weakref
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable
@@ -13,6 +12,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.forks import ProcessLock
 
 
 class _Sized(Protocol):
@@ -30,14 +30,14 @@ class _Gates:
 
     def __init__(self) -> None:
         # A lock lives as long as a thread holds it or waits for it.
-        self._gates = weakref.WeakValueDictionary[Hashable, threading.Lock]()
-        self._lock = threading.Lock()
+        self._gates = weakref.WeakValueDictionary[Hashable, ProcessLock]()
+        self._lock = ProcessLock()
 
-    def of(self, key: Hashable) -> threading.Lock:
+    def of(self, key: Hashable) -> ProcessLock:
         with self._lock:
             gate = self._gates.get(key)
             if gate is None:
-                gate = self._gates[key] = threading.Lock()
+                gate = self._gates[key] = ProcessLock()
             return gate
 
 
@@ -79,7 +79,7 @@ class ByteCache(Generic[K, S]):
         self.max_count = max_count
         self._values: OrderedDict[K, S] = OrderedDict()
         self._gates = _Gates()
-        self._lock = threading.Lock()
+        self._lock = ProcessLock()
 
     def __len__(self) -> int:
         return len(self._values)

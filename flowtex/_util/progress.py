@@ -15,6 +15,7 @@ from contextvars import ContextVar
 from functools import cache
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
+from flowtex._util.forks import renew_after_fork
 from flowtex._util.terminal import terminal
 
 if TYPE_CHECKING:
@@ -25,9 +26,14 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-@cache
 def has_threads() -> bool:
-    """Return whether a thread can be started here."""
+    """Return whether a thread can be started here, and now."""
+    # At the end of the interpreter functions registered with atexit still run, without threads.
+    return threading.main_thread().is_alive() and _knows_threads()
+
+
+@cache
+def _knows_threads() -> bool:
     trial = threading.Thread(target=int, daemon=True)
     try:
         trial.start()
@@ -39,7 +45,9 @@ def has_threads() -> bool:
 
 def pool(size: int, name: str) -> Executor:
     """Return an executor with ``size`` threads; without threads it runs each call at once."""
-    return ThreadPoolExecutor(size, name) if has_threads() else _Caller()
+    if has_threads():
+        return _Threads(size, name)
+    return _Caller()
 
 
 def start(work: Callable[[], None], name: str) -> None:
@@ -48,6 +56,39 @@ def start(work: Callable[[], None], name: str) -> None:
         threading.Thread(target=work, name=name, daemon=True).start()
     else:
         work()
+
+
+class _Threads(Executor):
+    """Threads of the present process: a forked process starts its own.
+
+    Their work at the time of a fork is lost in the forked process; who submitted it forgets it.
+    When the interpreter ends, calls run at once.
+    """
+
+    def __init__(self, size: int, name: str) -> None:
+        self._size = size
+        self._name = name
+        self._is_closed = False
+        self._threads = ThreadPoolExecutor(size, name)
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Replace threads that a forked process does not have."""
+        if not self._is_closed:
+            self._threads = ThreadPoolExecutor(self._size, self._name)
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        try:
+            return self._threads.submit(fn, *args, **kwargs)
+        except RuntimeError:
+            if self._is_closed:
+                raise
+            # Python starts no threads while the interpreter ends.
+            return _Caller().submit(fn, *args, **kwargs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: FBT001, FBT002
+        self._is_closed = True
+        self._threads.shutdown(wait=wait, cancel_futures=cancel_futures)
 
 
 class _Caller(Executor):

@@ -18,6 +18,7 @@ from functools import partial
 from typing import Any
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.forks import ProcessLock, ProcessSemaphore, renew_after_fork
 from flowtex._util.progress import Stopped, has_threads, start
 from flowtex.host import still
 from flowtex.host.still import MakeCamera
@@ -40,7 +41,7 @@ RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Seconds in which a client may request parts that are being sent, as the header comes first.
 COMING_S = 2.0
 #: Scenes that are made at once: thirty widgets would slow each other down.
-_turns = threading.Semaphore(2)
+_turns = ProcessSemaphore(2)
 
 
 class Feed:
@@ -60,8 +61,8 @@ class Feed:
     ) -> None:
         self.view = view
         self._moment, self._announce, self._send = moment, announce, send
-        self._lock = threading.RLock()  # the source, and the order of messages
-        self._building = threading.Lock()  # one scene is made after the other
+        self._lock = ProcessLock()  # the source, and the order of messages
+        self._building = ProcessLock()  # one scene is made after the other
         self._order = 0
         self._live = self._closed = False
         #: Requests that a client waits for.
@@ -79,6 +80,16 @@ class Feed:
         self.acknowledged = threading.Event()
         self.source = TileSource(self._first())
         view.scene.observe(self._scene_changed)
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Forget, in a forked process, the work of threads of the process before."""
+        self.still = None
+        self._sending = Future()
+        self._sending.set_result(None)
+        self.settled = threading.Event()
+        self.settled.set()
+        self.acknowledged = threading.Event()
 
     @property
     def header(self) -> Header:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import asyncio
 import io
 import sys
-import threading
 import uuid
 from collections.abc import Callable, Iterable
 from concurrent.futures import wait
@@ -24,6 +23,7 @@ from PIL import Image
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
+from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError, install_extra
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
@@ -235,7 +235,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         chosen = {"vectors": vectors, "scalars": scalars, "cmap": cmap}
         shown, arguments = browser_options(mesh, **chosen, **options)
         views = web_views(shown, arguments)
-        self._state_lock = threading.RLock()
+        self._state_lock = ProcessLock()
         self._frame: bytes | None = None
         #: A still of all that a browser shows, until it has drawn or the scene changes.
         self._still: bytes | None = None

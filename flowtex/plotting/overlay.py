@@ -18,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera
 
 from flowtex._util.array_types import Floats
+from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.map_overlay import (
@@ -286,6 +287,12 @@ class StructureOverlay(Overlay):
         """Whether a search still runs in the background."""
         return self._found is not None and not self._found.done()
 
+    def renew(self) -> None:
+        """Forget, in a forked process, a search by a thread of the process before."""
+        if self.busy:
+            self._request = ()
+            self._found = None
+
     @property
     def _key(self) -> tuple[object, ...]:
         scene, settings = self._scene, self._scene.settings
@@ -324,6 +331,7 @@ class StructureOverlay(Overlay):
             if self._request != (scene.structure, request):
                 self._request, notify = (scene.structure, request), self.notify
                 self._found = _pool.submit(scene.structure.find, *request)
+                renew_after_fork(self)
                 self._found.add_done_callback(lambda _: notify())
             return
         self._shown = self._key

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import math
-import threading
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.forks import ProcessLock
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
 from flowtex.errors import FieldError, import_extra
@@ -80,7 +80,7 @@ class Levels:
         #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
         self._arrays: dict[str, dict[str, AsyncArray[ArrayV3Metadata]]] = {}
-        self._lock = threading.Lock()
+        self._lock = ProcessLock()
 
     def _array(self, name: str) -> AsyncArray[ArrayV3Metadata]:
         """Return a Zarr array with the metadata that a build gives it, not those in the store."""

@@ -27,6 +27,7 @@ from zarr.core.metadata import ArrayV3Metadata
 from zarr.storage import StorePath, WrapperStore
 
 from flowtex._util.cache import ByteCache
+from flowtex._util.forks import renew_after_fork
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
@@ -56,6 +57,11 @@ class Objects(WrapperStore[Store]):
         super().__init__(store)
         self._sparse = sparse  # whether chunks of the fill value may be missing
         self._kept: ByteCache[tuple[str, str], _Kept] = ByteCache(CACHE_BYTES)
+        self.renew()
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Make locks for the event loop of this process; a forked one has another."""
         self._gates = weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock]()
         self._reads = asyncio.Semaphore(MOST_READS)
 

@@ -27,7 +27,7 @@ TRIAL_TIMEOUT_S = 120.0
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
-_trials: dict[int, Future[OpenGLReport]] = {}  #: The trials of processes, by their numbers.
+_trials: list[Future[OpenGLReport]] = []  #: The trial, once it has begun.
 
 
 class OpenGLMissingError(RuntimeError):
@@ -87,22 +87,28 @@ def prefer_headless() -> None:
 
 def begin_trial() -> Future[OpenGLReport]:
     """Start the trial of OpenGL in a second process, and return its future report."""
-    # A forked process lacks the thread that waits for the report.
-    trial = _trials.get(os.getpid())
-    if trial is None:
+    if not _trials:
         prefer_headless()
+        from flowtex._util.forks import call_at_fork
         from flowtex._util.progress import pool
 
-        trial = pool(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
-        _trials[os.getpid()] = trial
-    return trial
+        _trials.append(pool(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND))
+        call_at_fork(after=_forget_unfinished_trial)
+    return _trials[0]
+
+
+def _forget_unfinished_trial() -> None:
+    """Forget, in a forked process, a trial for which a thread of the process before waits."""
+    if _trials and not _trials[0].done():
+        _trials.clear()
 
 
 def take_report(report: OpenGLReport) -> None:
     """Use the report of another process in place of a trial."""
     prefer_headless()
-    _trials[os.getpid()] = trial = Future[OpenGLReport]()
+    trial = Future[OpenGLReport]()
     trial.set_result(report)
+    _trials[:] = [trial]
 
 
 def opengl_report() -> OpenGLReport:

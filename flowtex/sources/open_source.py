@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import re
-import threading
 import warnings
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -17,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError, Notice
 from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
@@ -162,7 +162,7 @@ class MeshSource(FlowSource):
     ) -> None:
         super().__init__(name)
         self._parts: dict[str, MeshSource] = {}
-        self._lock = threading.Lock()
+        self._lock = ProcessLock()
         self._mesh = mesh
         self._velocity, self._path, self._block = velocity, path, block
         if isinstance(mesh, FlowField):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import logging
 import os
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ from xml.etree.ElementTree import ParseError
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.forks import ProcessLock
 from flowtex._util.memory import available_bytes
 from flowtex.errors import FieldError, notify
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 #: Held while VTK's output window, its logger and Python's root logger are changed: each exists once
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.
-_VTK_GLOBALS = threading.RLock()
+_VTK_GLOBALS = ProcessLock()
 #: Environment variable that decides whether HDF5 locks files.
 LOCKING = "HDF5_USE_FILE_LOCKING"
 #: Share of the memory for data: a reader and later computations take several times as much.

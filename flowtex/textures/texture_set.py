@@ -31,6 +31,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats32, Halves
 from flowtex._util.arrays import dot, norm
+from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -287,6 +288,12 @@ class LayerPrefetch:
         self._textures = textures
         self._pool: Executor | None = None
         self._ready: tuple[int, Future[Halves]] | None = None
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Forget, in a forked process, layers that a thread of the process before makes."""
+        if self._ready is not None and not self._ready[1].done():
+            self._ready = None
 
     def prepare(self, step: int) -> None:
         """Begin to compute the layers of a step, if it exists, as work of this thread."""

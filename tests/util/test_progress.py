@@ -25,9 +25,9 @@ def _no_threads(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", refuse)
-        progress.has_threads.cache_clear()
+        progress._knows_threads.cache_clear()
         yield
-    progress.has_threads.cache_clear()
+    progress._knows_threads.cache_clear()
 
 
 @pytest.mark.usefixtures("_no_threads")

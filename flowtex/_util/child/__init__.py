@@ -30,6 +30,7 @@ from typing import IO, Any, NoReturn
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.child.worker import command, read_message, serve, settle, spawned, write_message
+from flowtex._util.forks import ProcessLock, call_at_fork, renew_after_fork
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 
@@ -48,8 +49,10 @@ REQUEST_BYTES = 65_536  #: Bytes of a request.
 STATUS_BYTES = 4  #: Bytes of a status.
 ENDING_S = 1.0  #: Seconds before a child that does not end is killed.
 
+INHERITED = "belongs to the process before a fork"  #: How a child ended, for a forked process.
+
 _servers: dict[tuple[str, ...], ForkServer] = {}
-_lock = threading.Lock()
+_lock = ProcessLock()
 
 
 class ChildError(Exception):
@@ -69,17 +72,31 @@ _Received = tuple[dict[str, Any], list[AnyArray]]  #: The header of an answer, a
 
 @dataclass(frozen=True)
 class _Process:
-    """A running child: its pipes, and functions that return its exit status and end it."""
+    """A running child: its pipes, and functions that return its exit status and end it.
+
+    ``ends`` are the numbers of the pipes' ends in this process.
+    """
 
     requests: IO[bytes]
     answers: IO[bytes]
     status: Callable[[], int | None]
     end: Callable[[], None]
+    ends: tuple[int, ...]
 
     def close(self) -> None:
         self.end()
         with suppress(OSError):
             self.requests.close()
+
+    def let_go(self) -> None:
+        """Close the pipes in a forked process, so that they end with the process before it.
+
+        Objects of files keep their numbers, which would otherwise be those of later files.
+        """
+        device = os.open(os.devnull, os.O_RDWR)
+        for end in self.ends:
+            os.dup2(device, end, inheritable=False)
+        os.close(device)
 
 
 class Child:
@@ -107,7 +124,8 @@ class Child:
         start = _forked if forks else _spawned
         self._process = start(entry, self.memory, preload, prints)
         self._answers: SimpleQueue[_Received] = SimpleQueue()
-        self._asking, self._writing = threading.Lock(), threading.Lock()
+        self._asking = ProcessLock()
+        self._writing = ProcessLock()
         self._numbers = itertools.count(1)
         #: Numbers of requests without an answer, and of those among them that were cancelled; and
         #: the time at which the current one has taken too long.
@@ -116,12 +134,19 @@ class Child:
         self._deadline = 0.0
         self._death = ""
         self.close = weakref.finalize(self, self._process.close)
+        renew_after_fork(self)
         threading.Thread(
             target=_listen,
             args=(self._process, self.memory, self._answers, self._waiting, self._stale),
             name="flowtex child",
             daemon=True,
         ).start()
+
+    def renew(self) -> None:
+        """Let the child go, in a forked process: it answers the process before."""
+        if self.close.detach() is not None:
+            self._process.let_go()
+        self._death = self._death or INHERITED
 
     @property
     def alive(self) -> bool:
@@ -251,8 +276,13 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> 
         return None
 
     # The guard ends a child whose pipe is closed.
+    ends = (requests[1], answers[0], status[0])
     return _Process(
-        os.fdopen(requests[1], "wb"), os.fdopen(answers[0], "rb"), exit_status, status_end.close
+        os.fdopen(requests[1], "wb"),
+        os.fdopen(answers[0], "rb"),
+        exit_status,
+        status_end.close,
+        ends,
     )
 
 
@@ -272,7 +302,8 @@ def _spawned(entry: str, memory: int, _preload: tuple[str, ...], prints: bool) -
         process.kill()
         process.wait()
 
-    return _Process(requests, answers, process.wait, end)
+    ends = (requests.fileno(), answers.fileno())
+    return _Process(requests, answers, process.wait, end, ends)
 
 
 class ForkServer:
@@ -299,6 +330,16 @@ def _close(control: socket.socket, process: subprocess.Popen[bytes], owner: int)
     if os.getpid() == owner:  # and not a fork of it
         process.kill()
         process.wait()
+
+
+def _forget_servers() -> None:
+    """Have a forked process start its own servers: these end with the process before."""
+    for server in _servers.values():
+        server.control.close()
+    _servers.clear()
+
+
+call_at_fork(after=_forget_servers)
 
 
 def fork_server(preload: tuple[str, ...], dead: ForkServer | None = None) -> ForkServer:

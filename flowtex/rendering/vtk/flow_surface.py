@@ -39,6 +39,7 @@ from flowtex.rendering.uniforms import (
     is_near,
     variants,
 )
+from flowtex.rendering.vtk.contexts import check_fork, note_thread
 from flowtex.rendering.vtk.flow_mapper import FlowMapper, set_attributes, surface_mesh
 from flowtex.rendering.vtk.layer import (
     FlowLayer,
@@ -84,6 +85,8 @@ class FlowSurface:
         settings: Settings,
         pyramid: Pyramid | None = None,
     ) -> None:
+        check_fork()
+        note_thread(renderer.GetRenderWindow())
         self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
         self._base = FlowLayer(actor, renderer, textures, settings)
         self._moment = (0, 0, 0.0)
@@ -197,6 +200,7 @@ class FlowSurface:
             self._show([])
             self._passes.hide(self)
             return
+        note_thread(renderer.GetRenderWindow())
         self._base.look()
         view = self._tile_view(renderer)
         shown, is_covered = self._choose(view)

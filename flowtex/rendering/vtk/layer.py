@@ -131,6 +131,7 @@ class FlowLayer:
         self._colours: MappedColours | None = None
         self.flat_array: str | None = None  #: Name of the point array whose values belong to cells.
         self._gpu: dict[str, vtkTextureObject] = {}
+        self._context = 0  # the time at which VTK made the context of these
         self._retired: list[vtkTextureObject] = []
         self.view = ViewState()
         #: Whether passes before the frame sum the pixels, and what they have summed.
@@ -347,6 +348,7 @@ class FlowLayer:
         renderer = self._renderer()
         if renderer is None:
             return
+        self._follow_context()
         self._follow_colours()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
@@ -425,6 +427,15 @@ class FlowLayer:
         """The window of the renderer, once it has one."""
         renderer = self._renderer()
         return None if renderer is None else renderer.GetRenderWindow()
+
+    def _follow_context(self) -> None:
+        """Forget textures that VTK has freed with their context."""
+        window = self.window
+        if window is None or window.GetContextCreationTime() == self._context:
+            return
+        self._context = window.GetContextCreationTime()
+        self._gpu.clear()
+        self._retired.clear()
 
     def _retire(self, *names: str) -> None:
         """Release textures when their window's context is current."""

@@ -143,7 +143,9 @@ class DeferredPasses:
 
     def _draw_places(self, places: vtkRenderer, renderer: pv.Renderer) -> _Buffers:
         window = renderer.GetRenderWindow()
-        buffers = _buffers.setdefault(window, _Buffers())
+        buffers = _buffers.get(window)
+        if buffers is None or buffers.context != window.GetContextCreationTime():
+            buffers = _buffers[window] = _Buffers(window)
         buffers.fit(window)
         buffers.places.bind()
         places.SetRenderWindow(window)
@@ -206,6 +208,7 @@ class _Rectangle:
         ]
         self._vertices = vtkOpenGLVertexArrayObject()
         self._program: vtkShaderProgram | None = None
+        self._context = 0  # the time at which VTK made the context of both
 
     @property
     def program(self) -> vtkShaderProgram:
@@ -214,6 +217,10 @@ class _Rectangle:
 
     def use(self, window: vtkOpenGLRenderWindow) -> None:
         cache = window.GetShaderCache()
+        if window.GetContextCreationTime() != self._context:
+            self._context = window.GetContextCreationTime()
+            self._vertices = vtkOpenGLVertexArrayObject()
+            self._program = None
         if self._program is None:
             self._program = cache.ReadyShaderProgram(self._texts[0], self._texts[1], "")
         else:
@@ -239,7 +246,8 @@ class _Rectangle:
 class _Buffers:
     """The textures of one window: its renderers draw one after another, so they share them."""
 
-    def __init__(self) -> None:
+    def __init__(self, window: vtkOpenGLRenderWindow) -> None:
+        self.context = window.GetContextCreationTime()
         self.places, self.sums = _Target(), _Target()
         self._numbers = _Rectangle("depth", frozenset())
 

@@ -8,7 +8,6 @@ is short.
 from __future__ import annotations
 
 import os
-import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, wait
@@ -19,6 +18,7 @@ import numpy as np
 
 from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
+from flowtex._util.forks import ProcessLock, renew_after_fork
 from flowtex._util.progress import Stopped, pool, stoppable
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
@@ -100,8 +100,13 @@ class TileLoader:
         self._requests: dict[TileKey, float] = {}
         self._latest = 0.0
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
-        self._lock = threading.RLock()
+        self._lock = ProcessLock()
         self._pool: Executor | None = None
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Forget, in a forked process, the tiles that threads of the process before make."""
+        self._running.clear()
 
     def keeps(self, key: TileKey) -> bool:
         """Return whether a tile is in memory."""

@@ -17,7 +17,6 @@ level, and the cost of a tile does not depend on the size of the surface.
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -28,6 +27,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import norm
+from flowtex._util.forks import ProcessLock
 from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures.geometry import SurfaceGeometry
@@ -125,7 +125,7 @@ class Pyramid:
         self.field, self.parameter, self.lines = field, parameter, lines
         self.nodes = field.shape if nodes is None else nodes
         self.depth = root_level(self.nodes) if depth is None else depth
-        self._lock = threading.Lock()
+        self._lock = ProcessLock()
         self._places: dict[int, Floats] = {}
         rows, columns = map(np.arange, field.shape)
         self._levels = [_Level(rows, columns, field.velocity)]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from collections import OrderedDict
 from typing import TypeVar
 
 from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
+from flowtex._util.forks import ProcessLock
 from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.textures.tiles.shared import coarsened_field, has_pyramid, shared_pyramid
@@ -44,7 +44,7 @@ class Structure:
             has_levels = has_pyramid(field) or field.triangles is not None
             pyramid = shared_pyramid(field, "arclength", "streamlines") if has_levels else None
             self._field = pyramid.root if pyramid else coarsened_field(field, SEARCHED_NODES)
-        self._lock = threading.Lock()
+        self._lock = ProcessLock()
         self._all: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
         self._lines: OrderedDict[int, tuple[int, Separatrices]] = OrderedDict()

@@ -1,0 +1,78 @@
+"""OpenGL contexts and forks of this process.
+
+Drivers draw with threads, which a forked process does not have: it would wait for them without end,
+also where it only frees a window. So the thread that forks frees its contexts before. VTK makes
+them again for the next frame, here and in the forked process. Contexts of other threads, and of
+windows on a screen, remain; a forked process that inherits one cannot draw.
+"""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from collections.abc import Iterator
+from typing import Any
+
+import pyvista as pv
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
+
+from flowtex._util.forks import call_at_fork
+from flowtex.rendering.diagnostics import OpenGLMissingError
+
+#: Threads that drew the last frames of windows.
+_threads: weakref.WeakKeyDictionary[vtkOpenGLRenderWindow, int] = weakref.WeakKeyDictionary()
+#: Windows whose context was in use when a forked process began.
+_inherited: list[vtkOpenGLRenderWindow] = []
+
+
+def check_fork() -> None:
+    """Raise an OpenGLMissingError in a process that cannot draw since it was forked."""
+    if _inherited:
+        raise OpenGLMissingError(
+            "VTK cannot draw here: this process was forked while a window was on the screen or "
+            "another thread drew. To fix it, close plotters before the fork, or start processes "
+            "with multiprocessing.get_context('spawn')"
+        )
+
+
+def note_thread(window: vtkOpenGLRenderWindow | None) -> None:
+    """Remember that this thread draws in a window, if there is one."""
+    if window is not None:
+        _threads[window] = threading.get_ident()
+
+
+def _plotters() -> list[Any]:
+    """Return PyVista's open plotters: also those without a flow keep the driver's threads."""
+    return list(getattr(pv.plotting.plotter, "_ALL_PLOTTERS", {}).values())
+
+
+def _windows() -> Iterator[vtkOpenGLRenderWindow]:
+    """Yield the windows that have a context."""
+    windows: list[Any] = [plotter.render_window for plotter in _plotters()]
+    candidates: dict[int, Any] = {id(window): window for window in [*_threads, *windows]}
+    for window in candidates.values():
+        if isinstance(window, vtkOpenGLRenderWindow) and window.GetInitialized():
+            yield window
+
+
+def _free_contexts() -> None:
+    """Free the contexts of this thread that are not on a screen."""
+    main = threading.main_thread().ident
+    here = threading.get_ident()
+    for window in _windows():
+        if window.GetOffScreenRendering() and _threads.get(window, main) == here:
+            window.Finalize()
+
+
+def _keep_inherited() -> None:
+    """Keep inherited contexts in a forked process for ever, because it cannot free them."""
+    for window in _windows():
+        window.Register(None)  # type: ignore[arg-type]
+        _inherited.append(window)
+    for plotter in _plotters():
+        if plotter.render_window in _inherited:
+            plotter.ren_win = None
+            plotter._closed = True
+
+
+call_at_fork(before=_free_contexts, after=_keep_inherited)
