@@ -376,9 +376,9 @@ def _made(field: Callable[..., FlowField], convert: Callable[[FlowField], Any]) 
     def make() -> Any:
         return convert(field())
 
-    times, form, suffix = "the last time", "as from :func:`to_grid`", ""
+    times, form, suffix = "the last time", "as from :func:`~flowtex.examples.to_grid`", ""
     if convert is to_series:
-        times, form, suffix = "all times", "as from :func:`to_series`", "_series"
+        times, form, suffix = "all times", "as from :func:`~flowtex.examples.to_series`", "_series"
     make.__name__ = make.__qualname__ = name = field.__name__.replace("_field", suffix)
     make.__doc__ = _DOC.format(times=times, field=field.__name__, form=form, name=name)
     return make

@@ -105,7 +105,7 @@ class FlowField(FieldConstructors, FieldQuantities):
     vectors
         Name of the vectors in the data, for legends; empty for a velocity without a name.
     parts
-        Components of other vectors of a mesh, such as ``gradP_x``, as :attr:`scalars`.
+        Components of other vectors of a mesh, such as ``gradP_x``, by name, as in ``scalars``.
 
     Examples
     --------
