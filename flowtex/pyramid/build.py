@@ -222,8 +222,8 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
     Returns
     -------
     list of str
-        A sentence for each part or tile that is missing or corrupt. A build from the same source
-        restores them.
+        A sentence for each part, tile or document of metadata that is missing or corrupt. A build
+        from the same source restores them.
 
     Raises
     ------
@@ -238,8 +238,14 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
     >>> flowtex.pyramid.verify("gyre.zarr", progress=False)
     []
     """
-    levels, faults = Levels(store), []
+    levels = Levels(store)
+    faults: list[str] = []
     about = levels.about
+    for _, node in described(about).members(max_depth=None):
+        try:
+            levels.check_document(node)
+        except DamageError as fault:
+            faults.append(str(fault))
 
     def inspect(unit: Part | TileTask) -> None:
         for _, check in checks_of(levels, unit):

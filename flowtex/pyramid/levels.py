@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import math
 from collections.abc import Callable, Coroutine
 from pathlib import Path
@@ -30,7 +31,15 @@ from flowtex.pyramid.layout import (
     part_digest,
     value_names,
 )
-from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
+from flowtex.pyramid.places import (
+    DOCUMENT,
+    DamageError,
+    PyramidError,
+    ReadFault,
+    place_text,
+    store_at,
+    sync,
+)
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.sources.datasets.axes import as_slice
 from flowtex.textures.tiles.pyramid import TileKey, level_shape
@@ -141,6 +150,32 @@ class Levels:
         )
         if part_digest(nodes, self.about, step) != stored_digest.tobytes():
             raise DamageError(f"velocity {words} of {self.place} differs from what was written")
+
+    def check_document(self, node: Any) -> None:
+        """Raise a DamageError where the metadata of a group or array are missing or differ.
+
+        ``node`` is a group or an array of :func:`described`. flowtex reads no metadata but those of
+        the pyramid, and other programs need them all.
+        """
+        zarr = import_extra("zarr", "store")
+        name = f"{node.path}/{DOCUMENT}"
+        kind = zarr.core.buffer.default_buffer_prototype()
+        stored = sync(self._objects.get(name, kind))
+        if stored is None:
+            raise DamageError(f"{name} of {self.place} is missing; build it again")
+        try:
+            document = json.loads(stored.to_bytes())
+            if isinstance(node, zarr.Group):
+                is_same = document["node_type"] == "group"
+            else:
+                written = type(node.metadata).from_dict(document)
+                is_same = _layout_of(written) == _layout_of(node.metadata)
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
+            raise self._error(name, error) from None
+        if not is_same:
+            raise DamageError(
+                f"{name} of {self.place} differs from what was written; build it again"
+            )
 
     def check_tile(self, key: TileKey, step: int) -> None:
         """Raise a DamageError where a part of a tile is missing or corrupt."""
@@ -301,6 +336,14 @@ def _size(piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> int:
         spans = (len(range(n)[index]) for index, n in pairs if isinstance(index, slice))
         shape = (*spans, *shape[len(selection) :])
     return int(math.prod(shape)) * NUMBER_BYTES
+
+
+def _layout_of(metadata: ArrayV3Metadata) -> tuple[Any, ...]:
+    """Return the entries of an array's metadata that decide how its values are read."""
+    grid = metadata.chunk_grid
+    key = metadata.chunk_key_encoding
+    codecs = tuple(metadata.codecs)
+    return metadata.shape, metadata.data_type, grid, key, metadata.fill_value, codecs
 
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:

@@ -130,12 +130,41 @@ def test_swapped_shards_and_changed_metadata_are_made_again(whole: Path, copy: P
     one.write_bytes(other.read_bytes())
     other.write_bytes(data)
     faults = verify(copy, progress=False)
-    assert len(faults) == 2 and all("differs from what was written" in fault for fault in faults)
+    assert len(faults) == 2
+    assert all("differs from what was written" in fault for fault in faults)
     (copy / "1/zarr.json").write_text("{")
     metadata = copy / "0/velocity/zarr.json"
     metadata.write_text(metadata.read_text().replace("float32", "float64"))
     build(flow(), copy, progress=False)
     assert contents(copy) == contents(whole)
+
+
+def removed(path: Path) -> None:
+    path.unlink()
+
+
+def other_type(path: Path) -> None:
+    path.write_text(path.read_text().replace("float32", "float64"))
+
+
+def other_codec(path: Path) -> None:
+    path.write_text(path.read_text().replace("bitshuffle", "noshuffle"))
+
+
+def no_json(path: Path) -> None:
+    path.write_text("{")
+
+
+@pytest.mark.parametrize("name", ["0", "1", "0/velocity", "1/scalars/heat"])
+@pytest.mark.parametrize("harm", [removed, other_type, other_codec, no_json])
+def test_missing_and_changed_metadata_are_reported(copy: Path, name: str, harm: Harm) -> None:
+    if harm in (other_type, other_codec) and name in "01":
+        return  # a group has neither
+    harm(copy / name / "zarr.json")
+    (fault,) = verify(copy, progress=False)
+    assert fault.startswith(f"{name}/zarr.json of {copy} ")
+    assert build(flow(), copy, progress=False).made == 0
+    assert verify(copy, progress=False) == []
 
 
 def test_the_command_says_what_is_corrupt(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,11 +10,14 @@ of records, each with ``header`` (``nx``, ``ny``, ``lo1``, ``la1``, ``dx``, ``dy
 
 from __future__ import annotations
 
+import csv
 import json
+import os
 import re
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
@@ -45,6 +48,8 @@ FEWEST_CELLS = 0.4
 FEWEST_ROWS = 0.5
 #: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
 TEXT_GROWTH = 24
+#: Most letters of a row that a message repeats.
+MOST_SHOWN = 60
 #: Names of an axis of components without labels.
 AXES = re.compile(r"^(two|three|vdims?|n?comp\w*|n?vec\w*|uvw?|xyz?)$", re.IGNORECASE)
 #: Labels of components; a prefix as in ``m_x`` is ignored.
@@ -220,10 +225,92 @@ def read_csv(path: Path) -> xr.Dataset:
         header = next((line for line in file if line.strip() and not line.startswith("#")), "")
     separator = max(",;\t", key=header.count)
     options = {"sep": separator if separator in header else r"\s+", "comment": "#"}
+    _check_rows(path, separator if separator in header else None)
     frame = pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options)
     if any(re.fullmatch(r"[-+.\deE]+", str(name).strip()) for name in frame.columns):
         raise FieldError(f"its first line is {header.strip()[:60]!r}; expected names of columns")
+    _check_end(frame)
     return of_table(frame)
+
+
+def _check_rows(path: Path, separator: str | None, *, header: int = 0) -> None:
+    """Raise a FieldError for a row with fewer values than there are columns.
+
+    pandas fills it with missing values. ``separator`` is ``None`` for white space, and ``header``
+    the number of columns if the first line does not have their names alone.
+    """
+    count = header
+    number = 0
+    row: list[str] = []
+    try:
+        with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
+            if header:
+                file.readline()
+            for number, row in _rows(file, separator):
+                count = count or _names(row)
+                if len(row) < count:
+                    raise _cut_row(number + bool(header), row, f"{len(row)} of {count} values")
+    except csv.Error as error:
+        raise FieldError(f"its rows cannot be read ({error}); write or copy it again") from error
+    if row and not row[-1].strip() and not _ends_with_line(path):
+        raise _cut_row(number + bool(header), row, "no end and no last value")
+
+
+def _cut_row(number: int, row: list[str], fault: str) -> FieldError:
+    text = ", ".join(row)
+    if len(text) > MOST_SHOWN:
+        text = text[:MOST_SHOWN] + "…"
+    return FieldError(
+        f"line {number:,} has {fault}: {text!r}. The file is truncated or damaged; write or copy "
+        "it again, or remove the line"
+    )
+
+
+def _names(row: list[str]) -> int:
+    """Return the number of columns in a header, which may end with a separator."""
+    named = [place for place, name in enumerate(row, start=1) if name.strip()]
+    return named[-1]
+
+
+def _ends_with_line(path: Path) -> bool:
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read() in (b"\n", b"\r")
+
+
+def _rows(file: TextIO, separator: str | None) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows with values, without comments, and the numbers of their lines."""
+    if separator is None:
+        for number, line in enumerate(file, start=1):
+            values = line.partition("#")[0].split()
+            if values:
+                yield number, values
+        return
+    reader = csv.reader(file, delimiter=separator, skipinitialspace=True)
+    for row in reader:
+        text, comment, _ = separator.join(row).partition("#")
+        if not text.strip():
+            continue
+        if comment:
+            row = text.split(separator)
+        yield reader.line_num, row
+
+
+def _check_end(frame: Any) -> None:
+    """Raise a FieldError if the last row alone has no number in a column of numbers."""
+    pandas = import_extra("pandas", "xarray")
+    if len(frame) < 2:
+        return
+    for name in frame.columns:
+        column = frame[name]
+        if column.dtype.kind in "biufcMm":
+            continue
+        unread = pandas.to_numeric(column, errors="coerce").isna() & column.notna()
+        if unread.iloc[-1] and unread.sum() == 1:
+            raise FieldError(
+                f"the last row has {column.iloc[-1]!r} in the column {str(name)!r} of numbers. The "
+                "file is truncated or damaged; write or copy it again, or remove the row"
+            )
 
 
 def read_vec(path: Path) -> xr.Dataset:
@@ -239,6 +326,7 @@ def read_vec(path: Path) -> xr.Dataset:
             f"its first line is {header[:60]!r}; expected VARIABLES= with X, Y, U and V"
         )
     labels = [name if not unit else f"{name} [{unit.strip()}]" for name, unit in names]
+    _check_rows(path, ",", header=len(names))
     frame = pandas.read_csv(path, skiprows=1, header=None, names=labels, skipinitialspace=True)
     if VEC_FLAG in frame:
         flow = [c for c in labels if c.split()[0] in ("U", "V", "W")]

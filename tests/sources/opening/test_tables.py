@@ -124,6 +124,47 @@ def test_csv(tmp_path: Path, separator: str) -> None:
     assert field.shape == (21, 40)
 
 
+@pytest.mark.parametrize("separator", [",", ";", "\t", " "])
+@pytest.mark.parametrize("cut", [3, 12, 20, 25])
+def test_csv_with_a_cut_row_names_it(tmp_path: Path, separator: str, cut: int) -> None:
+    path = tmp_path / "flow.csv"
+    lattice().to_csv(path, index=False, sep=separator, float_format="%.6f")
+    text = path.read_text()
+    last = text.rstrip("\n").rindex("\n") + 1
+    path.write_text(text[: last + cut])
+    with pytest.raises(FieldError, match=r"line 841 has .*write or copy it again, or remove"):
+        FlowField.from_file(path)
+
+
+def test_csv_with_a_short_row_within_names_it(tmp_path: Path) -> None:
+    path = tmp_path / "flow.csv"
+    lattice().to_csv(path, index=False)
+    lines = path.read_text().splitlines()
+    lines[99] = lines[99].rpartition(",")[0]
+    path.write_text("\n".join(["# a comment, which has, many, values", "", *lines, ""]))
+    with pytest.raises(FieldError, match="line 102 has 3 of 4 values"):
+        FlowField.from_file(path)
+
+
+def test_csv_with_a_cut_number_names_it(tmp_path: Path) -> None:
+    path = tmp_path / "flow.csv"
+    lattice().to_csv(path, index=False)
+    lines = path.read_text().splitlines()
+    lines[-1] = lines[-1].rpartition(",")[0] + ",-"
+    path.write_text("\n".join(lines))
+    with pytest.raises(FieldError, match="the last row has '-' in the column 'v' of numbers"):
+        FlowField.from_file(path)
+
+
+def test_csv_with_missing_values_and_texts_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "flow.csv"
+    frame = lattice().assign(station=[f"A{n}" for n in range(840)])
+    frame.loc[[5, 839], "u"] = np.nan
+    path.write_text(frame.to_csv(index=False).rstrip("\n"))
+    field = FlowField.from_file(path)
+    assert (~field.valid).sum() == 2
+
+
 def test_csv_without_header_raises(tmp_path: Path) -> None:
     path = tmp_path / "flow.csv"
     path.write_text("0,1,2,3\n4,5,6,7\n", encoding="utf-8")
