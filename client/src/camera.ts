@@ -59,6 +59,8 @@ const NORTH: Vector = [0, 0, 1];
 /** Sine of the latitude beyond which the eye does not go over a globe, and cosine of it that counts. */
 const STEEPEST = Math.sin((89 * Math.PI) / 180);
 const LEAST_COSINE = 0.2;
+/** Cosine between the normals of planes that share a camera, at least. */
+const LEAST_PARALLEL = 0.8;
 
 const tangent = (degrees: number) => Math.tan((degrees * Math.PI) / 360);
 
@@ -338,11 +340,14 @@ export function pointInPlane({ center, frame }: Surface, camera: Camera, x: numb
   return add(start, along, dot(subtract(center, start), normal) / dot(along, normal));
 }
 
+const normalOf = ({ frame }: Surface): Vector => [frame[6], frame[7], frame[8]];
+
 /** Whether two surfaces lie in the same place, as a coarse form and the whole one. */
 export function isSamePlace(a: Surface, b: Surface): boolean {
   const near = length(subtract(a.center, b.center)) < 0.1 * a.extent;
   const ratio = a.extent / b.extent;
-  return a.planar === b.planar && near && ratio > 0.8 && ratio < 1.25;
+  const isTurned = a.planar && dot(normalOf(a), normalOf(b)) < LEAST_PARALLEL;
+  return a.planar === b.planar && !isTurned && near && ratio > 0.8 && ratio < 1.25;
 }
 
 /**

@@ -408,6 +408,8 @@ export interface Header {
   clock: number;
   /** Counts the scenes that replaced one another. */
   generation?: number;
+  /** Counts the places that a page has been shown. */
+  place?: number;
   /** Names of the time-independent parts; the view removes all others. */
   surface?: string[];
   /** Settings in which two views differ, and those that are this view's own. */

@@ -127,7 +127,7 @@ export class Viewer extends SceneView {
     this.player.setHeader(header);
     this.requests.setHeader(header);
     this.painter.open?.(header);
-    const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
+    const isElsewhere = !old || old.place !== header.place || !isSamePlace(old.geometry, header.geometry);
     const isOther = old && !isEqual(placeOf(old), placeOf(header));
     // A host reads the point of another surface.
     if (isOther && (isElsewhere || !this.options.reader)) this.card.close();

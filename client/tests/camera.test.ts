@@ -144,6 +144,9 @@ test("a coarse form lies in the place of the whole, another surface does not", (
   assert.ok(isSamePlace(geometry, { ...geometry, center, extent: 1.1 * geometry.extent }));
   assert.ok(!isSamePlace(geometry, { ...geometry, extent: 2 * geometry.extent }));
   assert.ok(!isSamePlace(geometry, cases.curved.geometry));
+  const { frame } = geometry;
+  const turned = [...frame.slice(3, 6), ...frame.slice(6, 9), ...frame.slice(0, 3)];
+  assert.ok(!isSamePlace(geometry, { ...geometry, frame: turned })); // a plane across it
 });
 
 for (const [name, example] of Object.entries(cases)) {

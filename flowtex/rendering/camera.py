@@ -34,6 +34,7 @@ UP = (0.0, 0.0, 1.0)  #: The direction up.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 LEAST_ASIDE = 0.2  #: Share of the radius from which a direction counts.
 LEAST_FACING = 0.1  #: Cosine between the view and the normal of a surface that is seen edge-on.
+LEAST_PARALLEL = 0.8  #: Cosine between the normals of planes that share a camera.
 MOST_LARGER = 4.0  #: Greatest ratio of the extents of two surfaces that share a camera.
 MOST_APART = 0.5  #: Greatest distance of their centres over the larger extent.
 FARTHEST_REACH = 1e9  #: Farthest that a camera may be, in extents: beyond, numbers end.
@@ -414,9 +415,16 @@ def can_share_camera(first: Surface, second: Surface) -> bool:
     """Return whether a camera that shows one surface shows the other one as well."""
     smaller, larger = sorted((first.extent, second.extent))
     distance = float(np.linalg.norm(first.center - second.center))
-    is_flat = first.frame is not None
     near = distance <= MOST_APART * larger <= MOST_APART * MOST_LARGER * smaller
-    return near and is_flat == (second.frame is not None)
+    return near and face_alike(first, second)
+
+
+def face_alike(first: Surface, second: Surface) -> bool:
+    """Return whether two surfaces are curved, or planes that face in nearly the same direction."""
+    if first.frame is None or second.frame is None:
+        return first.frame is None and second.frame is None
+    cosine = float(np.cross(*first.frame) @ np.cross(*second.frame))
+    return cosine > LEAST_PARALLEL
 
 
 def _distance_to_all(offsets: Floats, axes: Floats, aspect: float, share: float) -> float:

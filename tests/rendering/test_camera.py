@@ -11,8 +11,9 @@ from camera_moves import rotate, zoom_by
 from earth_fields import ocean, winds
 from flows import gyre, torus
 
+from flowtex import FlowField
 from flowtex.field.earth import Projection
-from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, can_share_camera
 
 ASPECT = 1.6
 ASIDE = Camera((2.4, -1.9, 1.5), (0.1, 0.2, -0.1), (0.0, 0.6, 0.8), view_angle=25.0)
@@ -145,3 +146,20 @@ def test_a_camera_out_of_reach_of_the_surface_is_told() -> None:
     camera = Camera.fit(surface)
     assert camera.is_near(surface)
     assert not replace(camera, position=(1e12, 0, 0)).is_near(surface)
+
+
+def plane(*axes: int, height: float = 0.0) -> FlowField:
+    """A square that spans two axes."""
+    v, u = np.mgrid[-1:1:5j, -1:1:5j]
+    points = np.full((5, 5, 3), height)
+    points[..., axes[0]], points[..., axes[1]] = u, v
+    velocity = np.zeros((5, 5, 3))
+    velocity[..., axes[0]] = 1.0
+    return FlowField.from_arrays(points, velocity)
+
+
+def test_planes_across_each_other_do_not_share_a_camera() -> None:
+    first = plane(0, 1).surface
+    assert can_share_camera(first, plane(0, 1, height=0.1).surface)
+    for axes in ((1, 2), (0, 2)):
+        assert not can_share_camera(first, plane(*axes).surface)

@@ -154,16 +154,17 @@ class TrameView {
   private connect(view: FlowtexView): void {
     const wait = this.painter === "server" ? DRAWN_MS : MESSAGE_MS;
     for (const name of ["camera", "time", "clock"]) {
-      const send = throttled<unknown>(setTimeout, wait, (value) => this.tell(name, value));
-      view.addEventListener(name, (event) => send((event as CustomEvent).detail));
+      const send = throttled<[value: unknown, place?: number]>(setTimeout, wait, (said) => this.tell(name, ...said));
+      view.addEventListener(name, (event) => send([(event as CustomEvent).detail, view.first?.header?.place]));
     }
     for (const name of ["playing", "setting"]) {
       view.addEventListener(name, (event) => this.tell(name, (event as CustomEvent).detail));
     }
   }
 
-  private tell(name: string, value: unknown): void {
-    this.emit(name, { value, page: this.name });
+  /** Report a value, and of which place it is, as the server may show another one meanwhile. */
+  private tell(name: string, value: unknown, place: number | null = null): void {
+    this.emit(name, { value, page: this.name, place });
   }
 
   /** Take over what has changed on the server; also called by it. */

@@ -115,6 +115,8 @@ class FlowArea(AppearanceAttributes):
         self._handed: tuple[object, ...] = ()
         self._sent: Header = {}
         self._due: asyncio.Handle | None = None
+        #: Number of the place that pages look at: cameras and times of another one are late.
+        self._place = 0
         #: Name of the page whose message is being handled.
         self._by = ""
         self.player.time_changed.connect(self._follow_time)
@@ -162,7 +164,7 @@ class FlowArea(AppearanceAttributes):
             begin=server.trigger_name(self.begin),
             read=server.trigger_name(self.points.read),
             **{
-                name: (getattr(self, f"take_{name}"), "[$event.value, $event.page]")
+                name: (getattr(self, f"take_{name}"), "[$event.value, $event.page, $event.place]")
                 for name in EVENTS
             },
             **attributes,
@@ -189,7 +191,10 @@ class FlowArea(AppearanceAttributes):
         keep_time
             Whether the time stays, as far as the flow has it.
         """
+        before = self.viewport.camera
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range, keep_time=keep_time)
+        if self.viewport.camera != before:
+            self._place += 1
         self.changed()
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
@@ -310,6 +315,7 @@ class FlowArea(AppearanceAttributes):
         result = []
         for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
             values = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
+            values["place"] = self._place
             if n:
                 values |= {"own": settings, "timeShift": viewport.time_shift}
             if n < len(self.names):
@@ -333,9 +339,15 @@ class FlowArea(AppearanceAttributes):
         finally:
             self._by = ""
 
-    def take_camera(self, values: Any, page: object = "") -> bool:
+    def _is_late(self, place: object) -> bool:
+        """Return whether a page sent a message before it was shown the present place."""
+        return place is not None and place != self._place
+
+    def take_camera(self, values: Any, page: object = "", place: object = None) -> bool:
         """Set a camera sent by a page; return whether it is valid."""
         viewport = self.viewport
+        if self._is_late(place):
+            return False
         try:
             camera = Camera.from_dict(values, viewport.camera)
         except CameraError:
@@ -348,28 +360,30 @@ class FlowArea(AppearanceAttributes):
             self.stream.changed()
         return near
 
-    def take_time(self, time: object, page: object = "") -> None:
+    def take_time(self, time: object, page: object = "", place: object = None) -> None:
         """Show a time of the field."""
         checked = number(time, *map(float, self.viewport.field.times[[0, -1]]))
-        if checked is not None:
+        if checked is not None and not self._is_late(place):
             self.player.go_to(checked, page if isinstance(page, str) else "")
 
-    def take_clock(self, clock: object, page: object = "") -> None:
+    def take_clock(self, clock: object, page: object = "", place: object = None) -> None:
         """Show a moment of the streaming of a steady flow."""
         checked = number(clock, 0, 1e9)
-        if checked is not None:
+        if checked is not None and not self._is_late(place):
             with self._changed_by(page):
                 self.viewport.clock = checked
                 self.follow()
             self.stream.changed()
 
-    def take_playing(self, playing: object, page: object = "") -> None:
+    def take_playing(self, playing: object, page: object = "", place: object = None) -> None:
         """Start or stop the animation, as on the page."""
+        del place  # which all of them share
         with self._changed_by(page):
             self.player.playing = bool(playing)
 
-    def take_setting(self, pair: object, page: object = "") -> None:
+    def take_setting(self, pair: object, page: object = "", place: object = None) -> None:
         """Set the setting that the page requests, or report an error."""
+        del place  # which all of them share
         if not (isinstance(pair, list) and len(pair) == 2):
             return
         name, value = pair[0], number(pair[1], -1e300, 1e300)
@@ -379,9 +393,9 @@ class FlowArea(AppearanceAttributes):
             with self._changed_by(page):
                 self.viewport.settings.update(**{pair[0]: pair[1]})
 
-    def take_colours(self, choice: object, page: object = "") -> None:
+    def take_colours(self, choice: object, page: object = "", place: object = None) -> None:
         """Set the colours that the page requests, or report an error."""
-        del page  # which receives the colours as well
+        del page, place  # which receives the colours as well
         changes = {name: value for name, value in mapping(choice).items() if name in CHOSEN}
         scene = self.viewport.scene
         with self._changed_by(""), suppress(KeyError, TypeError):

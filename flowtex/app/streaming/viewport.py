@@ -25,7 +25,7 @@ from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.handle import FlowHandle
-from flowtex.rendering.camera import Camera, apply_camera
+from flowtex.rendering.camera import Camera, apply_camera, face_alike
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene, follow, make_scenes
 from flowtex.settings import Settings
@@ -163,7 +163,7 @@ class Viewport:
         was not chosen is that of the volume where the flow knows it, or else the present one. With
         ``keep_time`` the time stays as far as the flow has it.
         """
-        camera, flat = self.camera, self.flat
+        camera, surface = self.camera, self.scene.whole.surface
         time = first_time(self.scene, field, keep=keep_time)
         changes: dict[str, Any] = {} if keep_range else {"clim": None}
         flows = [field, self.differences.get("field", field)]
@@ -181,7 +181,7 @@ class Viewport:
             pane.show_scene(scene)
         self.set_time(time)
         self.home()
-        if keep_view and flat == self.flat:
+        if keep_view and face_alike(surface, self.scene.whole.surface):
             self.camera = camera
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:

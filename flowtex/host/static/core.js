@@ -117,7 +117,8 @@ map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*n+k]===map[4*n-4+k])?runs[runs.len
 function rampOf(map,header,settings,stops){let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`\
 rgb(${(header.image?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(
 map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*
-to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,LEAST_PARALLEL=.8,tangent=degrees=>Math.tan(degrees*
+Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
@@ -169,8 +170,9 @@ max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limi
 position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
 return first?widened(surface,limits,first,nodes,aspect):fitted(surface,limits,nodes,aspect)}function pointInPlane({center,
 frame},camera,x,y){let[start,along2]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along2,dot2(subtract2(
-center,start),normal)/dot2(along2,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
-extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
+center,start),normal)/dot2(along2,normal))}var normalOf=({frame})=>[frame[6],frame[7],frame[8]];function isSamePlace(a,b){
+let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent,isTurned=a.planar&&dot2(normalOf(a),normalOf(
+b))<LEAST_PARALLEL;return a.planar===b.planar&&!isTurned&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
 let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
 toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=Math.max(.51*
 extent,surface.reach??0),m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([
@@ -284,7 +286,7 @@ isAlongJ)}}};var NORMAL_MAX=32767,[NOTHING,SPEED,REACH,UNKNOWN]=[0,1,2,3],UNKNOW
 MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){let[rows,columns]=shape2,
 width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*
 ((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[
-rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*padded.shape[1],[top,left]=trace.
+rows,columns,3]}}function normalOf2(padded,trace,shape2){let[rows,columns]=shape2,width=3*padded.shape[1],[top,left]=trace.
 drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+
 1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along2(3),along2(
 width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{component,line,
@@ -1241,10 +1243,10 @@ geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geome
 shape[2]],step:image?[...image.stepSize].reverse():[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
 let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
 ["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
-planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),this.
-wanted=steps,steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,
-this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||
-this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
+planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf2(padded,trace,geometry.shape)),
+this.wanted=steps,steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
+graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
+if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
 step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
 tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
 get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
@@ -2165,64 +2167,65 @@ format!==FORMAT){let fault=`The scene has format ${header.format}, and this clie
 panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
 generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
 this.given=header,header={...header,...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.
-own},this.player.setHeader(header),this.requests.setHeader(header),this.painter.open?.(header);let isElsewhere=!old||!isSamePlace(
-old.geometry,header.geometry);old&&!isEqual2(placeOf2(old),placeOf2(header))&&(isElsewhere||!this.options.reader)&&this.
-card.close(),isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?
-null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&!keepsCamera||name.
-includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),this.change()}keepParts(names){
-for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.remove(name),this.scene?.forget(
-name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),this.
-fitColours(),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.
-showLegend(),this.change()}fitColours(){this.header&&this.requests.fit()&&Object.assign(this.header,recoloured(this.header,
-{},this.parts).colours)}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.
-background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.onColours)
-return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(
-viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let isOther=super.
-setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),isOther}setSettings(settings){
-Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-requests.follow(this.settings)&&(this.recolour({}),this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){
-this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.requests.stop(),this.header&&
-this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
-camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
-this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
-this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
-!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
-let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
-let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
-x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
-this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
-clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
-let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
-first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
-player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
-options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
-setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
-player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
-playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
-this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
-pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
-let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
-performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){let parts=this.camera&&
-this.requests.formula?.look(this.camera,this.parts.keys());for(let part of parts??[])this.setPart(part);this.painter.restart?.(
-cameraOnly),cameraOnly||this.pointers.outdate(),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){
-this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){
-this.root.dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),
-this.followMoment(),this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}followMoment(){let moment=String(
-this.shown);moment!==this.toldMoment&&(this.toldMoment=moment,this.playing&&this.options.reader?this.card.hide():this.card.
-update())}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.
-update(),this.pointers.again(),this.options.onFrame?.()))}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,
-clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.
-canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.
-width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.
-start)&&this.place()),this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){super.
-lost(),this.root.dataset.sharp="false"}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??
-[]}tell(reason){this.panel.tell(reason)}fail(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
-error))}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.
-advance(now,isMade)||(player.varies?(options.onTime?.(player.time),this.pointers.outdate()):options.onClock?.(player.clock),
-this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}get rows(){return this.stage.clientHeight}get canPick(){return this.
-painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&
-groundAt(header,camera,x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+own},this.player.setHeader(header),this.requests.setHeader(header),this.painter.open?.(header);let isElsewhere=!old||old.
+place!==header.place||!isSamePlace(old.geometry,header.geometry);old&&!isEqual2(placeOf2(old),placeOf2(header))&&(isElsewhere||
+!this.options.reader)&&this.card.close(),isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,
+this.camera]=[this.keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&
+!keepsCamera||name.includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),
+this.change()}keepParts(names){for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.
+remove(name),this.scene?.forget(name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.
+assign(this.header,colours),this.fitColours(),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.
+recolour(colours),this.panel.showLegend(),this.change()}fitColours(){this.header&&this.requests.fit()&&Object.assign(this.
+header,recoloured(this.header,{},this.parts).colours)}grounded(colours){return this.page.update(),colours.background===void 0?
+colours:(this.isOnPage=colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){
+if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
+let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
+let isOther=super.setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),
+isOther}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
+this.settings,settings),this.requests.follow(this.settings)&&(this.recolour({}),this.renew(),this.card.update()),this.panel.
+update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.
+requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.
+setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
+name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):
+null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
+this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
+change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
+this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
+parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
+pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
+showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
+max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
+this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
+null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
+let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
+player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
+this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
+time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
+this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
+varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
+this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
+playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
+this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
+return performance.now()<this.busyUntil}change(cameraOnly=!1){let parts=this.camera&&this.requests.formula?.look(this.camera,
+this.parts.keys());for(let part of parts??[])this.setPart(part);this.painter.restart?.(cameraOnly),cameraOnly||this.pointers.
+outdate(),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
+setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.followMoment(),
+this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}followMoment(){let moment=String(this.shown);moment!==
+this.toldMoment&&(this.toldMoment=moment,this.playing&&this.options.reader?this.card.hide():this.card.update())}setSharp(sharp){
+sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.pointers.again(),
+this.options.onFrame?.()))}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
+[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===
+this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=
+[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),
+this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){super.lost(),this.root.dataset.
+sharp="false"}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}tell(reason){this.
+panel.tell(reason)}fail(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}advance(now){
+let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
+(player.varies?(options.onTime?.(player.time),this.pointers.outdate()):options.onClock?.(player.clock),this.panel.tick(),
+painter.restart?.(!1),this.setSharp(!1))}get rows(){return this.stage.clientHeight}get canPick(){return this.painter.canPick??
+!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,
+camera,x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

@@ -93,7 +93,7 @@ earth?.coastlines,graticule:i=a.earth?.graticule}=e,o=a.earth&&{...a.earth,coast
 l={scalars:r,earth:o,opacity:c},[h,m]=[t.get("maps"),t.get("cmap")?.data],u=m instanceof Float32Array,p=u&&(e.clim!==void 0||
 e.scalars!==void 0);if(!h||!(e.cmap||p))return{colours:l,part:null};p&&Object.assign(r,{ticks:[],beyond:[null,null,r.beyond[2]]});
 let f=u&&!p,d=e.cmap?Ua(a,h.data,e.cmap,f?m:void 0):Uint8Array.from(m??[]),g=[Ca,e.cmap,f].join();return{colours:l,part:{
-name:"cmap",data:d,shape:[d.length/4,4],digest:g}}}var ur=[0,0,1],mn=Math.sin(89*Math.PI/180),Va=.2,pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
+name:"cmap",data:d,shape:[d.length/4,4],digest:g}}}var ur=[0,0,1],mn=Math.sin(89*Math.PI/180),Va=.2;var pe=a=>Math.tan(a*Math.PI/360),fe=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(e,t,r,n=1,s=0){
 this.state=pr(e),this.start=pr(e),this.limits=t,this.flat=r,this.globe=s,this.aspect=n,this.homeHeight=this.height,this.
 nearest=this.distance/t.closest}get height(){let{parallel:e,parallel_scale:t,view_angle:r}=this.state;return e?t:this.distance*
 pe(r)}get distance(){return F(E(this.state.focal_point,this.state.position))}get zoom(){return this.homeHeight/this.height}get axes(){

@@ -157,3 +157,21 @@ async def test_colours_follow_the_parameter_of_a_formula() -> None:
         app.area.take_colours({"clim": [0.0, 3.0]})
         app.area.take_setting(["formula.b", 2.0])
         assert (await read(app)).scalar_limits == (0.0, 3.0)
+
+
+async def test_planes_across_each_other_are_seen_straight_on(tmp_path: Path) -> None:
+    """Their centre is the same, so a page would keep the camera from which they are edge-on."""
+    volume().save(tmp_path / "box.vti")
+    async with page(tmp_path / "box.vti") as app:
+        app.area.begin("browser")
+        for plane in ("z=0.6", "x=0.8", "y=0.7"):
+            before = app.area._place
+            scene = await opened(app, plane)
+            assert app.area._place == before + 1
+            assert not app.viewport.camera.sees_edge_on(scene.field.surface)
+        app.viewport.home(zoom=3.0)
+        camera = app.viewport.camera
+        scene = await opened(app, "y=1.3")
+        assert app.viewport.camera == camera
+        app.area.field = flowtex.FlowField.from_pyvista(volume(), slice="x=0.8")
+        assert not app.viewport.camera.sees_edge_on(app.field.surface)

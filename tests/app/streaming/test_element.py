@@ -194,3 +194,31 @@ def test_two_panes_are_two_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     app.area.compare(None)
     assert len(told.taken()["scenes"]) == 1
     app.close()
+
+
+def test_a_camera_of_the_place_before_is_late() -> None:
+    """A page sends its first camera when its parts are there; a link may have led on before."""
+    app = small_page(small(steps=3), 3, 96, 64)
+    (scene,) = app.area.begin("server")["scenes"]
+    before = app.viewport.camera.to_dict()
+    place = scene["header"]["place"]
+    beside = small(steps=3)
+    turned = flowtex.FlowField.from_arrays(
+        beside.points[..., [2, 0, 1]], beside.velocity[..., [2, 0, 1]], times=[0.0, 1.0, 2.0]
+    )
+    app.show(turned)
+    shown = app.viewport.camera
+    app.area.take_camera(before, "page", place)
+    app.area.take_time(1.0, "page", place)
+    assert app.viewport.camera == shown
+    assert app.viewport.handle.time == 0.0
+    (scene,) = app.area.begin("server")["scenes"]
+    moved = {**shown.to_dict(), "parallel_scale": 0.5 * shown.parallel_scale}
+    app.area.take_camera(moved, "page", scene["header"]["place"])
+    assert app.viewport.camera.parallel_scale == pytest.approx(0.5 * shown.parallel_scale)
+    # Another surface at the same place does not make a camera late.
+    place = scene["header"]["place"]
+    app.show(turned.same_flow(name="other"), keep_view=True)
+    app.area.take_camera(shown.to_dict(), "page", place)
+    assert app.viewport.camera == shown
+    app.close()

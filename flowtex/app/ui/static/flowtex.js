@@ -33,36 +33,36 @@ this.view?.dispose(),this.view?.remove();let view=this.view=new this.client.Flow
 connect(view),this.element.append(view),this.scenes=[],this.early=null,await Promise.all([start,...early].map(changes=>this.
 take(changes)))}options(){return{rebuild:!0,named:!0,streamed:this.painter==="server",onColours:choice=>this.tell("colou\
 rs",choice)}}connect(view){let wait=this.painter==="server"?DRAWN_MS:MESSAGE_MS;for(let name of["camera","time","clock"]){
-let send2=throttled(setTimeout,wait,value=>this.tell(name,value));view.addEventListener(name,event=>send2(event.detail))}
-for(let name of["playing","setting"])view.addEventListener(name,event=>this.tell(name,event.detail))}tell(name,value){this.
-emit(name,{value,page:this.name})}async take(changes){let{view,early}=this;if(early)return void early.push(changes);if(!view||
-changes.by===this.name)return;let{scenes,settings,camera,time,timeBeside,clock,playing}=changes,loading=scenes&&this.show(
-scenes),{viewers,first}=view,isStill=!first.playing;for(let viewer of viewers){for(let[name,value]of Object.entries(settings??
-{}))viewer.followSetting(name,value);camera!==void 0&&viewer.setCamera(camera),time!==void 0&&isStill&&viewer.followTime(
-time),clock!==void 0&&isStill&&viewer.setClock(clock)}typeof timeBeside=="number"&&viewers[1]?.setTime(timeBeside),playing===
-!0?first.play():playing===!1&&first.pause(),await loading}async show(scenes){let{view,scenes:before}=this;if(!view)return;
-this.scenes=scenes;let loads=scenes.map((_,n)=>this.load(n));if(before.length!==scenes.length){this.loaded=[],view.open(
-scenes.length,n=>({reader:this.reader(n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0,hasMarks:!0}:void 0})),
-this.watcher.disconnect();for(let{stage}of view.viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{let{generation}=scenes[n].
-header,isThere=this.loaded[n]===generation,name=this.painter==="server"?"controls":isThere?"colours":void 0;viewer.setHeader(
-scenes[n].header);try{let parts=await loads[n](null,[],void 0,void 0,name);if(this.scenes!==scenes)return;name||viewer.keepParts(
-parts.map(part=>part.name));for(let part of parts)viewer.setPart(part);this.loaded[n]=generation}catch(error){this.scenes===
-scenes&&viewer.panel.fail("The flow could not be loaded.",String(error))}this.painter==="server"&&viewer.sharp&&(this.size=
-""),viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled),this.resize()}load(n){return loadFiles(
-()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){return(at,path)=>{let time=this.view?.
-viewers[n]?.player.time;return trame().trigger(this.props.read,[n,{...at,path,time}])}}resize(){let{view,area}=this;if(!view?.
-viewers.length||!area)return;view.first.resize();let{width,height}=view.first.canvas,count=view.viewers.length,size={w:count*
-width+(count-1)*GAP_PX,h:height,p:1},text=JSON.stringify(size);text!==this.size&&(this.size=text,session().call("trame.r\
-ca.size",[area,"view",size]))}async takeFrame({name,meta,content}){if(name!==this.area||this.painter!=="server")return;let number=this.
-came+=1,picture=await createImageBitmap(new Blob([content],{type:meta.type})),seconds=performance.now()/1e3;if(session().
-call("trame.rca.event",[name,this.name,{number:meta.number,seconds}]),number<this.shown||this.painter!=="server")return;
-this.shown=number;let{view}=this,whole=(view?.viewers.length??1)*(view?.first.canvas.width??1);view?.paint(picture,Math.
-max(Math.round(GAP_PX*picture.width/whole),1),meta.sharp),picture.close()}dispose(){this.ended.abort(),this.watcher.disconnect(),
-this.subscription&&session().unsubscribe(this.subscription),this.view?.dispose()}},browser={name:"flowtex-client",props:[
-"begin","read"],emits:["camera","time","clock","playing","setting","colours"],setup(props,{emit,expose}){let{h,ref,onMounted,
-onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(()=>{place.value&&(view=new TrameView(props,emit,place.
-value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose({take:changes=>{view?.take(changes)},paint:painter=>{
-view?.paint(painter)}}),()=>h("div",{ref:place})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
+let send2=throttled(setTimeout,wait,said=>this.tell(name,...said));view.addEventListener(name,event=>send2([event.detail,
+view.first?.header?.place]))}for(let name of["playing","setting"])view.addEventListener(name,event=>this.tell(name,event.
+detail))}tell(name,value,place=null){this.emit(name,{value,page:this.name,place})}async take(changes){let{view,early}=this;
+if(early)return void early.push(changes);if(!view||changes.by===this.name)return;let{scenes,settings,camera,time,timeBeside,
+clock,playing}=changes,loading=scenes&&this.show(scenes),{viewers,first}=view,isStill=!first.playing;for(let viewer of viewers){
+for(let[name,value]of Object.entries(settings??{}))viewer.followSetting(name,value);camera!==void 0&&viewer.setCamera(camera),
+time!==void 0&&isStill&&viewer.followTime(time),clock!==void 0&&isStill&&viewer.setClock(clock)}typeof timeBeside=="numb\
+er"&&viewers[1]?.setTime(timeBeside),playing===!0?first.play():playing===!1&&first.pause(),await loading}async show(scenes){
+let{view,scenes:before}=this;if(!view)return;this.scenes=scenes;let loads=scenes.map((_,n)=>this.load(n));if(before.length!==
+scenes.length){this.loaded=[],view.open(scenes.length,n=>({reader:this.reader(n),source:this.painter==="browser"?{load:loads[n],
+hasSteps:!0,hasMarks:!0}:void 0})),this.watcher.disconnect();for(let{stage}of view.viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{
+let{generation}=scenes[n].header,isThere=this.loaded[n]===generation,name=this.painter==="server"?"controls":isThere?"co\
+lours":void 0;viewer.setHeader(scenes[n].header);try{let parts=await loads[n](null,[],void 0,void 0,name);if(this.scenes!==
+scenes)return;name||viewer.keepParts(parts.map(part=>part.name));for(let part of parts)viewer.setPart(part);this.loaded[n]=
+generation}catch(error){this.scenes===scenes&&viewer.panel.fail("The flow could not be loaded.",String(error))}this.painter===
+"server"&&viewer.sharp&&(this.size=""),viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled),
+this.resize()}load(n){return loadFiles(()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){
+return(at,path)=>{let time=this.view?.viewers[n]?.player.time;return trame().trigger(this.props.read,[n,{...at,path,time}])}}resize(){
+let{view,area}=this;if(!view?.viewers.length||!area)return;view.first.resize();let{width,height}=view.first.canvas,count=view.
+viewers.length,size={w:count*width+(count-1)*GAP_PX,h:height,p:1},text=JSON.stringify(size);text!==this.size&&(this.size=
+text,session().call("trame.rca.size",[area,"view",size]))}async takeFrame({name,meta,content}){if(name!==this.area||this.
+painter!=="server")return;let number=this.came+=1,picture=await createImageBitmap(new Blob([content],{type:meta.type})),
+seconds=performance.now()/1e3;if(session().call("trame.rca.event",[name,this.name,{number:meta.number,seconds}]),number<
+this.shown||this.painter!=="server")return;this.shown=number;let{view}=this,whole=(view?.viewers.length??1)*(view?.first.
+canvas.width??1);view?.paint(picture,Math.max(Math.round(GAP_PX*picture.width/whole),1),meta.sharp),picture.close()}dispose(){
+this.ended.abort(),this.watcher.disconnect(),this.subscription&&session().unsubscribe(this.subscription),this.view?.dispose()}},
+browser={name:"flowtex-client",props:["begin","read"],emits:["camera","time","clock","playing","setting","colours"],setup(props,{
+emit,expose}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(()=>{place.value&&(view=
+new TrameView(props,emit,place.value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose({take:changes=>{view?.
+take(changes)},paint:painter=>{view?.paint(painter)}}),()=>h("div",{ref:place})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
 middle=[at.left+(at.width-width)/2,at.top+(at.height-height)/2],below=[middle[0],at.bottom+GAP_PX2],above=[middle[0],at.
 top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.right+2*GAP_PX2,middle[1]],top:above},[left,
 top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
