@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SMALL, VIEWS, View, difference, judged
-from webgl_page import ClientPage, packed, state
+from drawn_views import drawn_by_vtk, drawn_by_webgl
+from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SMALL, VIEWS, difference, judged
+from webgl_page import ClientPage
 
 from flowtex._util.array_types import Bytes
-from flowtex.rendering.camera import apply_camera
 from flowtex.rendering.cpu.render import render
-from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.scene import Scene
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
@@ -34,33 +33,6 @@ def agree(theirs: Bytes, name: str, more: float = 1.0) -> None:
     # Where an edge of the surface passes through the middle of a pixel, either may cover it;
     # a coarser mesh moves the outline by up to a quarter of a pixel.
     assert only_one <= 10
-
-
-def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
-    camera = view.camera
-    plotter.window_size = list(SMALL)
-    plotter.set_background(GROUND)
-    shown: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
-    settings = {"samples": 11, **view.settings}
-    handle = plotter.flowtex.add(view.field(), image=view.image, **shown, **settings)
-    if view.time is not None:
-        handle.time = view.time
-    handle.clock, handle.surface.view.still = view.clock, True
-    apply_camera(camera, plotter.camera)
-    plotter.camera_set = True
-    plotter.renderer.reset_camera_clipping_range()
-    return np.asarray(plotter.screenshot(return_img=True))[..., :3]
-
-
-def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
-    view, (shown, _) = (VIEWS | DEEP)[name], judged(name)
-    before, after, _ = shown.moment
-    whole = ClientData(shown.textures, Colours(plain=COLOUR, background=GROUND))
-    header = whole.header(
-        shown.settings, camera=state(view.camera), time=shown.time, clock=view.clock
-    )
-    given = packed(whole, header, (before, after))
-    return client.picture(client.mount(given, SMALL, controls=False, smooth=False))
 
 
 #: Views that give the shaders, which VTK and WebGL share, another number or camera of a kind that
@@ -110,5 +82,5 @@ def test_two_hundredths_more_would_be_noticed(name: str) -> None:
 @pytest.mark.browser
 @pytest.mark.parametrize("name", VIEWS | DEEP)
 def test_webgl_agrees_with_numpy(client: ClientPage, name: str) -> None:
-    theirs = drawn_by_webgl(client, name)
+    theirs = drawn_by_webgl(client, (VIEWS | DEEP)[name], judged(name)[0])
     agree(theirs, name, COARSER if client.page.evaluate(OWN) else 1.0)

@@ -1,0 +1,127 @@
+"""Random scenes: VTK, the browser and NumPy draw the same, and paths are those of SciPy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from case_counts import count_case
+from drawn_views import drawn_by_vtk, drawn_by_webgl
+from hypothesis import given
+from hypothesis import strategies as st
+from matrix import COLOUR, GROUND, View
+from random_views import FLAT, Flow, flows, views
+from scipy.integrate import solve_ivp
+from scipy.ndimage import binary_erosion
+from strategies import property_test
+from webgl_page import ClientPage
+
+from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex.rendering.cpu.render import Picture, render
+from flowtex.rendering.uniforms import ViewState
+from flowtex.scene.probe import locate, probe
+from flowtex.scene.scene import Scene
+from flowtex.settings import Settings
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::flowtex.errors.Notice"),
+    pytest.mark.filterwarnings("ignore:The surface is outside"),
+]
+SIZE = (72, 48)
+#: Root mean square in steps of 8 bits, and share of pixels that may differ by more than 8.
+ROOT, SHARE = 1.5, 0.01
+
+
+def drawn_by_numpy(view: View) -> tuple[Scene, Picture]:
+    """Draw a view with its scene."""
+    shown = view.made()
+    before, after, between = shown.moment
+    state = ViewState(between=between, still=True, clock=view.clock)
+    steps = (before, after)
+    return shown, render(shown.textures, shown.settings, view.camera, SIZE, view=state, steps=steps)
+
+
+def inner(picture: Picture) -> Bools:
+    """Return the pixels (H, W) away from outlines, also of parts before others."""
+    steps = [np.linalg.norm(np.diff(picture.position, axis=axis), axis=-1) for axis in (0, 1)]
+    usual = np.nanmedian(np.concatenate([step.ravel() for step in steps]))
+    result = binary_erosion(picture.covered, iterations=2)
+    with np.errstate(invalid="ignore"):
+        down, right = (step > 6 * usual for step in steps)
+    result[1:] &= ~down
+    result[:-1] &= ~down
+    result[:, 1:] &= ~right
+    result[:, :-1] &= ~right
+    return np.asarray(result)
+
+
+def agree(theirs: Bytes, picture: Picture, contrast: float) -> None:
+    """Fail unless a picture is that of NumPy, but for pixels at outlines."""
+    ours = picture.rgb(COLOUR, background=GROUND)
+    inside = inner(picture)
+    off = theirs[inside].astype(float) - ours[inside]
+    if not off.size:
+        return
+    assert np.sqrt(np.mean(off**2)) < ROOT * contrast
+    assert (np.abs(off).max(axis=-1) > 8).sum() <= max(SHARE * len(off), 2)
+
+
+@property_test(12, fuzz=250)
+@given(views())
+def test_vtk_draws_what_numpy_does(plotter: Any, drawn: tuple[str, View]) -> None:
+    _, view = drawn
+    shown, picture = drawn_by_numpy(view)
+    if picture.covered.any():
+        agree(drawn_by_vtk(plotter, view, SIZE), picture, max(shown.settings.contrast, 1.0))
+    count_case("random scenes")
+
+
+@pytest.mark.browser
+@property_test(8, fuzz=100)
+@given(views())
+def test_browser_draws_what_numpy_does(client: ClientPage, drawn: tuple[str, View]) -> None:
+    _, view = drawn
+    shown, picture = drawn_by_numpy(view)
+    if picture.covered.any():
+        theirs = drawn_by_webgl(client, view, shown, SIZE)
+        client.clear()
+        agree(theirs, picture, max(shown.settings.contrast, 1.0))
+    count_case("random scenes")
+
+
+def exact(flow: Flow, start: Floats, moment: float, length: float, *, series: bool) -> Floats:
+    """Return points of the path through a point in the plane z = 0, (N, 2)."""
+
+    def rate(lag: float, place: Floats) -> Floats:
+        time = np.clip(moment + lag, 0, len(flow.means) - 1) if series else moment
+        velocity = flow.at(np.array([*place, 0.0]), float(time))[:2]
+        return np.asarray(velocity if series else velocity / np.linalg.norm(velocity))
+
+    points = []
+    for side in (-1.0, 1.0):
+        lags = side * np.linspace(0, length, 400)
+        found = solve_ivp(rate, (0, lags[-1]), start, t_eval=lags, rtol=1e-8, atol=1e-10)
+        points.append(found.y.T)
+    return np.concatenate(points)
+
+
+@property_test(10, fuzz=150)
+@given(flows(), st.sampled_from(FLAT), st.integers(0, 2**20), st.floats(0.002, 0.02))
+def test_paths_are_those_of_scipy(flow: Flow, kind: str, seed: int, pixel: float) -> None:
+    rng = np.random.default_rng(seed)
+    field = flow.field(kind)
+    series = not field.steady
+    scene = Scene(field, Settings(samples=25, lines="pathlines"))
+    scene.time = float(rng.uniform(0, len(flow.means) - 1))
+    start = rng.uniform(-0.6, 0.6, 2)
+    slow = np.linalg.norm(flow.at(np.array([*start, 0.0]), scene.time)[:2]) < 0.3
+    place = locate(field, start)
+    if slow or place is None:
+        return
+    found = probe(scene, place, pixel=pixel)
+    path = exact(flow, start, scene.time, 40 * pixel, series=series)
+    off = np.linalg.norm(found.points[:, None, :2] - path, axis=-1).min(axis=1)
+    cell = 0.15
+    assert off[found.weights > 0].max() < 0.1 * cell
+    count_case("random scenes")
