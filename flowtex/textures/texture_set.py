@@ -49,6 +49,7 @@ MOST_LAGS = 32  #: Most slices on each side, by the room in a shader.
 UNCERTAIN_LAYER = 3  #: The layer whose fourth channel is the uncertainty of the direction.
 HALF_MAX = 65504.0  #: Greatest number in half precision, in which texels are stored.
 SLOPE_ERROR = 2.0**-12  #: Relative error that is allowed in a slope: half of that of rounding.
+EDGE_CELLS = 8.0  #: Cells that a path goes in a triangle at a sharp edge for one elsewhere.
 AGREED = 0.99  #: Length of the mean velocity over the mean length where nodes agree.
 
 
@@ -151,24 +152,25 @@ class TextureSet:
         return _critical_cells[field]
 
     def _critical_cell(self, field: FlowField) -> float:
+        corners, cells = field.surface.cell_corners, field.surface.cells
+        lengths = field.surface.cell_lengths
+        # Paths go over sharp edges out of the plane of a triangle, and follow it from farther away.
+        at_edge = field.surface.at_edge
+        edge = np.logical_or.reduce([at_edge[at] for at in corners]) & cells
+        longest = EDGE_CELLS * float(lengths[edge].max(initial=0.0))
         if not field.steady:
-            return float(field.surface.cell_lengths[field.surface.cells].max(initial=0.0))
+            return max(float(lengths[cells].max(initial=0.0)), longest)
         flow, tangents = field.index_velocity.components[0], field.surface.tangents
         along = flow[..., :1] * tangents[0] + flow[..., 1:] * tangents[1]
         length = norm(along)[..., None]
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
-        corners = field.surface.cell_corners
         # A flow that leaves the plane of a triangle has another direction in it.
         mean = field.surface.in_cells(sum((along[at] for at in corners[1:]), along[corners[0]]))
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # A node at rest has no direction.
         cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
-        parting = np.min(cosines, axis=0) < AGREED
-        # Paths go over sharp edges out of the plane of a triangle.
-        at_edge = field.surface.at_edge
-        parting |= np.logical_or.reduce([at_edge[at] for at in corners])
-        parting &= field.surface.cells
-        return float(field.surface.cell_lengths[parting].max(initial=0.0))
+        parting = (np.min(cosines, axis=0) < AGREED) & cells
+        return max(float(lengths[parting].max(initial=0.0)), longest)
 
     def forget(self) -> None:
         """Drop data that are only needed to make layers."""

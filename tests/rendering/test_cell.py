@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from flows import gyre, lines, scattered_gyre, swinging
+from flows import across, gyre, lines, scattered_gyre, swinging
 from matrix import SIZE, straight
 from scipy.linalg import expm
 from triangle_meshes import random_plane, soup
@@ -130,3 +130,10 @@ def test_in_perspective_the_nearest_point_counts() -> None:
     assert not is_near(textures, settings, view)
     eye = np.append(middle + np.array([0.0, 0.0, 1.0]), 1.0)
     assert is_near(textures, settings, replace(view, eye=eye))
+
+
+def test_paths_stay_in_a_face_at_a_sharp_edge_from_farther_away() -> None:
+    textures, settings = Scene(across()).textures, Settings()
+    for cells, near in ((4, True), (40, False)):
+        view = ViewState(pixel=cells * 0.5 / (24 * 1.05))
+        assert is_near(textures, settings, view) == near

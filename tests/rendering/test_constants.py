@@ -44,6 +44,8 @@ def test_numbers_are_not_too_small_for_graphics_cards() -> None:
         assert ((number == 0) | (number >= least)).all(), name
 
 
-@pytest.mark.parametrize("name", ["AGREED", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"])
+@pytest.mark.parametrize(
+    "name", ["AGREED", "EDGE_CELLS", "HALF_MAX", "MOST_LAGS", "UNCERTAIN_LAYER"]
+)
 def test_textures_are_made_by_the_numbers_of_the_shaders(name: str) -> None:
     assert getattr(const, name) == getattr(texture_set, name)
