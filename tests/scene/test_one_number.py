@@ -154,6 +154,7 @@ def assert_in_picture(
     figure = Figure(figsize=(3, 2), dpi=60)
     canvas = FigureCanvasAgg(figure)
     ax: Any = figure.add_axes((0, 0, 1, 1), projection=crs)
+    ax.set_facecolor("#ff00ff")  # where there are no data
     look = {"scalars": "q", "cmap": "gray", "clim": limits, "strength": 0.0, "samples": 3}
     image = flowtex.axes(ax, drawn, time=time, **look)
     canvas.draw()
@@ -209,7 +210,8 @@ def test_datasets_fields_and_maps_have_one_number(seed: int) -> None:
             if got is None:
                 continue  # beyond the edge of the map
             wanted = [u, v, np.hypot(u, v), q]
-            assert numbers(got) == pytest.approx(wanted, rel=2e-3, abs=1e-3 * size)
+            # A column of the data that is nearly on the edge of a map is moved there.
+            assert numbers(got) == pytest.approx(wanted, rel=2e-3, abs=5e-3 * size)
     got = fields[0].at(lon, lat, time=time)
     if got is not None:
         assert_by_scene(fields[0], (lon, lat), time, probed=rng.uniform() < PROBED)
