@@ -51,13 +51,13 @@ def displacement() -> Any:
     return flowtex.trace(FIELD, lags=[0.5, 1.0]).displacement
 
 
-def screenshot(plotter: pv.Plotter) -> Any:
+def screenshot(plotter: Any) -> Any:
     plotter.render()
     return np.array(plotter.screenshot(return_img=True), dtype=int)
 
 
-def opened() -> pv.Plotter:
-    plotter = pv.Plotter(off_screen=True, window_size=[*SIZE])
+def opened() -> Any:
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[*SIZE])
     plotter.flowtex.add(FIELD, arrows=True)
     plotter.view_xy()
     plotter.show(auto_close=False)
@@ -72,7 +72,7 @@ def new_plotter() -> Any:
 
 
 @pytest.fixture(scope="module")
-def plotter() -> Iterator[pv.Plotter]:
+def plotter() -> Iterator[Any]:
     """A plotter that stays open."""
     plotter = opened()
     yield plotter
@@ -80,7 +80,7 @@ def plotter() -> Iterator[pv.Plotter]:
 
 
 @needs_forks
-def test_forked_process_draws_as_the_one_before(plotter: pv.Plotter) -> None:
+def test_forked_process_draws_as_the_one_before(plotter: Any) -> None:
     kinds: list[Callable[[], Any]] = [picture, page, displacement, new_plotter]
     shown = screenshot(plotter)
     expected = [work() for work in kinds]
@@ -92,7 +92,7 @@ def test_forked_process_draws_as_the_one_before(plotter: pv.Plotter) -> None:
 
 
 @needs_forks
-def test_process_forked_from_a_forked_one_draws_the_same(plotter: pv.Plotter) -> None:
+def test_process_forked_from_a_forked_one_draws_the_same(plotter: Any) -> None:
     def again() -> Any:
         screenshot(plotter)
         return forked(picture)
@@ -101,7 +101,7 @@ def test_process_forked_from_a_forked_one_draws_the_same(plotter: pv.Plotter) ->
 
 
 @needs_forks
-def test_open_plotter_is_drawn_in_forked_process(plotter: pv.Plotter) -> None:
+def test_open_plotter_is_drawn_in_forked_process(plotter: Any) -> None:
     def closer() -> Any:
         plotter.camera.zoom(2)
         return screenshot(plotter)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -286,6 +287,26 @@ def test_axes_tell_coordinates_or_a_length_beside_the_picture(client: ClientPage
     np.testing.assert_allclose(pixels, length * height, atol=0.1)
     page.get_by_label("Axes").select_option("none")
     assert page.locator(".axes > *").count() == 0
+
+
+@pytest.mark.parametrize("size", [(300, 160), (200, 170), (700, 200), (300, 279)])
+def test_flow_has_most_of_the_height_of_a_small_view(
+    client: ClientPage, size: tuple[int, int]
+) -> None:
+    values = Colours("speed", "m/s", gyre().speed, ColourScale(table()))
+    client.mount(scene(colours=values), size, smooth=False)
+    client.sharp()
+    picture = client.page.locator(".picture").bounding_box()
+    assert picture is not None and picture["height"] > 0.6 * size[1]
+    for name in (".legend", ".bar"):
+        place = client.page.locator(name).bounding_box()
+        assert place is not None
+        is_above = place["y"] + place["height"] <= picture["y"]
+        assert is_above or place["y"] >= picture["y"] + picture["height"]
+    ends = "(all) => all.map((each) => each.getBoundingClientRect()).map((r) => [r.left, r.right])"
+    ticks = client.page.locator(".legend .ticks span").evaluate_all(ends)
+    gaps = [right[0] - left[1] for left, right in pairwise(ticks)]
+    assert gaps and min(gaps) > 0
 
 
 def test_finer_pixels_show_the_same_grains(browser: Browser, client: ClientPage) -> None:

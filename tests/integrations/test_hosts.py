@@ -122,7 +122,9 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
     with served(host, tmp_path) as address:
         page.goto(address)
         if host == "notebook":
-            page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
+            # Notebook 7 has the state of the kernel in an element that it does not show.
+            idle = page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]")
+            idle.wait_for(state="attached")
             page.locator(".jp-CodeCell .cm-content").click()
             page.keyboard.press("Shift+Enter")
         place = page.frame_locator("iframe") if host in FRAMED else page

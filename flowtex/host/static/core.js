@@ -2001,6 +2001,29 @@ p: 5px; }
  none; } }
 :host(.flowtex-tiny) :is(.head, .kinds), :host(.flowtex-small:not(.flowtex-framed)) :is(.kinds, .legend) { display: none\
 ; }
+/* A small view leaves most of its height to the flow: the legend has its name beside it, and the bar one line. */
+:host(.flowtex-small.flowtex-framed) .top { height: 28px; padding-top: 0; }
+:host(.flowtex-small.flowtex-framed) .legend {
+  display: grid; grid-template-columns: minmax(0, max-content) 140px; column-gap: 10px; align-items: center;
+  flex: 0 1 auto; min-width: 140px; max-width: none;
+}
+:host(.flowtex-small.flowtex-framed) .legend[hidden] { display: none; }
+:host(.flowtex-small.flowtex-framed) .legend .name {
+  grid-row: span 2; width: auto; min-width: 0; margin: 0; overflow-wrap: normal; word-break: break-all; -webkit-line-cla\
+mp: 1;
+}
+:host(.flowtex-small.flowtex-framed) .ticks { margin-top: 1px; }
+:host(.flowtex-small.flowtex-framed) .bar {
+  flex-wrap: nowrap; margin: 1px auto; padding: 0; overflow-x: auto; justify-content: safe center; scrollbar-width: none\
+;
+}
+:host(.flowtex-small.flowtex-framed) .bar button { height: 26px; }
+:host(.flowtex-small.flowtex-framed) .track { order: 0; flex: 0 1 auto; }
+:host(.flowtex-small.flowtex-framed) .settings { bottom: 34px; max-height: calc(100% - 40px); }
+@container (max-width: 240px) {
+  :host(.flowtex-small.flowtex-framed) .legend { grid-template-columns: 140px; }
+  :host(.flowtex-small.flowtex-framed) .legend .name { display: none; }
+}
 :host(.flowtex-tiny) .legend { min-width: 0; max-width: 100%; }
 :host(.flowtex-tiny.flowtex-framed) .top { height: auto; }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
