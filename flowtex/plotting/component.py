@@ -29,6 +29,8 @@ from flowtex.textures.images import as_image
 
 COLOURS = "flowtex colours"  #: Name of the colours among the arrays of a mesh.
 WHOLE = ViewOptions()  #: A view of the whole surface.
+#: Bounds of the objects of renderers, by which their cameras clip.
+_bounds: WeakKeyDictionary[vtkRenderer, Any] = WeakKeyDictionary()
 
 
 @pv.register_plotter_component("flowtex")
@@ -236,17 +238,18 @@ def point_camera(
     renderer = plotter.renderer
     apply_camera(view.first_camera(surface, aspect_of(plotter), margin), plotter.camera)
     plotter.camera_set = True
-    bounds = renderer.ComputeVisiblePropBounds()
-
-    def follow_bounds(caller: vtkRenderer, _: str) -> None:
-        nonlocal bounds
-        new_bounds = caller.ComputeVisiblePropBounds()
-        if new_bounds != bounds:
-            caller.ResetCameraClippingRange()
-        bounds = new_bounds
-
     renderer.reset_camera_clipping_range()
-    renderer.AddObserver("StartEvent", follow_bounds)
+    if renderer not in _bounds:  # else it follows them already
+        renderer.AddObserver("StartEvent", _follow_bounds)
+    _bounds[renderer] = renderer.ComputeVisiblePropBounds()
+
+
+def _follow_bounds(renderer: vtkRenderer, _: str) -> None:
+    """Set the clipping range again before a frame if the bounds of the objects have changed."""
+    bounds = renderer.ComputeVisiblePropBounds()
+    if bounds != _bounds[renderer]:
+        renderer.ResetCameraClippingRange()
+    _bounds[renderer] = bounds
 
 
 def aspect_of(plotter: Any) -> float:

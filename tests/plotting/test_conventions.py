@@ -10,6 +10,7 @@ import pytest
 import pyvista as pv
 
 import flowtex
+from flowtex.plotting import component
 from flowtex.scene.scene import Scene
 
 pytestmark = [
@@ -84,3 +85,16 @@ def test_what_is_added_later_is_seen(plotter: Any) -> None:
     plotter.camera.clipping_range = near, far = 0.01, 77.0
     plotter.render()
     np.testing.assert_allclose(plotter.camera.clipping_range, (near, far))
+
+
+def test_a_frame_looks_at_the_bounds_once(plotter: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    field, frames = flowtex.examples.double_gyre_field(), []
+    monkeypatch.setattr(component, "_follow_bounds", lambda *_: frames.append(1))
+    for _ in range(3):
+        plotter.flowtex.add(field, samples=9, show_scalar_bar=False)
+        component.point_camera(plotter, field.surface)
+        plotter.flowtex.clear()
+    plotter.screenshot(return_img=True)
+    frames.clear()
+    plotter.render()
+    assert len(frames) == 1
