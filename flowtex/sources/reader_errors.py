@@ -50,7 +50,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             cause = error
         except MemoryError:
             cause = RuntimeError("its data do not fit into memory")
-        except (AttributeError, IndexError, TypeError, EOFError, OverflowError) as error:
+        except (AttributeError, IndexError, TypeError, EOFError, ArithmeticError) as error:
             # Readers fail so where parts of a broken file are missing, or sizes are absurd.
             cause = RuntimeError(f"its content is invalid ({error})")
         except Exception as error:

@@ -162,6 +162,18 @@ end_header
         FlowField.from_file(path)
 
 
+@pytest.mark.parametrize(
+    "corner", [b"10//1", b"1//10", b"0//1", b"-10//1", b"1/1/1", b"x", b"1000000"]
+)
+def test_obj_with_a_corner_out_of_range_is_refused(tmp_path: Path, corner: bytes) -> None:
+    path = written(tmp_path, "text.obj")
+    data = path.read_bytes()
+    begin = data.index(b"f ") + 2
+    path.write_bytes(data[:begin] + corner + data[data.index(b" ", begin) :])
+    with pytest.raises(FieldError, match="but there are 9 points, 0 texture coordinates and 9 nor"):
+        FlowField.from_file(path)
+
+
 @pytest.mark.filterwarnings("ignore:.*of the flow is normal:flowtex.errors.Notice")
 def test_ply_of_faces_with_different_corners_is_read(tmp_path: Path) -> None:
     path = tmp_path / "flow.ply"
@@ -184,6 +196,16 @@ def test_polyhedra_with_a_corner_out_of_range_are_refused() -> None:
     mesh.GetPolyhedronFaces().GetConnectivityArray().SetValue(2, 99)
     with pytest.raises(FieldError, match="refer to points 0 to 99, but there are 12"):
         FlowField.from_pyvista(mesh)
+
+
+@pytest.mark.parametrize("count", [-1, 0, 3, 5, 10**6])
+def test_legacy_polyhedra_with_wrong_counts_are_refused(tmp_path: Path, count: int) -> None:
+    path = written(tmp_path, "polyhedra-text.vtk")
+    data = path.read_bytes()
+    begin = data.index(b"\n6 4 ", data.index(b"CONNECTIVITY")) + 3
+    path.write_bytes(data[:begin] + str(count).encode() + data[begin + 1 :])
+    with pytest.raises(FieldError, match="faces of polyhedron 0 do not match their counts"):
+        FlowField.from_file(path)
 
 
 def test_a_cell_too_short_for_its_type_is_refused() -> None:

@@ -295,6 +295,19 @@ def test_a_zarr_of_any_size_at_a_url_is_refused(tmp_path: Path) -> None:
         open_store(server.address + "flow.zarr")
 
 
+@pytest.mark.parametrize("version", [2, 3])
+def test_zarr_with_chunks_of_nothing_is_refused_as_a_source(tmp_path: Path, version: int) -> None:
+    path = tmp_path / "flow.zarr"
+    zarr_of_a_size(path, version)
+    for file in (*path.rglob("zarr.json"), *path.rglob(".z*")):
+        text = file.read_text().replace(" ", "").replace("\n", "")
+        for key in ('"chunks":[6,9]', '"chunk_shape":[6,9]'):
+            text = text.replace(key, key.replace("6", "0"))
+        file.write_text(text)
+    with pytest.raises(FieldError, match="its content is invalid"):
+        FlowField.from_file(path)
+
+
 def test_zarr_of_an_impossible_shape_is_refused_as_a_source(tmp_path: Path) -> None:
     zarr_of_a_size(tmp_path / "flow.zarr", 2)
     file = tmp_path / "flow.zarr" / ".zmetadata"

@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
+from flowtex.sources.inspection.obj_files import check_obj
 from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy
@@ -119,6 +120,8 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
         check_vtk_legacy(data)
     if suffix == ".ply":
         check_ply(data)
+    if suffix == ".obj":
+        check_obj(data)
     if suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head):
         return tuple(vtk_files.check_vtk_xml(path, data, is_piece=is_piece))
     return ()

@@ -12,6 +12,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from flowtex._util.array_types import Indices
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.vtk_files import WORD, Data, count_numbers
 from flowtex.sources.reader_errors import check_count, check_memory
@@ -24,6 +25,10 @@ TYPES = {
     **dict.fromkeys((b"vtkidtype", b"unsigned_int", b"int", b"float"), 4),
     **dict.fromkeys((b"unsigned_long", b"long", b"vtktypeint64", b"vtktypeuint64", b"double"), 8),
 }
+#: Types of whole numbers of eight bytes.
+WIDE = (b"vtktypeint64", b"vtktypeuint64", b"long", b"unsigned_long")
+#: Number of the type of polyhedra.
+POLYHEDRON = 42
 #: Components of attributes whose keyword is followed by a name and a type.
 COMPONENTS = {b"vectors": 3, b"normals": 3, b"tensors6": 6, b"tensors": 9}
 COMPONENTS |= dict.fromkeys((b"global_ids", b"pedigree_ids", b"edge_flags"), 1)
@@ -60,6 +65,8 @@ class _Legacy:
         self.total = 0
         #: Begin and end of the values of the last array.
         self._place = 0, 0
+        #: Places and types of the offsets and the connectivity of cells.
+        self._lists: list[tuple[tuple[int, int], bytes]] = []
         while word := self._word().lower():
             self._section(word)
 
@@ -124,6 +131,7 @@ class _Legacy:
                     self._field_array()
             case b"cell_types":
                 self._array(keyword, b"int", self._count(keyword), 1)
+                self._check_polyhedra(self._integers(b"int"))
             case b"lookup_table":
                 name = keyword + b" " + self._word()
                 self._array(name, byte, self._count(keyword), 4)
@@ -156,22 +164,16 @@ class _Legacy:
             return
         for count in (first, second) if first else ():
             name = self._word()
-            self._array(word + b" " + name, self._word(), count, 1)
+            kind = self._word()
+            self._array(word + b" " + name, kind, count, 1)
+            self._lists.append((self._place, kind))
 
     def _check_sizes(self, label: str, cells: int) -> None:
         """Raise a FieldError if the sizes of cells, before the points of each, are wrong.
 
         VTK would read outside of its memory.
         """
-        begin, end = self._place
-        text = self._data[begin:end]
-        if self._binary:
-            numbers = np.frombuffer(text, ">i4")
-        else:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", DeprecationWarning)  # the rest is no number
-                numbers = np.fromstring(text, np.int64, sep=" ")
-        view = memoryview(numbers.astype(np.int64).data)
+        view = memoryview(self._integers(b"int").data)
         at = 0
         found = 0
         while at < len(view):
@@ -185,6 +187,44 @@ class _Legacy:
                 f"the file is damaged: the sizes of {label} do not add up to {cells:,} cells of "
                 f"{len(view):,} numbers; write or copy it again"
             )
+
+    def _integers(self, kind: bytes) -> Indices:
+        """Return the values of the last array, whole numbers."""
+        begin, end = self._place
+        text = self._data[begin:end]
+        if self._binary:
+            size = 4
+            if kind.lower() in WIDE:
+                size = 8
+            return np.frombuffer(text[: len(text) // size * size], f">i{size}").astype(np.int64)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # the rest is no number
+            return np.fromstring(text, np.int64, sep=" ")
+
+    def _check_polyhedra(self, types: Indices) -> None:
+        """Raise a FieldError for polyhedra whose faces do not fill their part of the connectivity.
+
+        Each has the number of its faces, and before the points of a face their number. VTK would
+        read on for minutes, or outside of its memory.
+        """
+        if len(self._lists) != 2 or POLYHEDRON not in types:
+            return
+        arrays: list[Indices] = []
+        for place, kind in self._lists:
+            self._place = place
+            arrays.append(self._integers(kind))
+        offsets, connectivity = arrays
+        for number in np.flatnonzero(types == POLYHEDRON):
+            if number + 1 >= len(offsets):
+                raise _polyhedron_fault(int(number))
+            faces = connectivity[offsets[number] : offsets[number + 1]].tolist()
+            at = 1
+            found = 0
+            while 0 < at < len(faces) and faces[at] >= 0:
+                at += faces[at] + 1
+                found += 1
+            if at != len(faces) or found != faces[0]:
+                raise _polyhedron_fault(int(number))
 
     def _field_array(self) -> None:
         name = self._word()
@@ -252,6 +292,13 @@ class _Legacy:
             if line.lower().startswith(b"component_names"):
                 for _ in range(components):
                     self._line()
+
+
+def _polyhedron_fault(number: int) -> FieldError:
+    return FieldError(
+        f"the file is damaged: the faces of polyhedron {number:,} do not match their counts; write "
+        "or copy it again"
+    )
 
 
 def _refuse(word: bytes, expected: str) -> NoReturn:
