@@ -19,6 +19,8 @@ import { trame, vue, type Emit } from "./vue.ts";
 /** Milliseconds between two messages to the server, while it draws and while it does not. */
 const DRAWN_MS = 33;
 const MESSAGE_MS = 100;
+/** Milliseconds in which the scene arrives that replaces one whose parts the server has withdrawn. */
+const SUCCESSOR_MS = 1500;
 /** Pixels between two panes of a picture. */
 const GAP_PX = 2;
 const STREAM = "trame.rca.topic.stream";
@@ -229,7 +231,19 @@ class TrameView {
 
   private load(n: number) {
     const address = () => this.scenes[n]?.parts ?? "";
-    return loadFiles(address, (file) => this.client?.partsOfFile(file) ?? []);
+    const load = loadFiles(address, (file) => this.client?.partsOfFile(file) ?? []);
+    return async (...request: Parameters<typeof load>) => {
+      const asked = address();
+      try {
+        return await load(...request);
+      } catch (error) {
+        if (!request[1].length) throw error;
+        // The server has withdrawn the parts of a scene whose successor is on its way.
+        await new Promise((resolve) => setTimeout(resolve, asked === address() ? SUCCESSOR_MS : 0));
+        if (asked === address()) throw error;
+        return [];
+      }
+    };
   }
 
   private reader(n: number): Reader {

@@ -17,12 +17,12 @@ b),"<=":(a,b)=>+(a<=b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*
 min(a,b),max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 \
 sqrt abs sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function loadFiles(address,partsOfFile){return async(key,steps,signal,_has,whole="whole")=>{let name=address()+[String(key??
 whole),...steps].join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);
-return partsOfFile(await answer.arrayBuffer())}}var page=()=>window,vue=()=>page().Vue,trame=()=>page().trame;var DRAWN_MS=33,MESSAGE_MS=100,GAP_PX=2,STREAM="trame.rca.topic.stream",session=()=>trame().client.getConnection().getSession(),
-SOFTWARE=/swiftshader|llvmpipe|softpipe|software|basic render/i,CHOICE="flowtex painter";function bestPainter(){let gl=document.
-createElement("canvas").getContext("webgl2");if(!gl||!drawsFloats(gl))return"server";let name=gl.getExtension("WEBGL_deb\
-ug_renderer_info")?.UNMASKED_RENDERER_WEBGL??gl.RENDERER;return SOFTWARE.test(String(gl.getParameter(name)))?"server":"b\
-rowser"}function chosen(painter){try{return painter&&sessionStorage.setItem(CHOICE,painter),sessionStorage.getItem(CHOICE)}catch{
-return painter??null}}var TrameView=class{props;emit;element;name=Math.random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="\
+return partsOfFile(await answer.arrayBuffer())}}var page=()=>window,vue=()=>page().Vue,trame=()=>page().trame;var DRAWN_MS=33,MESSAGE_MS=100,SUCCESSOR_MS=1500,GAP_PX=2,STREAM="trame.rca.topic.stream",session=()=>trame().client.getConnection().
+getSession(),SOFTWARE=/swiftshader|llvmpipe|softpipe|software|basic render/i,CHOICE="flowtex painter";function bestPainter(){
+let gl=document.createElement("canvas").getContext("webgl2");if(!gl||!drawsFloats(gl))return"server";let name=gl.getExtension(
+"WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL??gl.RENDERER;return SOFTWARE.test(String(gl.getParameter(name)))?"\
+server":"browser"}function chosen(painter){try{return painter&&sessionStorage.setItem(CHOICE,painter),sessionStorage.getItem(
+CHOICE)}catch{return painter??null}}var TrameView=class{props;emit;element;name=Math.random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="\
 browser";scenes=[];loaded=[];area="";size="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(()=>this.
 resize());constructor(props,emit,element){this.props=props,this.emit=emit,this.element=element;let listener=event=>this.
 view&&forwardKeys(this.view.first.root,event);document.addEventListener("keydown",listener,{signal:this.ended.signal})}async paint(painter){
@@ -49,7 +49,9 @@ lours":void 0;viewer.setHeader(scenes[n].header);try{let parts=await loads[n](nu
 scenes)return;name||viewer.keepParts(parts.map(part=>part.name));for(let part of parts)viewer.setPart(part);this.loaded[n]=
 generation}catch(error){this.scenes===scenes&&viewer.panel.fail("The flow could not be loaded.",String(error))}this.painter===
 "server"&&viewer.sharp&&(this.size=""),viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled),
-this.resize()}load(n){return loadFiles(()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){
+this.resize()}load(n){let address=()=>this.scenes[n]?.parts??"",load=loadFiles(address,file=>this.client?.partsOfFile(file)??
+[]);return async(...request)=>{let asked=address();try{return await load(...request)}catch(error){if(!request[1].length||
+(await new Promise(resolve=>setTimeout(resolve,asked===address()?SUCCESSOR_MS:0)),asked===address()))throw error;return[]}}}reader(n){
 return(at,path)=>{let time=this.view?.viewers[n]?.player.time;return trame().trigger(this.props.read,[n,{...at,path,time}])}}resize(){
 let{view,area}=this;if(!view?.viewers.length||!area)return;view.first.resize();let{width,height}=view.first.canvas,count=view.
 viewers.length,size={w:count*width+(count-1)*GAP_PX,h:height,p:1},text=JSON.stringify(size);text!==this.size&&(this.size=
