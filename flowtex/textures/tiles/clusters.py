@@ -109,27 +109,19 @@ class Clusters:
 
     def coarser(self) -> Clusters:
         """Return the next level, without triangles if all are smaller than the bins."""
-        together = self._compact(self._bins())[self.places]
-        corners, cells = _once(together[self.triangles])
-        # Each face has its own nodes.
-        faces = int(self.face.max(initial=0)) + 1
-        kinds, cluster = np.unique(together * faces + self.face, return_inverse=True)
-        face = self.face[self.triangles[cells, :1]]
-        corners = np.searchsorted(kinds, corners * faces + face)
-        used = np.zeros(len(kinds), dtype=bool)
-        used[corners] = True
-        count, fresh = int(used.sum()), np.where(used, np.cumsum(used) - 1, -1)
-        cluster, corners = fresh[cluster], fresh[corners]
-        _, first, at = np.unique(kinds[used] // faces, return_index=True, return_inverse=True)
+        cluster, corners, cells, bins = self._faced()
+        count = len(bins)
+        _, first, at = np.unique(bins, return_index=True, return_inverse=True)
         places = first[at]
         number = np.where(self.number >= 0, cluster[self.number], -1)
         kept = cluster >= 0
         sides, border = np.zeros(count), np.zeros(count, dtype=bool)
-        part, edge = np.zeros((2, count), dtype=np.intp)
+        part, edge, face = np.zeros((3, count), dtype=np.intp)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
         part[cluster[kept]] = self.part[kept]
         edge[cluster[kept]] = self.edge[kept]
+        face[cluster[kept]] = self.face[kept]
         normals = sums_at(places[cluster[kept]], self.normals[kept], count)[places]
         field = _averaged(self.whole, number, places, corners)
         kept = _untangled(field.points[0], corners, normals, border)
@@ -145,12 +137,29 @@ class Clusters:
             number=number,
             sides=sides,
             places=places,
-            face=kinds[used] % faces,
+            face=face,
             edge=edge,
             border=border,
             normals=normals,
             part=part,
         )
+
+    def _faced(self) -> tuple[Indices, Indices, Indices, Indices]:
+        """Return the nodes of the next level, with one for each face of a bin.
+
+        These are the node for each one here, (n,), or -1; corners of triangles (m, 3) and their
+        numbers here, (m,); and the bin of each node of the next level.
+        """
+        together = self._compact(self._bins())[self.places]
+        corners, cells = _once(together[self.triangles])
+        faces = int(self.face.max(initial=0)) + 1
+        kinds, cluster = np.unique(together * faces + self.face, return_inverse=True)
+        face = self.face[self.triangles[cells, :1]]
+        corners = np.searchsorted(kinds, corners * faces + face)
+        used = np.zeros(len(kinds), dtype=bool)
+        used[corners] = True
+        fresh = np.where(used, np.cumsum(used) - 1, -1)
+        return fresh[cluster], fresh[corners], cells, kinds[used] // faces
 
     def _bins(self) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""
