@@ -55,6 +55,7 @@ def reprojected(field: FlowField, name: str) -> FlowField:
 
 def _of_grid(field: FlowField, name: str) -> FlowField:
     lon, lat = _lonlat(field)
+    lon = _with_meridians(lon, lat)
     lines = _lines(lon, lat)
     columns = np.arange(lon.shape[1])
     rows = np.arange(lon.shape[0])
@@ -200,6 +201,21 @@ def _lonlat(field: FlowField) -> tuple[Floats, Floats]:
     if field.has_position is not None:
         points = np.where(field.has_position[..., None], points, np.nan)
     return _map_of(field).lonlat(points)
+
+
+def _with_meridians(lon: Floats, lat: Floats) -> Floats:
+    """Return longitudes (J, I) where nodes at a pole have those of the nodes beside them.
+
+    A map on which a pole is one point does not tell them.
+    """
+    at_pole = np.abs(lat) > POLE_LATITUDE
+    result = lon.copy()
+    for step, border in ((1, 0), (-1, -1)):
+        beside = np.roll(lon, step, axis=0)
+        is_known = ~np.roll(at_pole, step, axis=0) & np.isfinite(beside)
+        is_known[border] = False
+        result = np.where(at_pole & is_known, beside, result)
+    return result
 
 
 def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
