@@ -162,6 +162,10 @@ import atexit, sys, threading
 sys.path.insert(0, sys.argv[1])
 from test_processes import opened, page, picture
 
+def draw_on():
+    while True:
+        picture()
+
 def last():
     print(picture().shape, len(page()) > 10_000, flush=True)
 
@@ -171,6 +175,8 @@ plotter.camera.zoom(8)
 next(iter(plotter.flowtex)).surface.load_in_background(lambda: None)
 plotter.render()
 threading.Thread(target=picture).start()
+picture()
+threading.Thread(target=draw_on, daemon=True).start()
 """
 
 

@@ -16,6 +16,7 @@ from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.component import WHOLE, open_plotter, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
+from flowtex.rendering.vtk.contexts import uninterrupted
 from flowtex.scene.annotations import Layout, annotate_views
 from flowtex.scene.fields import TracedFlow
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -98,8 +99,11 @@ class OffscreenPlotter:
                 handle.time = time
             handle.clock = clock
         self._plotter.suppress_rendering = False
-        self._plotter.render()
-        image: Any = self._plotter.screenshot(return_img=True, transparent_background=transparent)
+        with uninterrupted():
+            self._plotter.render()
+            image: Any = self._plotter.screenshot(
+                return_img=True, transparent_background=transparent
+            )
         pixels = np.asarray(image[..., : 4 if transparent else 3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():

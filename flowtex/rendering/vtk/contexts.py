@@ -8,15 +8,17 @@ windows on a screen, remain; a forked process that inherits one cannot draw.
 
 from __future__ import annotations
 
+import atexit
 import threading
 import weakref
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pyvista as pv
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
 
-from flowtex._util.forks import call_at_fork
+from flowtex._util.forks import call_at_fork, renew_after_fork
 from flowtex.rendering.diagnostics import OpenGLMissingError
 
 #: Threads that drew the last frames of windows.
@@ -73,6 +75,65 @@ def _keep_inherited() -> None:
         if plotter.render_window in _inherited:
             plotter.ren_win = None
             plotter._closed = True
+
+
+#: Longest wait in seconds for frames of other threads when the interpreter ends.
+ENDING_S = 10.0
+
+
+class _Frames:
+    """The threads that draw frames, and the thread that ends the interpreter."""
+
+    def __init__(self) -> None:
+        self._drawing: set[int] = set()
+        self._last: int | None = None
+        self.renew()
+        renew_after_fork(self)
+
+    def renew(self) -> None:
+        """Forget the frames of threads that a forked process does not have."""
+        self._changed = threading.Condition()
+        self._drawing &= {threading.get_ident()}
+
+    def begin(self) -> bool:
+        """Wait, at the end of the interpreter for ever; return whether no frame surrounds it."""
+        own = threading.get_ident()
+        with self._changed:
+            self._changed.wait_for(lambda: self._last in (None, own))
+            is_outermost = own not in self._drawing
+            self._drawing.add(own)
+        return is_outermost
+
+    def end(self) -> None:
+        """Tell that this thread draws no longer."""
+        with self._changed:
+            self._drawing.discard(threading.get_ident())
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Wait for the frames of other threads, and let no further one begin."""
+        own = threading.get_ident()
+        with self._changed:
+            self._last = own
+            self._changed.wait_for(lambda: self._drawing <= {own}, ENDING_S)
+
+
+_frames = _Frames()
+atexit.register(_frames.close)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Draw a frame before the interpreter ends, or never: VTK aborts a process that ends amid one.
+
+    Daemon threads may still draw then. Their frames are waited for, and further ones do not begin.
+    """
+    is_outermost = _frames.begin()
+    try:
+        yield
+    finally:
+        if is_outermost:
+            _frames.end()
 
 
 call_at_fork(before=_free_contexts, after=_keep_inherited)
