@@ -40,7 +40,7 @@ coverage: $(VENV)/.ready-test ## measure the coverage of flowtex/ and client/src
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/coverage.sh $(BIN) $(PYTEST_ARGS)
 
-fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
+fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, states, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis -o faulthandler_timeout=0 $(PYTEST_ARGS)
 
 integrations: $(VENV)-integrations/.ready ## show a flow in hosts such as Notebook 7, Panel and MyST, and results of other libraries, in a separate environment
