@@ -118,7 +118,7 @@ export class Viewer extends SceneView {
     this.requests.stop();
     const old = this.header;
     const isSame = old?.generation !== undefined && old.generation === header.generation;
-    if (isSame) return this.recolour(coloursOf(header));
+    if (isSame) return this.takeDifferences(old, header);
     if (old) this.holdDraft(STEADY_MS);
     this.given = header;
     header = { ...header, ...this.grounded(header) };
@@ -143,6 +143,16 @@ export class Viewer extends SceneView {
     this.panel.build();
     this.resize(); // at once, so that no picture is drawn in the size without the bar
     this.change();
+  }
+
+  /** Follow a header of the same arrays, which may have other colours, and another view beside it. */
+  private takeDifferences(old: Header, header: Header): void {
+    const { differs, own, timeShift, name, settings } = header;
+    const names = Object.keys({ ...old.own, ...own });
+    Object.assign(old, { differs, own, timeShift, name });
+    this.recolour(coloursOf(header));
+    this.setSettings(Object.fromEntries(names.map((each) => [each, own?.[each] ?? settings[each]])));
+    this.panel.update();
   }
 
   /** Remove the time-independent parts of the previous scene that are not among these names. */

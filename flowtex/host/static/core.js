@@ -2188,29 +2188,31 @@ users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,fr
 playing=!1,super.dispose(),this.canvas.width=this.canvas.height=0,this.root.remove()}setHeader(header,keepsCamera=!1){if(header.
 format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
 panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
-generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
+generation!==void 0&&old.generation===header.generation)return this.takeDifferences(old,header);old&&this.holdDraft(STEADY_MS),
 this.given=header,header={...header,...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.
 own},this.player.setHeader(header),this.requests.setHeader(header),this.painter.open?.(header);let isElsewhere=!old||old.
 place!==header.place||!isSamePlace(old.geometry,header.geometry);old&&!isEqual2(placeOf2(old),placeOf2(header))&&(isElsewhere||
 !this.options.reader)&&this.card.close(),isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,
 this.camera]=[this.keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&
 !keepsCamera||name.includes("/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),
-this.change()}keepParts(names){for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.
-remove(name),this.scene?.forget(name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.
-assign(this.header,colours),this.fitColours(),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.
-recolour(colours),this.panel.showLegend(),this.change()}fitColours(){this.header&&this.requests.fit()&&Object.assign(this.
-header,recoloured(this.header,{},this.parts).colours)}grounded(colours){return this.page.update(),colours.background===void 0?
-colours:(this.isOnPage=colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
-let isOther=super.setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].includes(part.name)&&this.panel.showLegend(),
-isOther}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
-this.settings,settings),this.requests.follow(this.settings)&&(this.recolour({}),this.renew(),this.card.update()),this.panel.
-update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.test(name)),this.
-requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.
-setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
-name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):
-null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
+this.change()}takeDifferences(old,header){let{differs,own,timeShift,name,settings}=header,names=Object.keys({...old.own,
+...own});Object.assign(old,{differs,own,timeShift,name}),this.recolour(coloursOf(header)),this.setSettings(Object.fromEntries(
+names.map(each=>[each,own?.[each]??settings[each]]))),this.panel.update()}keepParts(names){for(let name of[...this.parts.
+keys()])name.includes("/")||names.includes(name)||(this.held.remove(name),this.scene?.forget(name))}recolour(changes){if(!this.
+header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),this.fitColours(),Object.assign(this.
+given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}fitColours(){
+this.header&&this.requests.fit()&&Object.assign(this.header,recoloured(this.header,{},this.parts).colours)}grounded(colours){
+return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.background===null,{...colours,background:colours.
+background??this.page.colour})}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
+together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
+part),viewer.recolour(colours)}}setPart(part){let isOther=super.setPart(part);return isOther&&["cmap","maps",...EARTH_LINES].
+includes(part.name)&&this.panel.showLegend(),isOther}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.requests.follow(this.settings)&&(this.recolour({}),
+this.renew(),this.card.update()),this.panel.update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices|nullclines)\//.
+test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.
+own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
+onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(
+state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
 this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
 change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
 this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
