@@ -121,7 +121,8 @@ class Shown:
 
     def try_to(self, change: Callable[[], None], **wanted: Any) -> bool:
         """Make a change, which a scene raises an error for if a new one does; return whether."""
-        state = {"name": self.name, "look": self.look, "settings": self.settings} | wanted
+        state: dict[str, Any] = {"name": self.name, "look": self.look, "settings": self.settings}
+        state |= wanted
         new = refusal(lambda: self.scene(**state))
         assert refusal(change) == new
         if new is None:
