@@ -2,6 +2,7 @@
 
 import { type Camera, pointInPlane, projection } from "./camera.ts";
 import type { Graphics } from "./context.ts";
+import { GROUND, missingColour } from "./ground.ts";
 import { positions } from "./mesh.ts";
 import { type Earth, EARTH_LINES, type EarthLines, type Header, type Part } from "./protocol.ts";
 import { add, clamp, cross, dot, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
@@ -157,7 +158,7 @@ export class EarthLayer {
   /** Drop what was made of a part that has changed. */
   forget(name: string): void {
     this.version += 1;
-    this.drop(name === "position" ? "land" : name);
+    for (const each of name === "position" ? GROUND : [name]) this.drop(each);
   }
 
   dispose(): void {
@@ -228,43 +229,66 @@ export class EarthLayer {
     gl.disable(gl.BLEND);
   }
 
-  /** Whether the program of the lines is ready, where there are any; asks for it. */
+  /** Whether the programs of ground and lines are ready, where there are any; asks for them. */
   get isReady(): boolean {
     const { lineVertex, lineFragment } = this.header.shaders;
+    const { earth } = this.header;
+    if (earth?.land) {
+      if (earth.map === null && earth.below && !this.groundProgram("FLOWTEX_GLOBE").ready) return false;
+      if (this.hasCells && !this.groundProgram(...this.roundness).ready) return false;
+    }
     return !this.lines.length || this.graphics.programs.get(lineVertex, lineFragment).ready;
+  }
+
+  private groundProgram(...defines: string[]) {
+    const { groundVertex, groundFragment } = this.header.shaders;
+    return this.graphics.programs.get(groundVertex, groundFragment, ...defines);
+  }
+
+  private get hasCells(): boolean {
+    return GROUND.some((name) => this.parts.has(name));
+  }
+
+  /** What the program of cells needs on a globe. */
+  private get roundness(): string[] {
+    return this.header.earth?.map === null ? ["FLOWTEX_ROUND"] : [];
   }
 
   /** Draw what lies below the flow, into a picture without it. */
   drawGround({ camera, anchor }: EarthView): void {
     const { header, graphics } = this;
-    const { earth, shaders, geometry } = header;
+    const { earth, geometry } = header;
     if (!earth?.land) return;
     const globe = earth.map === null;
-    if (!(globe ? earth.below : this.parts.has("land"))) return;
+    const cells = GROUND.filter((name) => this.parts.has(name));
     const gl = graphics.context;
-    const defines = globe ? ["FLOWTEX_GLOBE"] : [];
-    const program = graphics.programs.get(shaders.groundVertex, shaders.groundFragment, ...defines);
-    if (!program.ready) return;
-    graphics.programs.use(program, {
+    const common = {
       u_matrix: projection(geometry, camera, anchor),
-      u_colour: earth.land,
       u_ground: header.background ?? [1, 1, 1],
       u_lit: header.lighting,
       u_toEye: toFrame(geometry.frame, scale(camera.axes[2], -1)),
-      ...(globe ? this.disc(camera, earth.radius, anchor) : {}),
-    });
-    if (globe) {
-      const drawn = this.take("disc", anchor, () => this.emptyArray());
-      gl.bindVertexArray(drawn.array);
+    };
+    const missing = missingColour(header);
+    if (globe && earth.below) {
+      const program = this.groundProgram("FLOWTEX_GLOBE");
+      if (!program.ready) return;
+      graphics.programs.use(program, { ...common, u_colour: missing, ...this.disc(camera, earth.radius, anchor) });
+      gl.bindVertexArray(this.take("disc", anchor, () => this.emptyArray()).array);
       gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
-    } else {
-      const drawn = this.take("land", anchor, () => this.landOf(anchor));
-      gl.bindVertexArray(drawn.array);
-      // The flow lies in the same plane.
-      gl.depthMask(false);
-      gl.drawElements(gl.TRIANGLES, drawn.count, gl.UNSIGNED_INT, 0);
-      gl.depthMask(true);
     }
+    const program = this.groundProgram(...this.roundness);
+    if (!cells.length || !program.ready) return gl.bindVertexArray(null);
+    // The flow lies in the same plane.
+    gl.depthMask(false);
+    for (const name of cells) {
+      const colour = name === "land" ? earth.land : missing;
+      const middle = subtract(toFrame(geometry.frame, scale(geometry.center, -1)), anchor);
+      graphics.programs.use(program, { ...common, u_colour: colour, ...(globe && { u_middle: middle }) });
+      const drawn = this.take(name, anchor, () => this.cellsOf(name, anchor));
+      gl.bindVertexArray(drawn.array);
+      gl.drawElements(gl.TRIANGLES, drawn.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.depthMask(true);
     gl.bindVertexArray(null);
   }
 
@@ -343,9 +367,9 @@ export class EarthLayer {
     return drawn;
   }
 
-  private landOf(anchor: Vector): Drawn {
+  private cellsOf(name: string, anchor: Vector): Drawn {
     const gl = this.graphics.context;
-    const cells = this.parts.get("land");
+    const cells = this.parts.get(name);
     const nodes = this.parts.get("position");
     const drawn = this.emptyArray();
     if (!cells || !nodes) return drawn;

@@ -53,7 +53,7 @@ export class Legend {
   }
 
   showKinds(kinds: Kinds): void {
-    const names = kinds.map(({ name }) => name).join();
+    const names = kinds.map(({ name, color }) => `${name} ${color}`).join();
     if (names === this.shownKinds) return;
     this.shownKinds = names;
     this.kinds.hidden = !names;

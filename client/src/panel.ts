@@ -5,6 +5,7 @@ import { ColourControls } from "./colourcontrols.ts";
 import { Controls, hasStreaming } from "./controls.ts";
 import { dom, icon, numberText, pictureOf, withUnit, type IconName } from "./dom.ts";
 import { Focus } from "./focus.ts";
+import { groundKinds } from "./ground.ts";
 import { Help, helpButton } from "./help.ts";
 import { HELP_KEY, toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
@@ -258,7 +259,9 @@ export class Panel {
 
   /** Show which kinds of critical points are marked. */
   showKinds(kinds: StructureHeader["kinds"]): void {
-    this.legend.showKinds(kinds);
+    const { header, parts } = this.viewer;
+    const ground = header ? groundKinds(header, (name) => parts.has(name)) : [];
+    this.legend.showKinds([...kinds, ...ground]);
   }
 
   /** Show the point under the pointer, or its longitude and latitude if it has no data. */

@@ -123,6 +123,8 @@ export interface Earth extends Record<EarthLines, boolean> {
   /** Least x and y of a flat map and the greatest, between which the part "lonlat" is spread; null for a globe. */
   map: number[] | null;
   land: number[] | null;
+  /** Share of black or white in the colour of places without data at sea; the rest is the background. */
+  missingShare: number;
   /** Height of a view in which lines have their width, and how that changes with it at most. */
   usualHeight: number;
   widthRange: [number, number];

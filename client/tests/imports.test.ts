@@ -12,7 +12,7 @@ const LAYERS = [
   "camera focus help",
   "protocol",
   "uniforms quality",
-  "poles programs mesh lonlat meshlevels tilechoice arrowseeds player colours legend mercator",
+  "poles programs mesh lonlat meshlevels tilechoice arrowseeds player colours ground legend mercator",
   "fixedpoints ranges",
   "formula",
   "tracer sources/source",

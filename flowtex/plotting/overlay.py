@@ -17,7 +17,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkCamera
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.rendering.camera import read_camera
@@ -28,8 +28,9 @@ from flowtex.rendering.map_overlay import (
     USUAL_HEIGHT_PX,
     WIDTH_RANGE,
     globe_radius,
-    land_cells,
+    ground_cells,
     map_lines,
+    missing_colour,
 )
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface
@@ -197,6 +198,7 @@ class MapOverlay(Overlay):
             self._field = scene.whole
             self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._clear()
+        self._missing: list[pv.Actor] = []
         self._scene, self._radius, appearance = scene, None, scene.appearance
         if scene.field.projection is None:
             return
@@ -221,34 +223,51 @@ class MapOverlay(Overlay):
         return self._lines[option, has_globe]
 
     def _add_land(self, color: Any) -> None:
-        """Draw cells without data, and the globe where the field does not cover it."""
-        is_lit = self._scene.is_lit
-        meshes = []
+        """Draw land and cells without data, and the globe where the field does not cover it."""
+        meshes: list[tuple[pv.PolyData, float, Any]] = []
         # Behind a transparent flow there is the background instead of land.
         tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
-        if (land := land_cells(self._field, tiled=tiled)).any():
-            faces = self._field.surface.nodes_of(land)
-            points, numbers = np.unique(faces, return_inverse=True)
-            places: Any = self._field.surface.points.reshape(-1, 3)[points]
-            mesh = pv.PolyData.from_regular_faces(places, numbers.reshape(faces.shape))
-            meshes.append((mesh, -LAND_FARTHER))
+        ground = ground_cells(self._field, tiled=tiled)
+        if ground.land.any():
+            meshes.append((self._mesh_of(ground.land), -LAND_FARTHER, color))
+        if ground.missing.any():
+            meshes.append((self._mesh_of(ground.missing), -LAND_FARTHER, None))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
             around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
             globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
-            meshes.append((globe, 0.0))
-        for mesh, nearer in meshes:
+            meshes.append((globe, 0.0, None))
+        for mesh, nearer, own_color in meshes:
             if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(
                     mesh.points, axis=1, keepdims=True
                 )
             actor = self._add(mesh, nearer)
-            actor.prop.color, actor.prop.lighting = color, is_lit
-            if is_lit:
-                actor.prop.ambient, actor.prop.diffuse = const.AMBIENT_LIGHT, const.DIFFUSE_LIGHT
+            self._colour_ground(actor, own_color)
+
+    def _mesh_of(self, cells: Bools) -> pv.PolyData:
+        faces = self._field.surface.nodes_of(cells)
+        points, numbers = np.unique(faces, return_inverse=True)
+        places: Any = self._field.surface.points.reshape(-1, 3)[points]
+        return pv.PolyData.from_regular_faces(places, numbers.reshape(faces.shape))
+
+    def _colour_ground(self, actor: pv.Actor, color: Any) -> None:
+        """Give ground its colour and light; without a colour it follows the background."""
+        is_lit = self._scene.is_lit
+        actor.prop.lighting = is_lit
+        if color is None:
+            self._missing.append(actor)
+        else:
+            actor.prop.color = color
+        if is_lit:
+            actor.prop.ambient = const.AMBIENT_LIGHT
+            actor.prop.diffuse = const.DIFFUSE_LIGHT
 
     def _before_frame(self) -> None:
         renderer, radius = self._renderer(), self._radius
+        if renderer is not None:
+            for actor in self._missing:
+                actor.prop.color = missing_colour(renderer.GetBackground())
         if renderer is not None and radius is not None and self._actor.GetVisibility():
             self._include_globe(renderer.GetActiveCamera(), radius)
             # The length of a pixel on the horizon, the farthest visible point of the globe.

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +12,19 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import bounds, norm
+from flowtex._util.cache import WeakCache
+from flowtex._util.colours import is_light
 from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS, MapLines, coastlines, graticule
+from flowtex.field.earth.on_land import on_land
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Cells without data, in the shape of a field's cells."""
+
+    land: Bools
+    missing: Bools  #: Those at sea.
 
 
 class Stroke(NamedTuple):
@@ -28,7 +42,14 @@ WIDTH_RANGE = (0.6, 2.0)  #: Range of the factor by which the width changes with
 SPACINGS = (200e3, 80e3, 20e3, 0.0)  #: Distances of the points of lines in metres.
 SPACING_PX = 2.0  #: Most pixels between two points of a line.
 WIDER = 1e-3  #: Share of the extent by which the box of a map is wider than its surface.
+#: Share of black or white, whichever differs more, in the colour of places without data at sea.
+MISSING_SHARE = 0.1
+MOST_ASKED = 200_000  #: Most cells of a grid that are looked up on the coasts.
+FRINGE = 2  #: Cells across up to which a strip beside land is land.
 LOWER = 1e-5  #: Distance of the globe below the surface and the sagitta of its cells, in radii.
+
+
+_grounds: WeakCache[Ground] = WeakCache()
 
 
 def map_box(field: FlowField) -> Floats:
@@ -60,14 +81,59 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
 
 
-def land_cells(field: FlowField, *, tiled: bool = False) -> Bools:
+def ground_cells(field: FlowField, *, tiled: bool = False) -> Ground:
+    """Return which cells without data are land and which only lack data; see empty_cells.
+
+    Coasts decide. Masks of models do not match them exactly: what lies within a cell or two of
+    land is land as well.
+    """
+    return _grounds.get(tiled, lambda: _ground_of(field, tiled=tiled), owner=field)
+
+
+def missing_colour(background: Sequence[float]) -> Floats:
+    """Return the colour of places without data at sea, near that of the background (3,)."""
+    ink = 1.0 - float(is_light(background))
+    return np.asarray(background, dtype=float) * (1 - MISSING_SHARE) + (ink * MISSING_SHARE)
+
+
+def _ground_of(field: FlowField, *, tiled: bool) -> Ground:
+    empty = empty_cells(field, tiled=tiled)
+    nothing = np.zeros_like(empty)
+    if field.projection is None or not empty.any():
+        return Ground(nothing, nothing)
+    surface = field.surface
+    step = 1
+    asked = empty
+    if empty.ndim == 2:
+        step = math.ceil(math.sqrt(np.count_nonzero(empty) / MOST_ASKED))
+        asked = np.zeros_like(empty)
+        asked[::step, ::step] = empty[::step, ::step]
+    corners = surface.points.reshape(-1, 3)[surface.nodes_of(asked)]
+    lon, lat = field.projection.lonlat(corners.mean(axis=1))
+    land = np.zeros_like(empty)
+    land[asked] = on_land(lon, lat)
+    if empty.ndim == 2:
+        land = empty & _with_fringe(land, empty, step)
+    return Ground(land, empty & ~land)
+
+
+def _with_fringe(land: Bools, empty: Bools, step: int) -> Bools:
+    """Return land and what is without data beside it, of a grid of which each step is known."""
+    near = scipy.ndimage.binary_dilation(land, np.ones((2 * step + 1, 2 * step + 1), dtype=bool))
+    sea = empty & ~near
+    wide = scipy.ndimage.binary_opening(sea, np.ones((FRINGE, FRINGE), dtype=bool))
+    beside = scipy.ndimage.binary_dilation(near, np.ones((3, 3), dtype=bool), iterations=FRINGE)
+    return np.asarray(near | (sea & ~wide & beside))
+
+
+def empty_cells(field: FlowField, *, tiled: bool = False) -> Bools:
     """Return which cells of a field have their positions and are not drawn.
 
-    The shape is (J - 1, I - 1), or (M,) of triangles. Of a map that is the coarsest level of a
-    structured field in tiles all cells may be seen as land, where finer ones have no data.
+    The shape is (J - 1, I - 1), or (M,) of triangles. If that is the coarsest level of a
+    structured field in tiles all cells may be seen so, where finer ones have no data.
     """
     surface = field.surface
-    seen_through = tiled and not surface.on_globe and field.triangles is None
+    seen_through = tiled and field.triangles is None
     return surface.placed_cells if seen_through else surface.placed_cells & ~surface.cells
 
 
@@ -83,6 +149,6 @@ def globe_radius(field: FlowField) -> float | None:
 
 def _cells(field: FlowField) -> tuple[Floats, Floats]:
     surface = field.surface
-    corners = surface.points.reshape(-1, 3)[surface.nodes_of(surface.cells | land_cells(field))]
+    corners = surface.points.reshape(-1, 3)[surface.nodes_of(surface.cells | empty_cells(field))]
     middles = corners.mean(axis=1)
     return middles, norm(corners - middles[:, None]).max(axis=1)

@@ -133,8 +133,8 @@ class Appearance:
     )
     land: Any = option(
         LAND_COLOR,
-        "Colour of the Earth where a field with a projection has no data, such as land in an "
-        "ocean model; ``None`` draws nothing there.",
+        "Colour of land where a field with a projection has no data. Coasts say what is land; the "
+        "sea without data has a colour near the background. ``None`` draws nothing there.",
     )
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-// Land without data, in one colour.
+// Land, or places without data, in one colour.
 
 //#include common/constants.glsl
 
@@ -15,11 +15,22 @@ in vec2 flowtexDepthOut;
 const float FLOWTEX_FARTHEST = 0.999999; // depth that is still drawn
 #endif
 
+#ifdef FLOWTEX_ROUND
+in vec3 flowtexOutwardOut;
+#endif
+
 out vec4 flowtexOut;
 
 void main()
 {
   vec3 colour = u_colour;
+#ifdef FLOWTEX_ROUND
+  if (u_lit)
+  {
+    float turned = abs(dot(normalize(flowtexOutwardOut), u_toEye));
+    colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * turned, 1.0);
+  }
+#endif
 #ifdef FLOWTEX_GLOBE
   float radius = length(flowtexPlaceOut);
   // Half a pixel within the flow, whose triangles lie within the sphere.

@@ -19,7 +19,7 @@ from flowtex._util.colours import rgb
 from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.rendering.camera import Camera, read_camera
-from flowtex.rendering.map_overlay import globe_radius, land_cells
+from flowtex.rendering.map_overlay import globe_radius, ground_cells
 from flowtex.scene.options import LAND_COLOR
 
 pytestmark = [
@@ -92,7 +92,7 @@ def test_no_surface_hides_its_lines(name: str) -> None:
 
 def test_land_has_its_colour_or_none(plotter: Any) -> None:
     field = ocean("lambert")
-    assert land_cells(field).any() and not land_cells(winds("robinson")).any()
+    assert ground_cells(field).land.any() and not ground_cells(winds("robinson")).land.any()
     plotter.set_background("blue")
     handle = plotter.flowtex.add(field, show_scalar_bar=False, graticule=False, **QUICK)
     camera = read_camera(plotter.camera)
@@ -168,7 +168,7 @@ def test_all_goes_with_the_flow(plotter: Any) -> None:
     shown = shot(plotter)
     assert np.abs(shown - empty).max() > 50
     actors = [a for a in plotter.renderer.GetActors() if not a.GetUseBounds()]
-    assert len(actors) == 4 and not any(a.GetPickable() for a in actors)
+    assert len(actors) == 5 and not any(a.GetPickable() for a in actors)
     handle.visible = False
     np.testing.assert_array_equal(shot(plotter), empty)
     handle.visible = True

@@ -314,7 +314,7 @@ class MapLines:
 
 def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
     """Return the coasts of land, larger islands and lakes in a box of the map, (2, 3)."""
-    lonlat, joined = _coasts()
+    lonlat, joined = coast_points()
     return _mapped(projection, lonlat, joined, box)
 
 
@@ -331,7 +331,7 @@ def graticule(projection: Projection, box: Floats | None = None) -> MapLines:
 
 
 @cache
-def _coasts() -> tuple[Floats, Bools]:
+def coast_points() -> tuple[Floats, Bools]:
     """Return longitude and latitude of all coasts, and which points are joined to the next."""
     with np.load(COASTS, allow_pickle=False) as file:
         steps, lengths = file["steps"], file["lengths"]

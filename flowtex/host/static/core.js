@@ -1103,7 +1103,10 @@ data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,ty
 corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,pieces,3)),paints=buffer(atEnds(colours,pieces,
 4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return gl.bindVertexArray(null),{faces,
 pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};function css([r,g,b,opacity=1]){return`rgb(${[
-r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var BREAK=1e30,STEPS2=65535,GROUP=256;function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.
+r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var GROUND=["land","missing"],LIGHT_FROM=.18;function missingColour({background,earth}){let ground=background??[1,1,1],share=earth?.
+missingShare??0,ink=dot2(ground.map(value=>value**2.2),[.2126,.7152,.0722])>=LIGHT_FROM?0:1;return ground.map(value=>value*
+(1-share)+ink*share)}function groundKinds(header,has){let{earth}=header;if(!earth?.land||!has("missing"))return[];let missing={
+name:"no data",color:missingColour(header)};return has("land")?[{name:"land",color:earth.land},missing]:[missing]}var BREAK=1e30,STEPS2=65535,GROUP=256;function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.
 length;n+=4){steps[n+3]&&lines.push([]);let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&STEPS2,low[k]+place[k]/
 STEPS2*size[k]));lines[lines.length-1].push(point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(
 line=>{let along2=0,kept=line.filter((point,n)=>{let before=along2;return n&&(along2+=Math.hypot(...point.map((x,k)=>x-line[n-
@@ -1121,53 +1124,60 @@ PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return nul
 camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[start,along2]=camera.
 ray(x,y),nearest3=dot2(start,along2),square=nearest3**2-dot2(start,start)+earth.radius**2,depth=-nearest3-Math.sqrt(square);
 return depth>0?add(start,along2,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
-d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
-for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
-delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
-[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
-shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
-bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
-gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
-local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
-wider=clamp(Math.sqrt(height/ratio/earth.usualHeight),...earth.widthRange),most=earth.spacingPixels*pixel,spacing=earth.
-spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(
-option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
-spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
-wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
-array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count2]of visibleRuns(drawn.groups,local)){for(let n=0;n<
-PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
-0,4,count2)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
-lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
-camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
-if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
-programs.get(shaders.groundVertex,shaders.groundFragment,...defines);if(program.ready){if(graphics.programs.use(program,
-{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background??[1,1,1],u_lit:header.lighting,
-u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.
-take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
-take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.depthMask(!1),gl.drawElements(gl.TRIANGLES,
-drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){let{earth}=this.header;if(!earth||
-earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**
-2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,3),local=toFrame(frame,normal);
-return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){let{frame,center}=this.header.
-geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.max(radius**2-offset**2,0)),aside=unit(
-cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,-offset),center,-1);return{u_middle:subtract2(
-toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(toFrame(frame,upward),size),u_away:camera.
-state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){let old=this.drawn.get(name);if(old&&
-String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);let drawn={...make(),anchor,spacing};
-return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),
-buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.
-counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){
+this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1;for(let each of name==="position"?
+GROUND:[name])this.drop(each)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.
+drawn.get(name);if(drawn){for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("Vertex\
+Array",drawn.array),this.drawn.delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&
+this.parts.has(name)):[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.
+get(shaders.lineVertex,shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,
+height,ratio}=view;gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(
+0,0,width,height),gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.
+horizon(camera),local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.
+height*ratio/height,wider=clamp(Math.sqrt(height/ratio/earth.usualHeight),...earth.widthRange),most=earth.spacingPixels*
+pixel,spacing=earth.spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.
+lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,
+anchor,spacing),spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,
+height],u_width:thickness*wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),
+gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count2]of visibleRuns(drawn.
+groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.
+drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
+gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders,{earth}=this.header;return earth?.land&&(earth.
+map===null&&earth.below&&!this.groundProgram("FLOWTEX_GLOBE").ready||this.hasCells&&!this.groundProgram(...this.roundness).
+ready)?!1:!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}groundProgram(...defines){let{groundVertex,
+groundFragment}=this.header.shaders;return this.graphics.programs.get(groundVertex,groundFragment,...defines)}get hasCells(){
+return GROUND.some(name=>this.parts.has(name))}get roundness(){return this.header.earth?.map===null?["FLOWTEX_ROUND"]:[]}drawGround({
+camera,anchor}){let{header,graphics}=this,{earth,geometry}=header;if(!earth?.land)return;let globe=earth.map===null,cells=GROUND.
+filter(name=>this.parts.has(name)),gl=graphics.context,common={u_matrix:projection(geometry,camera,anchor),u_ground:header.
+background??[1,1,1],u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1))},missing=missingColour(
+header);if(globe&&earth.below){let program2=this.groundProgram("FLOWTEX_GLOBE");if(!program2.ready)return;graphics.programs.
+use(program2,{...common,u_colour:missing,...this.disc(camera,earth.radius,anchor)}),gl.bindVertexArray(this.take("disc",
+anchor,()=>this.emptyArray()).array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}let program=this.groundProgram(...this.roundness);
+if(!cells.length||!program.ready)return gl.bindVertexArray(null);gl.depthMask(!1);for(let name of cells){let colour=name===
+"land"?earth.land:missing,middle=subtract2(toFrame(geometry.frame,scale2(geometry.center,-1)),anchor);graphics.programs.
+use(program,{...common,u_colour:colour,...globe&&{u_middle:middle}});let drawn=this.take(name,anchor,()=>this.cellsOf(name,
+anchor));gl.bindVertexArray(drawn.array),gl.drawElements(gl.TRIANGLES,drawn.count,gl.UNSIGNED_INT,0)}gl.depthMask(!0),gl.
+bindVertexArray(null)}horizon(camera){let{earth}=this.header;if(!earth||earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.
+eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.
+header.geometry,normal=plane.slice(0,3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+
+plane[3]]}disc(camera,radius,anchor){let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,
+0],toEye=[a,b,c],size=Math.sqrt(Math.max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(
+toEye,aside),middle=add(scale2(toEye,-offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(
+toFrame(frame,aside),size),u_upward:scale2(toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.
+position)/radius}}take(name,anchor,make,spacing=0){let old=this.drawn.get(name);if(old&&String([old.anchor,old.spacing])===
+String([anchor,spacing]))return old;this.drop(name);let drawn={...make(),anchor,spacing};return this.drawn.set(name,drawn),
+drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),buffers:[],anchor:[
+0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.counted(gl.
+createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){
 let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],
 points=linePoints(thinned(lines,spacing),anchor),drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(
 drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(
-n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.
-parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let corners=this.header.geometry.triangles?
-cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=
-[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
-0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
-for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
-low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
+n),gl.vertexAttribDivisor(n,1);return drawn}cellsOf(name,anchor){let gl=this.graphics.context,cells=this.parts.get(name),
+nodes=this.parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let corners=this.header.geometry.
+triangles?cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.
+buffers=[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.
+enableVertexAttribArray(0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){
+let corners=[];for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;
+corners.push(low,low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
 "from saddle":[],"to saddle":[],"stable orbit":[],"unstable orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,
 most.points);n+=1){let kind=points[ROW*n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;
 for(let n=0;n<lines.length/ROW;n+=1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let names=number&
@@ -1616,14 +1626,14 @@ header.scalars);ramp.classList.toggle("below",isBelow),ramp.classList.toggle("ab
 header.scalars,map);this.place=place;let ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(
 place(value),0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=
 `translateX(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit3?`${label} (${unit3}\
-)`:label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
-shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns,isLine})=>{
-let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*
-c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),
-!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.place(value),0,1)}%`)}};function legendTicks({scalars}){
-if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,
-scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??
-ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+)`:label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name,color})=>`${name} ${color}`).
+join();names!==this.shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(
+({name,color,turns,isLine})=>{let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb\
+(${color.map(c=>Math.round(255*c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=
+!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.place(value),0,1)}\
+%`)}};function legendTicks({scalars}){if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(scalars),ticks=[
+5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);return ticks.
+find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -2086,41 +2096,42 @@ this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(thi
 let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){
 return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level}\
  ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.
-colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}showKinds(kinds){this.legend.showKinds(
-kinds)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
-position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
-position,header,parts,camera)])),!point)return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,
-unit:unit3}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label}\
- ${numberText(value)}`,unit3)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.
-isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.
-onControls?.(shown)}}get isFramed(){let{header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&
-!options.bare&&header!==null}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&
-hasTicks(header)?"ticks":"none",kind=this.axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&
-clientHeight>=SMALL_PX?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){
-let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows,isTiny=root.clientHeight<TINY_PX;this.
-bar.hidden=isTiny||!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.
-handle.hidden=isTiny||this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.
-element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),
-root.classList.toggle("flowtex-framed",this.isFramed),root.classList.toggle("flowtex-small",root.clientHeight<SMALL_PX),
-root.classList.toggle("flowtex-tiny",isTiny),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen)),
-this.keepFocus()}showHelp(shown=this.help.element.hidden){shown!==!this.help.element.hidden&&(this.help.show(shown),this.
-keepFocus())}keepFocus(){this.focus.keep()}afterFocus(lost){let{root}=this.viewer;return this.bar.hidden?this.handle.hidden?
-root:this.handle:this.controls.element.contains(lost)?this.gear:root}wait(missing,isMade,isCoarse=!1,isFinding=!1){let{viewer,
-busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":
-"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending?doing="Loading tiles":isFinding&&(doing="Findi\
-ng critical points"):doing="Tracing paths",this.isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-pending}\
- of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==
-count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||
-source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
-lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
-viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
-hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){
-this.wait([],!0,!1,this.isFinding),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.
-note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.
-root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(
-together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.
-together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),
-viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
+colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}showKinds(kinds){let{header,parts}=this.
+viewer,ground=header?groundKinds(header,name=>parts.has(name)):[];this.legend.showKinds([...kinds,...ground])}read(point,ground=null){
+let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
+!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
+!point)return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit3}=header.scalars,value=point.
+values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.
+legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){
+this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){
+let{header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null}chooseAxes(kind){
+this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
+axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&clientHeight>=SMALL_PX?kind:"none";this.
+axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,
+isReady=header!==null,follows=!!options.follows,isTiny=root.clientHeight<TINY_PX;this.bar.hidden=isTiny||!(this.isShown||
+follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=isTiny||this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-fram\
+ed",this.isFramed),root.classList.toggle("flowtex-small",root.clientHeight<SMALL_PX),root.classList.toggle("flowtex-tiny",
+isTiny),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen)),this.keepFocus()}showHelp(shown=this.
+help.element.hidden){shown!==!this.help.element.hidden&&(this.help.show(shown),this.keepFocus())}keepFocus(){this.focus.
+keep()}afterFocus(lost){let{root}=this.viewer;return this.bar.hidden?this.handle.hidden?root:this.handle:this.controls.element.
+contains(lost)?this.gear:root}wait(missing,isMade,isCoarse=!1,isFinding=!1){let{viewer,busy}=this,{pending=0,wanted=0}=viewer.
+tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:"",doing="";missing.length?
+doing="Loading data":isMade?pending?doing="Loading tiles":isFinding&&(doing="Finding critical points"):doing="Tracing pa\
+ths",this.isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;
+this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=
+count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||
+this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&
+this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(
+this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){
+this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0,!1,this.
+isFinding),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom(
+"strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="\
+true",this.viewer.options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(together.
+length>1&&root.parentElement||root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
+name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
+later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
 before=new OffscreenCanvas(Math.max(canvas.width,1),Math.max(canvas.height,1));before.getContext("2d")?.drawImage(canvas,
 0,0),[canvas.width,canvas.height]=[width,height],this.pen?.drawImage(before,0,0,width,height)}get pen(){return this.view.
 canvas.getContext("2d",{alpha:!1})}frame(now){let{view}=this;view.camera||view.place(),!(!view.player.playing||!this.isPainted)&&

@@ -14,13 +14,14 @@ from flowtex.field import FlowField
 from flowtex.field.dates import date_text
 from flowtex.field.earth import EARTH_RADIUS, MapLines, Projection
 from flowtex.rendering.map_overlay import (
+    MISSING_SHARE,
     SPACING_PX,
     SPACINGS,
     STROKES,
     USUAL_HEIGHT_PX,
     WIDTH_RANGE,
     globe_radius,
-    land_cells,
+    ground_cells,
     map_box,
     map_lines,
 )
@@ -58,6 +59,7 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
         "map": None if is_globe else map_box(field)[:, :2].ravel().tolist(),
         "usualHeight": USUAL_HEIGHT_PX,
         "widthRange": WIDTH_RANGE,
+        "missingShare": MISSING_SHARE,
         "spacings": SPACINGS,
         "spacingPixels": SPACING_PX,
         "strokes": [
@@ -75,11 +77,12 @@ def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts
     parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
-        land = land_cells(field, tiled=tiled)
-        if land.any() and field.triangles is not None:
-            parts["land"] = field.triangles[land].astype("<u4")
-        elif land.any():
-            parts["land"] = land.astype(np.uint8)
+    ground = ground_cells(field, tiled=tiled)
+    for name, cells in (("land", ground.land), ("missing", ground.missing)):
+        if cells.any() and field.triangles is not None:
+            parts[name] = field.triangles[cells].astype("<u4")
+        elif cells.any():
+            parts[name] = cells.astype(np.uint8)
     return parts
 
 

@@ -1,0 +1,65 @@
+"""Which places of the Earth lie on land, as its coasts say."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.field.earth import coast_points
+
+COLUMN_DEGREES = 0.01  #: Width of the strips of places that share a meridian; coasts are as exact.
+TURN = 360.0
+
+
+def on_land(lon: Floats, lat: Floats) -> Bools:
+    """Return which places lie on land; those without a finite longitude and latitude do not.
+
+    Parameters
+    ----------
+    lon, lat
+        Longitude and latitude in degrees, arrays of one shape.
+
+    Returns
+    -------
+    numpy.ndarray
+        Booleans of the same shape. Lakes that have a coast are not land.
+    """
+    shape = np.shape(lon)
+    flat_lon = np.ravel(lon)
+    flat_lat = np.ravel(lat)
+    known = np.isfinite(flat_lon) & np.isfinite(flat_lat)
+    result = np.zeros(flat_lon.shape, dtype=bool)
+    # The north pole is sea: coasts to the north of a place are crossed an odd number of times
+    # on land. South of Antarctica's coast this holds as well.
+    turned = (flat_lon[known] + TURN / 2) % TURN - TURN / 2
+    strips, strip = np.unique(np.rint(turned / COLUMN_DEGREES), return_inverse=True)
+    owner, height = _crossings((strips + 0.5) * COLUMN_DEGREES)
+    # Both sorted by strip and by latitude there, as one number.
+    keys = np.sort(owner * TURN + height)
+    last = np.searchsorted(keys, strip * TURN + TURN / 2)
+    first = np.searchsorted(keys, strip * TURN + flat_lat[known])
+    result[known] = (last - first) % 2 == 1
+    return result.reshape(shape)
+
+
+def _crossings(meridians: Floats) -> tuple[Floats, Floats]:
+    """Return where coasts cross ascending meridians: the number of each and the latitude."""
+    points, joined = coast_points()
+    start = points[:-1][joined]
+    step = np.diff(points, axis=0)[joined]
+    step[:, 0] = (step[:, 0] + TURN / 2) % TURN - TURN / 2
+    west = np.minimum(start[:, 0], start[:, 0] + step[:, 0])
+    east = np.maximum(start[:, 0], start[:, 0] + step[:, 0])
+    owners = []
+    heights = []
+    for shift in (-TURN, 0.0, TURN):  # a line may go on across the date line
+        low = np.searchsorted(meridians + shift, west, side="right")
+        high = np.searchsorted(meridians + shift, east, side="right")
+        counts = high - low
+        line = np.repeat(np.arange(len(west)), counts)
+        within = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
+        owner = low[line] + within
+        share = (meridians[owner] + shift - start[line, 0]) / step[line, 0]
+        owners.append(owner.astype(float))
+        heights.append(start[line, 1] + share * step[line, 1])
+    return np.concatenate(owners), np.concatenate(heights)
