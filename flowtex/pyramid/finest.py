@@ -114,7 +114,7 @@ def _reopened(opened: Callable[[], FlowField]) -> Finest | None:
 def _locator(points: Floats, known: Bools | None, projection: Projection | None) -> Locator:
     """Return the locator of nodes (J, I, 3), also without data, on the globe or in space."""
     places = true_positions(points, projection)
-    has_place = np.isfinite(places).all(axis=-1)
+    has_place: Bools = np.asarray(np.isfinite(places).all(axis=-1))
     if known is not None:
         has_place &= known
     return Locator(GridSurface(places, has_place, (False, False)))
@@ -163,7 +163,7 @@ class FinestOfRegions:
         valid = source.nodes(0, *kept).valid
 
         def velocity(step: int) -> Floats:
-            return source.nodes(step, *kept, valid).velocity
+            return np.asarray(source.nodes(step, *kept, valid).velocity)
 
         def scalar(name: str) -> Callable[[int], Floats]:
             return lambda step: source.nodes(step, *kept, valid).scalars[name]

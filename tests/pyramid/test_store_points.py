@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -125,9 +126,9 @@ def assert_same(got: PointValues | None, wanted: PointValues | None, field: Flow
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_points_of_a_store_are_those_of_its_field(name: str, tmp_path: Path) -> None:
-    field = FIELDS[name]()
+    field: Any = FIELDS[name]()
     build(field, tmp_path / "flow.zarr", progress=False)
-    store = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(tmp_path / "flow.zarr")
     assert store.valid.size < field.valid.size / 3
     times = [field.times[0], field.times[-1], np.mean(field.times)]
     for number, place in enumerate(places(field, 8)):
@@ -142,7 +143,7 @@ def test_points_of_a_store_are_those_of_its_field(name: str, tmp_path: Path) -> 
 def test_an_index_and_a_copy_of_a_store_have_the_finest_values(tmp_path: Path) -> None:
     field = stripes()
     build(field, tmp_path / "flow.zarr", progress=False)
-    store = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(tmp_path / "flow.zarr")
     place = (50.3, 20.2)
     wanted = field.at(*place, time=3.0)
     index = locate(store, place)
@@ -159,7 +160,7 @@ def test_only_the_tiles_of_a_place_are_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     build(stripes(), tmp_path / "flow.zarr", progress=False)
-    store = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(tmp_path / "flow.zarr")
     counts = []
     original = flowtex.pyramid.levels.Levels.nodes
 
@@ -177,14 +178,14 @@ def test_only_the_tiles_of_a_place_are_read(
 def test_what_is_derived_needs_all_nodes(tmp_path: Path) -> None:
     field = stripes()
     build(field, tmp_path / "flow.zarr", progress=False)
-    store = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(tmp_path / "flow.zarr")
     for name, horizon in (("vorticity", None), ("ftle", 1.0)):
         with pytest.raises(FieldError, match=rf"{name} needs all nodes.*with_derived\(\"{name}"):
             store.derive(name, horizon=horizon)
     with pytest.raises(FieldError, match="with_derived"):
         flowtex.render(store, scalars="vorticity", size=(30, 20))
     build(field.with_derived("vorticity"), tmp_path / "more.zarr", progress=False)
-    more = open_store(tmp_path / "more.zarr")
+    more: Any = open_store(tmp_path / "more.zarr")
     for place in places(field, 10):
         got, wanted = (
             more.at(*place, time=1.5),
@@ -198,7 +199,7 @@ def test_what_is_derived_needs_all_nodes(tmp_path: Path) -> None:
 def test_what_is_derived_of_a_small_store_is_drawn(tmp_path: Path) -> None:
     field = flowtex.examples.double_gyre_field(shape=(11, 21))
     build(field, tmp_path / "flow.zarr", progress=False)
-    store = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(tmp_path / "flow.zarr")
     assert store.derive("shear") == pytest.approx(np.asarray(field.derive("shear")), abs=0.05)
     one, other = (
         flowtex.render(flow, scalars="divergence", size=(60, 40), samples=5)
@@ -224,7 +225,7 @@ def test_points_between_the_drawn_lines_of_another_store(tmp_path: Path, *, eart
     data["heat"] = (names, flow * 10)
     data.to_zarr(tmp_path / "flow.zarr", zarr_format=3, consolidated=False)
     with pytest.warns(Notice):
-        store = open_store(tmp_path / "flow.zarr")
+        store: Any = open_store(tmp_path / "flow.zarr")
     whole = FlowField.from_xarray(data)
     assert store.valid.size < whole.valid.size / 2
     assert isinstance(vars(store)["_finest"], FinestOfRegions)

@@ -76,8 +76,8 @@ def line(rng: np.random.Generator, low: float, high: float, count: int, *, even:
         steps = rng.uniform(0.5, 1.5, count - 1)
     values = low + (high - low) * np.concatenate([[0], np.cumsum(steps)]) / steps.sum()
     if rng.uniform() < 0.3:
-        return values[::-1].copy()
-    return values
+        values = values[::-1]
+    return np.array(values)
 
 
 def on_lines(rng: np.random.Generator) -> Any:
@@ -122,9 +122,7 @@ def numbers(at: PointValues | None) -> list[float]:
     return [at.eastward, at.northward, at.speed, at.scalars["q"]]
 
 
-def assert_by_scene(
-    field: FlowField, place: tuple[float, ...], time: float, *, probed: bool
-) -> None:
+def assert_by_scene(field: Any, place: tuple[float, ...], time: float, *, probed: bool) -> None:
     """Compare the point with its index and the point card, and if ``probed`` with the method."""
     from flowtex.app.streaming.points import values_of
 
@@ -152,10 +150,16 @@ def assert_in_picture(
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(3, 2), dpi=60)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     ax: Any = figure.add_axes((0, 0, 1, 1), projection=crs)
     ax.set_facecolor("#ff00ff")  # where there are no data
-    look = {"scalars": "q", "cmap": "gray", "clim": limits, "strength": 0.0, "samples": 3}
+    look: dict[str, Any] = {
+        "scalars": "q",
+        "cmap": "gray",
+        "clim": limits,
+        "strength": 0.0,
+        "samples": 3,
+    }
     image = flowtex.axes(ax, drawn, time=time, **look)
     canvas.draw()
     shot = np.asarray(canvas.buffer_rgba())[::-1]
@@ -233,7 +237,7 @@ def test_colours_of_a_picture_are_the_numbers(seed: int) -> None:
     places = np.array(
         [(between(rng, data["lon"].values), between(rng, data["lat"].values)) for _ in range(8)]
     )
-    whole = FlowField.from_xarray(data, projection="globe")
+    whole: Any = FlowField.from_xarray(data, projection="globe")
     values = np.array([numbers(whole.at(*place, time=time))[3] for place in places])
     limits = float(data["q"].min()), float(data["q"].max())
     assert_in_picture(drawn, places, values, projections(rng), limits, time)
@@ -282,11 +286,11 @@ def test_derived_quantities_are_finite_differences(seed: int) -> None:
 def test_triangles_and_sections_have_one_number(seed: int) -> None:
     rng = np.random.default_rng(seed)
     steps = int(rng.choice([1, 3]))
-    times = 2.0 * np.arange(steps)
+    times: Any = 2.0 * np.arange(steps)
     p = rng.uniform(0, 40, (int(rng.integers(30, 120)), 2))
     triangles = Delaunay(p)
     parts = [waves(rng, p[:, 0], p[:, 1], steps) for _ in range(3)]
-    field = FlowField.from_triangles(
+    field: Any = FlowField.from_triangles(
         p,
         triangles.simplices,
         np.stack(parts[:2], axis=-1),
@@ -301,7 +305,7 @@ def test_triangles_and_sections_have_one_number(seed: int) -> None:
         got = field.at(*place.tolist(), time=time)
         if got is None or triangles.find_simplex(place) < 0:
             continue
-        exact = []
+        exact: list[Any] = []
         for part in parts:
             later = part[min(before + 1, steps - 1)]
             mixed = part[before] * (1 - share) + later * share

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def test_points_are_in_the_plane_and_found(name: str) -> None:
     if len(parameters) > 1:
         ends = [{low, high} for low, high in parameters.values()]
     for values in itertools.product(*ends):
-        chosen = dict(zip(parameters, values, strict=True))
+        chosen: dict[str, Any] = dict(zip(parameters, values, strict=True))
         wanted = np.array(POINTS[name](chosen)).reshape(-1, 2)
         assert ((wanted >= plane[:, 0]) & (wanted <= plane[:, 1])).all(), chosen
         if chosen.get("r") == 0:

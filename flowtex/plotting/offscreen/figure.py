@@ -548,7 +548,8 @@ def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, Affine
     is_large = finest_of(field) is not None
     same = same_map(field, Projection(name), stretched=is_large)
     if same is not None:
-        return field, options, unit + same
+        joined: Any = unit + same  # affine, as both are
+        return field, options, joined
     if is_large:
         raise FieldError(
             f"ax shows the map {name!r}, but the large store lies on {field.projection!r}; draw it "

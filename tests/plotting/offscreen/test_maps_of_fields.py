@@ -76,7 +76,7 @@ SOURCES: dict[str, Callable[[], Any]] = {
 def shown(crs: Any, data: Any, **options: Any) -> tuple[FlowImage, Bytes]:
     """Draw data on axes of a map, and return the image and the pixels."""
     figure = Figure(figsize=(4, 3), dpi=60, facecolor="#ff00ff")
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     ax: Any = figure.add_axes((0, 0, 1, 1), projection=crs)
     ax.set_facecolor("#ff00ff")
     image = flowtex.axes(ax, data, samples=3, strength=0.0, cmap="gray", **options)
