@@ -363,5 +363,6 @@ def _located(field: Any, at: Floats, tolerance: float) -> tuple[float, float] | 
 def _in_space(field: Any, at: Floats) -> Floats:
     """Return the position (3,) of a longitude and latitude on the globe, or of a place."""
     if field.projection is not None:
-        return EARTH.positions(at[:1], at[1:2])[0]
+        position: Floats = EARTH.positions(at[:1], at[1:2])[0]
+        return position
     return np.append(at, np.zeros(3 - len(at)))

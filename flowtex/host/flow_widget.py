@@ -198,7 +198,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     clock = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     playing = traitlets.Bool(default_value=False).tag(sync=True)
-    point = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True, echo_update=False)
+    point: Any = traitlets.Dict(allow_none=True, default_value=None).tag(
+        sync=True, echo_update=False
+    )
     size = CheckedTrait(_size)
     bar = traitlets.Bool(default_value=True).tag(sync=True)
     axes = CheckedTrait(lambda _, value: ViewOptions(axes=value).axes)

@@ -181,7 +181,8 @@ def _check(field: FlowField) -> None:
     for name, array in field.scalars.items():
         count = len(corners) if corners is not None and name in field.on_cells else columns
         shapes[name] = (array, (len(array), rows, count), "biuf")
-    for name, sample in field.volume_values.items():
+    samples: dict[str, object] = dict(field.volume_values)  # from another process
+    for name, sample in samples.items():
         if not isinstance(sample, np.ndarray) or sample.ndim != 1 or sample.dtype.kind != "f":
             raise ValueError(f"the values of {name} in the volume are no row of numbers")
     for name, (array, shape, kinds) in shapes.items():

@@ -97,8 +97,8 @@ def test_colours_of_a_globe_are_those_of_the_bar_as_far_as_the_limb(client: Clie
         projection=projection,
     )
     camera = camera_of(field, 1)
-    look = {"scalars": "speed", "cmap": "gray", "clim": (0.0, 20.0), "lighting": None}
-    look |= {"coastlines": False, "graticule": False, "background": "red"}
+    look: dict[str, Any] = {"scalars": "speed", "cmap": "gray", "clim": (0.0, 20.0)}
+    look |= {"lighting": None, "coastlines": False, "graticule": False, "background": "red"}
     ours = shown(client, field, camera, **look)
     options = {**PLAIN, **look, "show_scalar_bar": False}
     theirs = flowtex.render(field, camera=camera, size=SIZE, **options)

@@ -184,13 +184,13 @@ def test_what_is_derived_needs_all_nodes(tmp_path: Path) -> None:
             store.derive(name, horizon=horizon)
     with pytest.raises(FieldError, match="with_derived"):
         flowtex.render(store, scalars="vorticity", size=(30, 20))
-    build(field.with_derived("vorticity"), tmp_path / "more.zarr", progress=False)
+    derived = field.with_derived("vorticity")
+    build(derived, tmp_path / "more.zarr", progress=False)
     more: Any = open_store(tmp_path / "more.zarr")
     for place in places(field, 10):
-        got, wanted = (
-            more.at(*place, time=1.5),
-            field.with_derived("vorticity").at(*place, time=1.5),
-        )
+        longitude, latitude = place
+        got = more.at(longitude, latitude, time=1.5)
+        wanted = derived.at(longitude, latitude, time=1.5)
         if wanted is not None and np.isfinite(wanted.scalars["vorticity"]):
             assert got is not None
             assert got.scalars["vorticity"] == pytest.approx(wanted.scalars["vorticity"], rel=1e-3)

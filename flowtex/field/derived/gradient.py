@@ -338,7 +338,7 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
 
 def _are_alike(correlations: Floats) -> Bools:
     """Return whether terms with these correlations, (N, K, K), depend on each other, (N,)."""
-    alike = np.linalg.det(correlations) < SUSPECT_INDEPENDENCE
+    alike: Bools = np.linalg.det(correlations) < SUSPECT_INDEPENDENCE
     least = np.linalg.eigvalsh(correlations[alike])[:, 0]
     alike[alike] = least < LEAST_INDEPENDENCE
     return alike

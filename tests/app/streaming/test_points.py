@@ -112,10 +112,10 @@ def test_each_pane_has_its_own_path_at_the_time_of_the_page() -> None:
     app.area.compare({"lines": "streamlines"})
     at = {"index": [24.0, 12.0], "path": True}
     for time in (0.0, 0.3):
-        told = [
-            asyncio.run(app.area.points.read(pane, {**at, "time": time}))["path"]["sampled"]
-            for pane in (0, 1)
-        ]
+        told = []
+        for pane in (0, 1):
+            answer: Any = asyncio.run(app.area.points.read(pane, {**at, "time": time}))
+            told.append(answer["path"]["sampled"])
         for pane, sampled in zip(app.viewport.panes, told, strict=True):
             scene = pane.scene.copy()
             scene.time = time
@@ -124,8 +124,10 @@ def test_each_pane_has_its_own_path_at_the_time_of_the_page() -> None:
             np.testing.assert_allclose(sampled[0], found.points[0])
             np.testing.assert_allclose(sampled[-1], found.points[-1])
         assert np.abs(np.subtract(told[0][0], told[1][0])).max() > 1e-4
-    point = asyncio.run(app.area.points.read(0, {"index": [24.0, 12.0], "time": 0.3}))["point"]
-    expected = app.field.at(*point["position"][:2], time=0.3)
+    answer = asyncio.run(app.area.points.read(0, {"index": [24.0, 12.0], "time": 0.3}))
+    point = answer["point"]
+    x, y, _ = point["position"]
+    expected = app.field.at(x, y, time=0.3)
     assert expected is not None
     assert point["values"]["speed"] == pytest.approx(expected.speed)
     assert app.viewport.handle.time == 0.0, "the time of the server is that of its own messages"
