@@ -113,8 +113,8 @@ def test_each_pane_has_its_own_path_at_the_time_of_the_page() -> None:
     at = {"index": [24.0, 12.0], "path": True}
     for time in (0.0, 0.3):
         told = []
-        for pane in (0, 1):
-            answer: Any = asyncio.run(app.area.points.read(pane, {**at, "time": time}))
+        for number in (0, 1):
+            answer: Any = asyncio.run(app.area.points.read(number, {**at, "time": time}))
             told.append(answer["path"]["sampled"])
         for pane, sampled in zip(app.viewport.panes, told, strict=True):
             scene = pane.scene.copy()
