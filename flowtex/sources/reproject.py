@@ -15,7 +15,7 @@ from flowtex.field import FlowField
 from flowtex.field.earth import Projection
 from flowtex.field.locate import EARTH as GLOBE
 from flowtex.field.locate import POLE_LATITUDE, turned
-from flowtex.field.steps import map_steps
+from flowtex.field.steps import Steps, map_steps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.maps import MapNodes, MeshMap, mesh_on_map, on_map
 
@@ -161,14 +161,12 @@ def _made(
     def speed(velocity: Floats) -> Floats:
         return np.asarray(np.hypot(*components(velocity)) * field.speed_scale)
 
-    def nodal(step: Floats) -> Floats:
-        return nodes.at(step[chosen])
-
-    names = [key for key in field.scalars if key not in field.on_cells and key != "speed"]
-    scalars = {key: map_steps(field.scalars[key], nodal) for key in names}
-    velocity_unit, units = field.velocity_unit, dict(field.units)
+    scalars = _nodal_scalars(field, nodes, chosen)
+    velocity_unit = field.velocity_unit
+    units = dict(field.units)
     if not nodes.projection.is_globe:
-        units["speed"], velocity_unit = field.speed_unit, ""
+        units["speed"] = field.speed_unit
+        velocity_unit = ""
         scalars["speed"] = map_steps(field.velocity, speed)
     times = None
     if len(field.times) > 1:
@@ -193,6 +191,19 @@ def _made(
         uncertainty=field.uncertainty,
         volume_values=field.volume_values,
     )
+
+
+def _nodal_scalars(field: FlowField, nodes: Placed, chosen: Any) -> dict[str, Steps]:
+    """Return the scalars of a field on the nodes of a map, without the speed and those on cells."""
+
+    def nodal(step: Floats) -> Floats:
+        return nodes.at(step[chosen])
+
+    scalars = {}
+    for name, steps in field.scalars.items():
+        if name not in field.on_cells and name != "speed":
+            scalars[name] = map_steps(steps, nodal)
+    return scalars
 
 
 def _lonlat(field: FlowField) -> tuple[Floats, Floats]:

@@ -67,18 +67,9 @@ class Clusters:
             raise FieldError(
                 "this field has no triangles; expected one of FlowField.from_triangles"
             )
-        triangles, beside = surface.triangles, surface.neighbours
-        open_sides = (beside < 0) | ~surface.cells[beside]
-        open_sides[~surface.cells] = False
-        border = np.zeros(field.shape[1], dtype=bool)
-        for k in range(3):
-            for offset in (1, 2):
-                border[triangles[open_sides[:, k], (k + offset) % 3]] = True
-        part = np.zeros(field.shape[1], dtype=np.intp)
-        part[triangles] = connected_parts(beside)[:, None]
-        if part.any():
-            part = np.unique(part, return_inverse=True)[1]
-            part = np.argsort(np.argsort(part_extents(field.points[0], part)))[part]
+        triangles = surface.triangles
+        border = _border_nodes(surface)
+        part = _parts_by_extent(surface, field.points[0])
         crosses = surface.crosses
         if surface.flipped.any():
             triangles = triangles.copy()
@@ -218,6 +209,31 @@ def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
             break
         levels.append(coarser)
     return levels
+
+
+def _border_nodes(surface: TriangleSurface) -> Bools:
+    """Return which nodes are ends of a side without a drawn triangle beyond it, (N,)."""
+    triangles = surface.triangles
+    beside = surface.neighbours
+    open_sides = (beside < 0) | ~surface.cells[beside]
+    open_sides[~surface.cells] = False
+    border = np.zeros(surface.shape[1], dtype=bool)
+    for k in range(3):
+        for offset in (1, 2):
+            border[triangles[open_sides[:, k], (k + offset) % 3]] = True
+    return border
+
+
+def _parts_by_extent(surface: TriangleSurface, points: Floats) -> Indices:
+    """Return the number of the connected part of each node, (N,), the smallest part first."""
+    part = np.zeros(len(points), dtype=np.intp)
+    part[surface.triangles] = connected_parts(surface.neighbours)[:, None]
+    if not part.any():
+        return part
+    part = np.unique(part, return_inverse=True)[1]
+    order = np.argsort(part_extents(points, part))
+    ranks: Indices = np.argsort(order)
+    return ranks[part]
 
 
 def _faces(surface: TriangleSurface) -> Indices:
