@@ -14,6 +14,7 @@ import { Player } from "./player.ts";
 import { tilePart, type Header, type NamedPart, type Settings } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { Requests, type Source, type Taker } from "./sources/source.ts";
+import type { Shown } from "./tilechoice.ts";
 import type { Tiles } from "./tiles.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
 import { viewState } from "./viewstate.ts";
@@ -65,6 +66,8 @@ export abstract class SceneView implements User, Taker {
   isVisible = true;
   /** Whether the picture is clear beside the surface. */
   readonly isClear: boolean = false;
+  /** What the host makes of the picture; null where it is shown as it is. */
+  shownOn: Shown | null = null;
 
   abstract place(): void;
   abstract advance(now: number): void;

@@ -58,6 +58,7 @@ export class MapPicture {
   /** Look from somewhere, into so many pixels along one of the page; from nowhere where it is not used. */
   follow(look: FlowLook | undefined, ratio: number): void {
     this.isUsed = this.view.isVisible = look !== undefined;
+    this.view.shownOn = look?.shownOn ?? null;
     if (look) this.view.look(look.state, look.width, look.height, ratio);
     else this.shown = this.next = null;
   }

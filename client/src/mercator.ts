@@ -4,7 +4,8 @@
 
 import type { CameraState } from "./camera.ts";
 import type { Earth, Part } from "./protocol.ts";
-import { clamp } from "./vectors.ts";
+import type { Shown } from "./tilechoice.ts";
+import { clamp, dot, type Vector } from "./vectors.ts";
 
 /** Difference of places, as a share of the map, that counts as none. */
 const NEAR = 1e-5;
@@ -35,6 +36,8 @@ export interface FlowLook {
   state: CameraState;
   width: number;
   height: number;
+  /** The globe on which it is shown. */
+  shownOn?: Shown;
 }
 
 /** Place of a longitude and latitude on the web map. */
@@ -143,8 +146,52 @@ export class Mercator {
       parallel_scale: (0.5 * high) / this.slope[0],
       view_angle: map.fov,
     };
-    return { state, width: wide * world, height: high * world };
+    const shownOn = new OnGlobe(this, map.center, seen);
+    return { state, width: wide * world, height: high * world, shownOn };
   }
+}
+
+/** A picture of the map on a globe, whose cells become smaller towards the poles. */
+class OnGlobe implements Shown {
+  private readonly mercator: Mercator;
+  private readonly middle: Vector;
+  private readonly cosine: number;
+  private readonly seen: number;
+
+  /** The globe shows what is within an angle from its middle. */
+  constructor(mercator: Mercator, { lng, lat }: MapLook["center"], seen: number) {
+    const most = clamp(lat, -LAST_LATITUDE, LAST_LATITUDE);
+    this.mercator = mercator;
+    this.middle = wayTo(lng, most);
+    this.cosine = Math.cos(most * RADIANS);
+    this.seen = seen;
+  }
+
+  sees(place: ArrayLike<number>): boolean {
+    const [x, y, , radius] = Array.from(place);
+    const away = Math.acos(clamp(dot(wayTo(...this.mercator.lngLatOf([x, y])), this.middle), -1, 1));
+    // A length on the map is shorter on the Earth.
+    return away <= this.seen + this.angle(radius);
+  }
+
+  /** The picture has no more pixels than the map at its middle. */
+  scale(place: ArrayLike<number>): number {
+    const [, y, , radius] = Array.from(place);
+    const fromEquator = Math.abs(2 * Math.PI * (this.mercator.placeOf([0, y])[1] - 0.5));
+    const least = Math.max(fromEquator - this.angle(radius), 0);
+    return Math.min(1 / Math.cosh(least) / this.cosine, 1);
+  }
+
+  /** Angle at the equator of a length on the map. */
+  private angle(length: number): number {
+    return 2 * Math.PI * this.mercator.slope[0] * length;
+  }
+}
+
+/** Unit vector to a longitude and latitude, in degrees. */
+function wayTo(lng: number, lat: number): Vector {
+  const across = Math.cos(lat * RADIANS);
+  return [across * Math.cos(lng * RADIANS), across * Math.sin(lng * RADIANS), Math.sin(lat * RADIANS)];
 }
 
 /** Pixels from the middle of a map to the farthest corner that is seen, in its plane. */

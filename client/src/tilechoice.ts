@@ -24,6 +24,16 @@ export interface TileView {
   planes: readonly (readonly number[])[];
   /** Pixels of a cell above which the next level is drawn. */
   cellPixels: number;
+  /** What is made of the picture; null where it is shown as it is. */
+  shownOn?: Shown | null;
+}
+
+/** A picture that is shown on something else, such as a globe. */
+export interface Shown {
+  /** Whether a block may be in view there. */
+  sees(place: Data | number[]): boolean;
+  /** How many times as large as in the picture cells of a block are at most. */
+  scale(place: Data | number[]): number;
 }
 
 /** What a view asks of a tile, or of the root. */
@@ -119,8 +129,8 @@ export class Pyramid {
       for (let j = top; j < bottom; j += 1) {
         for (let i = left; i < right; i += 1) {
           const place = this.place(key[0], j, i);
-          if (!isSeen(view, place)) continue;
-          const pixels = cellSize(view, place);
+          if (!isSeen(view, place) || view.shownOn?.sees(place) === false) continue;
+          const pixels = cellSize(view, place) * (view.shownOn?.scale(place) ?? 1);
           if (key[0] > finest && pixels > view.cellPixels) coarse.add(j * width + i);
           else choice.needed = true;
           if (!coarse.has(j * width + i)) choice.pixels = Math.max(choice.pixels, pixels);

@@ -165,6 +165,7 @@ export class Tiles {
       ...camera.sight(canvas.height / ratio),
       planes: camera.planes,
       cellPixels: cellPixels(header.pyramid, settings),
+      shownOn: this.host.shownOn,
     });
     this.count += 1;
     for (const name of choices.keys()) {

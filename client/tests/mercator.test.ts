@@ -2,8 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { Camera, type CameraLimits } from "../src/camera.ts";
 import { Mercator, placeOn, type MapLook } from "../src/mercator.ts";
-import type { Earth, Part } from "../src/protocol.ts";
+import type { Earth, Part, PyramidHeader } from "../src/protocol.ts";
+import { keyOf, Pyramid, wantedTiles, type TileKey } from "../src/tilechoice.ts";
 
 const RADIUS = 6.4e6;
 const DEGREE = Math.PI / 180;
@@ -108,4 +110,44 @@ test("where a map shows both ends of data around the Earth there are two picture
   assert.equal(around.look({ ...LOOK, center, zoom: 0, height: 1200, width: 1200 }, 0).length, 1);
   const region = new Mercator(...mapAround(0, 40, [-70, 70]));
   assert.equal(region.look({ ...LOOK, center: { lng: 40, lat: 0 }, zoom: 4 }, 0).length, 1);
+});
+
+const [DEPTH, TILE_BLOCKS, BLOCK_CELLS] = [6, 8, 32];
+const LIMITS = { closest: 1e6 } as CameraLimits;
+
+/** Place of a block of the rows of equal latitudes of a store around the Earth, whose cells are tall near the poles. */
+function blockPlace(count: number, row: number, column: number): number[] {
+  const step = 170 / count;
+  const width = (2 * Math.PI * RADIUS) / count;
+  const [south, north] = [row, row + 1].map((n) => northing(n * step - 85));
+  const cellHeights = [row, row + 1 - 1 / BLOCK_CELLS].map((n) => {
+    const from = n * step - 85;
+    return northing(from + step / BLOCK_CELLS) - northing(from);
+  });
+  const middle = [(column + 0.5) * width - Math.PI * RADIUS, 0.5 * (south + north), 0];
+  return [...middle, 0.5 * Math.hypot(width, north - south), Math.max(width / BLOCK_CELLS, ...cellHeights)];
+}
+
+/** Tiles that a globe of 900 x 600 pixels wants, by zoom and latitude of its middle. */
+function tilesWanted(zoom: number, lat: number): TileKey[] {
+  const mercator = new Mercator(...mapAround(0, 180, [-85, 85]));
+  const counts = Array.from({ length: DEPTH + 1 }, (_, level) => 2 ** (DEPTH - level) * TILE_BLOCKS);
+  const header = { depth: DEPTH, finest: 0, tileBlocks: TILE_BLOCKS, blocks: counts.map((n) => [n, n]) };
+  const pyramid = new Pyramid(header as PyramidHeader, (level, row, column) => blockPlace(counts[level], row, column));
+  const look = { ...LOOK, width: 900, height: 600, center: { lng: 0, lat }, zoom, globe: true };
+  const [{ state, width, height, shownOn }] = mercator.look(look, 0);
+  const camera = new Camera(state, LIMITS, true, width / height);
+  const sight = { ...camera.sight(height), planes: camera.planes };
+  return wantedTiles(pyramid.choose({ ...sight, cellPixels: 4, shownOn })).map(keyOf);
+}
+
+test("a globe asks for tiles by their size on the screen, also beside a pole", () => {
+  for (const [zoom, lat] of [[0, 0], [1.6, 0], [1.6, 60], [3, 40], [3, 80], [5, 75], [5, -80]]) {
+    const wanted = tilesWanted(zoom, lat);
+    assert.ok(wanted.length <= 16, `${wanted.length} tiles at ${zoom}, ${lat}`);
+    // At the middle of the view a pixel is this share of the map, and cells grow up to 8 pixels.
+    const cells = (512 * 2 ** zoom) / (2 ** DEPTH * TILE_BLOCKS * BLOCK_CELLS);
+    const finest = Math.min(...wanted.map(([level]) => level));
+    assert.ok(2 ** finest * cells > 0.5, `level ${finest} at ${zoom}, ${lat}`);
+  }
 });

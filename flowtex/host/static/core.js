@@ -557,19 +557,19 @@ level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.h
 [0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
 finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
 pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
-bottom;j+=1)for(let i=left;i<right;i+=1){let place=this.place(key[0],j,i);if(!isSeen(view,place))continue;let pixels=cellSize(
-view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.
-pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row2,column,
-size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row2,block%width-column];
-return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};
-function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({
-eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*
-.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).
-sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.
-delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.
-filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),
-!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
-level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
+bottom;j+=1)for(let i=left;i<right;i+=1){let place=this.place(key[0],j,i);if(!isSeen(view,place)||view.shownOn?.sees(place)===
+!1)continue;let pixels=cellSize(view,place)*(view.shownOn?.scale(place)??1);key[0]>finest&&pixels>view.cellPixels?coarse.
+add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.
+finer=this.children(name,key).filter(child=>{let[row2,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{
+let[j,i]=[Math.floor(block/width)-row2,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(
+name,choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(
+p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?
+Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){
+return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}
+function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{
+let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.
+length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
+let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
 let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
 (Math.min((low+1)*step,nodes-1)-low*step)}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SPEED=1e30,MOST_SADDLES=50,[WINDOW_VIEWS,
 WINDOW_STEPS]=[2,4],OPERATIONS=new Map(Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<
@@ -1356,12 +1356,12 @@ name)?.scene,covered=(shown.get(name)??[]).flatMap(finer=>this.pyramid?[this.pyr
 ROOT?[this.root.header.pyramid?.depth??0,0,0]:keyOf(name);return scene?[{scene,key,covered}]:[]}),this.layers}choose(camera,steps){
 let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
 pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/
-ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){
-let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(
-choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);
-for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,
-steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,
-steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){
+ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings),shownOn:this.host.shownOn});this.count+=1;for(let name of choices.
+keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(
+wantedTiles(choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.
+trim(steps);for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.
+isHere(name,steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.
+isHere(name,steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){
 let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.
 map(name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row2,column]));)[level,row2,column]=
 [level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});return[...new Set(found)].filter(name=>name!==
@@ -1415,9 +1415,9 @@ varies&&this.program(header,this.isClose(header),!1)),view.painted(isComplete)}g
 renderer.placeAt(shown,x,y):null;if(!at||!camera||!shown||!scene)return null;let found=pickedPoint(at,scene,camera,shown,
 [x,y]),pointed={place:[x,y],position:found.point.position,height:view.root.clientHeight};return found.point.mark=scene.marks.
 at(pointed,camera,view.settings,shown),found}};var SceneView=class{canvas=document.createElement("canvas");root=document.createElement("div");graphics=sharedGraphics();lifetime=new Lifetime;held=new HeldParts(
-this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;dispose(){this.lifetime.isOver||(this.lifetime.
-end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){return this.
-painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&
+this.graphics);parts=this.held.all;camera=null;sharp=!1;isVisible=!0;isClear=!1;shownOn=null;dispose(){this.lifetime.isOver||
+(this.lifetime.end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this))}get scene(){
+return this.painter.scene??null}get tiles(){return this.painter.tiles??null}setPart(part){let tile=tilePart(part.name);return tile&&
 this.tiles?.setPart(tile[0],{...part,name:tile[1]}),tile||!this.held.set(part)?!1:(this.scene?.forget(part.name),this.trim(),
 part.name==="cmap"&&this.tiles?.recolour(),this.change(),!0)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(
 tile,steps),this.tell(reason)}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}request(){
