@@ -18,13 +18,14 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from flowtex._util.child.worker import is_child
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.meshes import parts, plot3d
+from flowtex.sources.meshes import parts, plot3d, separate
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
@@ -55,6 +56,10 @@ WITH_OTHERS = (*plot3d.SURFACE_SUFFIXES, *plot3d.GRID_SUFFIXES, ".q")
 def open_reader(file: Path) -> Any:
     """Return the reader of a file; raises a ValueError if the format is unknown."""
     import pyvista as pv
+
+    if file.suffix.lower() in separate.SUFFIXES and not is_child():
+        size = sum(nbytes for _, _, nbytes, _ in file_identity([file]))
+        return separate.SeparateReader(file, size)
 
     class DecomposedReader(pv.POpenFOAMReader):
         """PyVista's reader, which must know of pieces before it opens the case."""

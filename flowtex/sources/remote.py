@@ -20,6 +20,7 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.steps import LazySteps, Steps
+from flowtex.sources.meshes.separate import end_of_reader, time_limit
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.open_source import FlowSource, open_source
 from flowtex.sources.read_files import file_identity
@@ -33,10 +34,6 @@ PRELOAD = (
     *("xarray", "cf_xarray", "pyproj", "flowtex.sources.reader_errors:load_netcdf4"),
     *("dask.array", "cfgrib"),
 )
-#: Time limit of a request.
-REQUEST_TIMEOUT_S = 60.0
-#: Bytes of a file that extend the limit by a second.
-BYTES_PER_S = 10e6
 #: Most readings of a file that changes meanwhile.
 MOST_READINGS = 3
 #: Classes of warnings by their names; others are plain ones of the user.
@@ -252,7 +249,7 @@ class _OpenFile:
         self.paths = paths
         self.identity = file_identity(paths)
         size = sum(size for _, _, size, _ in self.identity)
-        self._timeout = REQUEST_TIMEOUT_S + size / BYTES_PER_S
+        self._timeout = time_limit(size)
         #: Steps that the other process forgets with the next request.
         self.forgotten: deque[int] = deque()
         self.child = Child(READER, preload=PRELOAD)
@@ -293,8 +290,7 @@ class _OpenFile:
         if error.kind:
             _log.error("the reader of %s failed:\n%s", path, error.trace)
             return f"{path}: cannot be read: {text or error.kind}"
-        memory = f"{self.child.memory / 1e9:.1f} GB of memory"
-        return f"{path}: the reader of this file {text}; it is damaged, or needs more than {memory}"
+        return f"{path}: {end_of_reader(self.child, error)}"
 
     def malformed(self, error: Exception) -> str:
         """Return the text of an error for an answer that makes no sense."""

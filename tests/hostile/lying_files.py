@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from cfd_files import box, write_ensight
 
 #: Sides of the grids: few nodes, of which all values differ.
 ROWS, COLUMNS = 6, 9
@@ -109,11 +110,12 @@ def legacy(declared: str, values: str = "1 2 3") -> bytes:
     return f"# vtk DataFile Version 3.0\ntitle\nASCII\n{declared}\n{values}\n".encode()
 
 
-def crashing() -> bytes:
-    """Return a legacy file by which VTK reads outside of its memory: a cell has 10^8 points."""
-    points = "POINTS 3 float\n0 0 0 1 0 0 0 1 0"
-    cells = "100000000 0 1 2\nCELL_TYPES 1\n5"
-    return legacy(f"DATASET UNSTRUCTURED_GRID\n{points}\nCELLS 1 4", cells)
+def write_crashing(path: Path) -> None:
+    """Write an EnSight case by which VTK writes outside of its memory: a part does not exist."""
+    write_ensight(path, [("Tip", box(4, 3, 1))], times=(0.5,))
+    values = path.with_suffix(".velocity000")
+    text = values.read_text(encoding="ascii")
+    values.write_text(text.replace(f"{1:10d}", f"{2**31 - 1:10d}", 1), encoding="ascii")
 
 
 def winds(columns: int, rows: int, values: int = 4) -> bytes:

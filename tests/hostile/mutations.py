@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import pyvista as pv
-from cfd_files import CGNS, box
+from cfd_files import CGNS, box, write_ensight, write_exodus
 from vtkmodules.vtkCommonCore import vtkIdList
 
 from flowtex import FlowField
@@ -144,6 +144,15 @@ def cgns(path: Path) -> None:
         file.base("Base", [("Zone", box(4, 3, 1))])
 
 
+def ensight(path: Path) -> None:
+    """Write a case of one time with one part, in a file for each array."""
+    write_ensight(path, [("Tip", box(4, 3, 1))], times=(0.5,))
+
+
+def exodus(path: Path) -> None:
+    write_exodus(path, box(4, 3, 2))
+
+
 def plot3d(path: Path) -> None:
     """Write a grid of one layer, and its solution beside it."""
     x, y, z = np.moveaxis(box(7, 5, 1)[0], -1, 0).astype("<f4")
@@ -187,6 +196,8 @@ def formats() -> dict[str, Write]:
     found["blocks.vtm"] = blocks
     found["wing.xyz"] = plot3d
     found["wing.cgns"] = cgns
+    found["flow.case"] = ensight
+    found["flow.ex2"] = exodus
     return found
 
 

@@ -6,6 +6,7 @@ No file ends the process: VTK trusts each number of a corner.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -213,3 +214,16 @@ def test_a_cell_too_short_for_its_type_is_refused() -> None:
     mesh.GetCellTypes().SetValue(1, pv.CellType.QUAD)
     with pytest.raises(FieldError, match="a cell of type 9 has 3 points; expected 4"):
         FlowField.from_pyvista(mesh)
+
+
+@pytest.mark.filterwarnings("ignore:.*of the flow is normal:flowtex.errors.Notice")
+@pytest.mark.parametrize("number", [-1, 0, 7, 2**31 - 1])
+def test_ensight_with_another_part_ends_its_reader_alone(tmp_path: Path, number: int) -> None:
+    """VTK writes the values of a part that does not exist wherever its number leads."""
+    path = written(tmp_path, "flow.case")
+    replaced(tmp_path / "flow.velocity000", b"part\n         1\n", b"part\n%10d\n" % number)
+    fault = rf"^{re.escape(str(path))}: the (reader of this file crashed|file is damaged)"
+    with pytest.raises(FieldError, match=fault):
+        FlowField.from_file(path, vectors="velocity")
+    replaced(tmp_path / "flow.velocity000", b"part\n%10d\n" % number, b"part\n         1\n")
+    assert FlowField.from_file(path, vectors="velocity").shape == (3, 4)

@@ -17,7 +17,7 @@ import xarray as xr
 from cfd_files import CGNS, TIMES, box
 from child_handler import is_gone
 from earth_data import winds
-from lying_files import crashing
+from lying_files import write_crashing
 from waiting import wait_until
 
 from flowtex import FlowField, examples
@@ -148,7 +148,7 @@ def test_a_reader_that_dies_is_told_of(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(FieldError, match=fault):
         source.field()
     assert not source.alive and field.speed.max() > 1
-    monkeypatch.setattr("flowtex.sources.remote.REQUEST_TIMEOUT_S", 20.0)
+    monkeypatch.setattr("flowtex.sources.meshes.separate.REQUEST_TIMEOUT_S", 20.0)
     source = tricky(path, monkeypatch)
     pid, _ = source._file.ask("trick", level="")
     source._file._timeout = 0.2
@@ -263,8 +263,8 @@ def test_what_is_read_late_of_a_file_that_has_changed_is_refused(tmp_path: Path)
 
 
 def test_a_file_whose_reader_crashes_takes_nobody_along(tmp_path: Path) -> None:
-    path = tmp_path / "torn.vtk"
-    path.write_bytes(crashing())
+    path = tmp_path / "torn.case"
+    write_crashing(path)
     with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: the reader .* crashed"):
         open_remote([path])
 

@@ -37,6 +37,12 @@ TEXT_LENGTH = 4_000  #: Greatest length of an error text.
 _PREFIX = struct.Struct(">I")  #: Length of the header.
 HEADER_BYTES = 16_000_000  #: Most bytes of a header.
 _TYPE = re.compile(r"[<>|][biuf]\d{1,2}")  #: Types of arrays: numbers and truth values.
+_served: list[str] = []  #: The entry that this process serves, if it is a child.
+
+
+def is_child() -> bool:
+    """Return whether this process is a child, which may end without harm."""
+    return bool(_served)
 
 
 def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
@@ -77,6 +83,7 @@ def settle(memory: int, *, prints: bool) -> None:
 
 def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
     """Answer requests until the other end is closed; ``entry`` names what returns the handler."""
+    _served.append(entry)
     requests: SimpleQueue[tuple[int, Any]] = SimpleQueue()
     cancelled: set[int] = set()
     threading.Thread(target=_listen, args=(reads, requests, cancelled), daemon=True).start()

@@ -13,7 +13,7 @@ pytest.importorskip("trame_rca")
 
 import xarray as xr
 from earth_data import winds
-from lying_files import crashing
+from lying_files import write_crashing
 from small_pages import Streamer, playing, small_page, zoom_of
 from waiting import until
 
@@ -62,14 +62,14 @@ async def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) ->
 
 async def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path) -> None:
     examples.double_gyre(0.0).save(tmp_path / "flow.vts")
-    (tmp_path / "torn.vtk").write_bytes(crashing())
+    write_crashing(tmp_path / "torn.case")
     library = Library.of(tmp_path)
     app = small_page(library, 5, 120, 80)
     async with playing(app):
         shown = app.field
-        app.state.send(file="torn.vtk")
+        app.state.send(file="torn.case")
         await until(lambda: app.state.get("problem") != "")
-        assert app.state.get("problem").startswith("torn.vtk: the reader of this file crashed")
+        assert app.state.get("problem").startswith("torn.case: the reader of this file crashed")
         assert app.field is shown and app.state.get("file") == "flow.vts"
         assert library.source("flow.vts").alive
 

@@ -13,8 +13,9 @@ from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, wr
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
+from flowtex.sources.meshes.separate import SeparateReader
 from flowtex.sources.open_source import MeshSource
-from flowtex.sources.read_files import BlockSummary, describe
+from flowtex.sources.read_files import BlockSummary, describe, open_reader
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -86,6 +87,25 @@ def test_parts_of_ensight(tmp_path: Path) -> None:
     summary = describe(path)
     assert summary.times == TIMES
     assert [block.name for block in summary.blocks] == ["wing tip", "body"]
+
+
+def test_ensight_is_read_in_another_process_as_vtk_reads_it(tmp_path: Path) -> None:
+    path = ensight(tmp_path / "flow.case")
+    mine = open_reader(path)
+    own = pv.EnSightReader(str(path))
+    assert isinstance(mine, SeparateReader)
+    assert mine.time_values == own.time_values
+    assert mine.active_time_value == own.active_time_value
+    for reader in (mine, own):
+        reader.set_active_time_value(TIMES[1])
+    found = mine.read()
+    expected = own.read()
+    assert found.keys() == expected.keys()
+    for block, mesh in zip(found, expected, strict=True):
+        assert block == mesh
+        assert list(block.point_data) == list(mesh.point_data)
+        assert block.active_vectors_name == mesh.active_vectors_name == "velocity"
+        assert block.active_scalars_name == mesh.active_scalars_name
 
 
 @pytest.mark.parametrize("write", [cgns, ensight])
