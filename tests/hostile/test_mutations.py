@@ -175,6 +175,26 @@ def test_obj_with_a_corner_out_of_range_is_refused(tmp_path: Path, corner: bytes
         FlowField.from_file(path)
 
 
+@pytest.mark.parametrize("count", [0, 7, 9, 2**31, 2**32 - 1])
+@pytest.mark.parametrize("title", [b"", b"solid hull"])
+def test_binary_stl_with_another_number_of_triangles_is_refused(
+    tmp_path: Path, title: bytes, count: int
+) -> None:
+    path = written(tmp_path, "binary.stl")
+    triangles = path.read_bytes()[84:]
+    path.write_bytes(title.ljust(80, b"\0") + count.to_bytes(4, "little") + triangles)
+    with pytest.raises(FieldError, match=f"declares .*{count:,} triangles|header of {count:,} tri"):
+        FlowField.from_file(path)
+
+
+@pytest.mark.parametrize("size", [40, 83, 84 + 50 * 8 - 1])
+def test_binary_stl_that_is_cut_is_refused(tmp_path: Path, size: int) -> None:
+    path = written(tmp_path, "binary.stl")
+    path.write_bytes(path.read_bytes()[:size])
+    with pytest.raises(FieldError, match="the file is truncated or damaged: the header"):
+        FlowField.from_file(path)
+
+
 @pytest.mark.filterwarnings("ignore:.*of the flow is normal:flowtex.errors.Notice")
 def test_ply_of_faces_with_different_corners_is_read(tmp_path: Path) -> None:
     path = tmp_path / "flow.ply"

@@ -16,6 +16,7 @@ from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
 from flowtex.sources.inspection.obj_files import check_obj
 from flowtex.sources.inspection.ply_files import check_ply
+from flowtex.sources.inspection.stl_files import check_stl
 from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy
 from flowtex.sources.reader_errors import check_count, check_memory
@@ -122,6 +123,8 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
         check_ply(data)
     if suffix == ".obj":
         check_obj(data)
+    if suffix == ".stl":
+        check_stl(data)
     if suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head):
         return tuple(vtk_files.check_vtk_xml(path, data, is_piece=is_piece))
     return ()
