@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import pyvista as pv
-from cfd_files import CGNS, box, write_ensight, write_exodus
+from cfd_files import CGNS, box, write_ensight, write_exodus, write_foam
 from vtkmodules.vtkCommonCore import vtkIdList
 
 from flowtex import FlowField
@@ -198,6 +198,7 @@ def formats() -> dict[str, Write]:
     found["wing.cgns"] = cgns
     found["flow.case"] = ensight
     found["flow.ex2"] = exodus
+    found["flow.foam"] = write_foam
     return found
 
 

@@ -5,11 +5,13 @@ No file ends the process: VTK trusts each number of a corner.
 
 from __future__ import annotations
 
+import gzip
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import mutations
 import numpy as np
@@ -22,6 +24,7 @@ from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
+from flowtex.sources.inspection.foam_files import check_foam
 
 #: Changed files that one process reads.
 BATCH = 60
@@ -247,3 +250,65 @@ def test_ensight_with_another_part_ends_its_reader_alone(tmp_path: Path, number:
         FlowField.from_file(path, vectors="velocity")
     replaced(tmp_path / "flow.velocity000", b"part\n%10d\n" % number, b"part\n         1\n")
     assert FlowField.from_file(path, vectors="velocity").shape == (3, 4)
+
+
+def foam_list(path: Path, values: list[int], form: str, *, wide: bool = False) -> None:
+    """Write numbers of cells as OpenFOAM does: a text, packed, one for all, or numbers."""
+    kind: np.dtype[Any] = np.dtype(np.int32)
+    if wide:
+        kind = np.dtype(np.int64)
+    arch = f'arch "LSB;label={8 * kind.itemsize};scalar=64"'
+    encoding = "ascii"
+    if form == "binary":
+        encoding = "binary"
+    head = f"/* a case */ FoamFile {{ version 2.0; format {encoding}; {arch}; class labelList; "
+    head += f"object {path.name}; }}\n// * * //\n\n"
+    body = f"{len(values)}\n(\n{' '.join(map(str, values))}\n)\n// * * //\n".encode()
+    if form == "uniform":
+        body = f"{len(values)}{{{values[0]}}}\n".encode()
+    if form == "binary":
+        body = f"{len(values)}\n(".encode() + np.array(values, kind).tobytes() + b")\n"
+    if form == "packed":
+        path.unlink()
+        path = path.with_name(f"{path.name}.gz")
+        body = gzip.compress(head.encode() + body)
+        head = ""
+    path.write_bytes(head.encode() + body)
+
+
+@pytest.mark.parametrize("form", ["text", "binary", "wide", "packed", "uniform"])
+@pytest.mark.parametrize("name", ["owner", "neighbour"])
+@pytest.mark.parametrize("cell", [11, -2, 2**31 - 1])
+def test_openfoam_with_a_cell_out_of_range_is_refused(
+    tmp_path: Path, name: str, form: str, cell: int
+) -> None:
+    """VTK makes as many cells as the greatest number, which takes minutes."""
+    path = written(tmp_path, "flow.foam")
+    count = {"owner": 11, "neighbour": 1}[name]
+    values = [cell] * count
+    place = tmp_path / "constant" / "polyMesh" / name
+    foam_list(place, values, form.replace("wide", "binary"), wide=form == "wide")
+    with pytest.raises(
+        FieldError, match=f"{name}: the file is damaged: a face has the cell {cell}"
+    ):
+        FlowField.from_file(path)
+
+
+@pytest.mark.filterwarnings("ignore::flowtex.errors.Notice")
+@pytest.mark.parametrize("form", ["text", "binary", "packed"])
+def test_openfoam_of_every_encoding_is_read(tmp_path: Path, form: str) -> None:
+    path = written(tmp_path, "flow.foam")
+    expected = FlowField.from_file(path)
+    owner = [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]
+    place = tmp_path / "constant" / "polyMesh" / "owner"
+    foam_list(place, owner, form)
+    assert np.array_equal(FlowField.from_file(path).points, expected.points)
+
+
+def test_openfoam_with_labels_of_64_bits_passes_the_check(tmp_path: Path) -> None:
+    """VTK reads such labels only where it is told."""
+    written(tmp_path, "flow.foam")
+    mesh = tmp_path / "constant" / "polyMesh"
+    foam_list(mesh / "owner", [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1], "binary", wide=True)
+    foam_list(mesh / "neighbour", [-1] * 11, "binary", wide=True)
+    check_foam(tmp_path)

@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
+from flowtex.sources.inspection.foam_files import check_foam
 from flowtex.sources.inspection.obj_files import check_obj
 from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.stl_files import check_stl
@@ -70,6 +71,8 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
+    if path.suffix.lower() == ".foam":
+        check_foam(path.parent)
     waiting = [(path, False)]
     seen = {realpath(path)}
     while waiting:
