@@ -72,6 +72,12 @@ CLEAR = """() => {
 SAVE = "() => jupyterapp.shell.currentWidget.context.save()"  #: Ends when the file is written.
 
 
+def wait_for_kernel(page: Page) -> None:
+    """Wait until the notebook that a page shows has a kernel that answers."""
+    page.wait_for_function(SHOWN)
+    page.evaluate(READY)
+
+
 class Lab:
     """A new notebook in a JupyterLab, or one that holds a text, in the place of any before."""
 
@@ -85,8 +91,7 @@ class Lab:
             page.evaluate(OPEN, name)
         else:
             page.goto(f"{server.address}/doc/tree/{name}?token={TOKEN}")
-        page.wait_for_function(SHOWN)
-        page.evaluate(READY)
+        wait_for_kernel(page)
 
     def run(self, code: str) -> None:
         """Run a cell; what it prints is waited for by :meth:`said`."""

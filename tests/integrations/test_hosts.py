@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from lab import wait_for_kernel
 from waiting import PATIENCE_S, wait_until, wait_until_served
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ HOSTS = {
         (
             *("jupyter", "notebook", "--no-browser", "--allow-root", "--port={port}"),
             *("--ServerApp.port_retries=0", "--IdentityProvider.token="),
+            "--JupyterNotebookApp.expose_app_in_browser=True",
         ),
     ),
     "shiny": (SHINY, ("shiny", "run", "app.py", "--port={port}")),
@@ -122,9 +124,8 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
     with served(host, tmp_path) as address:
         page.goto(address)
         if host == "notebook":
-            # Notebook 7 has the state of the kernel in an element that it does not show.
-            idle = page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]")
-            idle.wait_for(state="attached")
+            # Its indicator says "idle" before a kernel is asked for, too.
+            wait_for_kernel(page)
             page.locator(".jp-CodeCell .cm-content").click()
             page.keyboard.press("Shift+Enter")
         place = page.frame_locator("iframe") if host in FRAMED else page
