@@ -3,7 +3,7 @@
 
 import { eastNorth, lonLatOf } from "./lonlat.ts";
 import type { Corners } from "./mesh.ts";
-import { nodeAt, velocityAt, type PathPlace } from "./pointpath.ts";
+import { nodeAt, stepsAround, velocityAt, type PathPlace } from "./pointpath.ts";
 import type { Part } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { clamp } from "./vectors.ts";
@@ -83,4 +83,14 @@ export function velocityOnEarth(at: PathPlace, places: LonLats): [east: number, 
   const shares = sharesOf(place.map((each, k) => each - cell[k]));
   const corners = cornersOf(cell).map((node) => componentsAt({ ...at, place: node, position: nodeAt(scene, node) }));
   return [0, 1].map((k) => corners.reduce((sum, each, n) => sum + shares[n] * each[k], 0)) as Place;
+}
+
+/** Speed at a place, on the Earth where that is known; between two time steps the mean of those at both, as in colours. */
+export function speedAt(at: PathPlace, places: LonLats): number {
+  let speed = 0;
+  for (const [moment, share] of stepsAround(at.moment)) {
+    const then = { ...at, moment };
+    if (share) speed += share * Math.hypot(...(velocityOnEarth(then, places) ?? velocityAt(then)));
+  }
+  return speed;
 }

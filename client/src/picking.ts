@@ -19,6 +19,8 @@ export interface Point {
   /** Place between the nodes of the whole surface, (i, j); of triangles that of `placeIn`. */
   index: [number, number];
   values: Record<string, number>;
+  /** Speed, which is interpolated between time steps; else that of the velocity. */
+  speed?: number;
   /** Velocity on the Earth, to the east and to the north. */
   eastNorth?: [number, number];
   /** The kind of the critical point that is marked here, if any. */

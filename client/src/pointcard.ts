@@ -4,7 +4,7 @@ import type { Camera } from "./camera.ts";
 import { dom, numberText, shape, withUnit } from "./dom.ts";
 import type { Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
-import { velocityOnEarth } from "./onearth.ts";
+import { speedAt, velocityOnEarth } from "./onearth.ts";
 import type { Options } from "./options.ts";
 import { type Dot, type Line, pathShapes, type Place } from "./samples.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
@@ -179,8 +179,10 @@ export class PointCard {
     }
     const at = { scene, moment: shown, place, position };
     const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
-    const eastNorth = velocityOnEarth(at, this.host.parts.get("lonlat")) ?? undefined;
-    const now = { ...point, values: valuesAt(scene, shown, place), eastNorth };
+    const places = this.host.parts.get("lonlat");
+    const eastNorth = velocityOnEarth(at, places) ?? undefined;
+    const speed = exact ? undefined : speedAt(at, places);
+    const now = { ...point, values: valuesAt(scene, shown, place), eastNorth, speed };
     this.report(now);
     this.tell(now, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
@@ -198,10 +200,11 @@ export class PointCard {
 
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { unit } = header.speed;
-    const { eastNorth } = point;
+    const { eastNorth, speed } = point;
     // On a map this is the speed on the Earth, and not in the surface.
     const label = eastNorth ? "speed" : header.speed.label;
     const size = Math.hypot(...(eastNorth ?? velocity));
+    const speedShown = speed ?? size;
     const lines = new Map<string, string>();
     const where = placeText(point.position, header, this.host.parts, camera, true);
     if (eastNorth) {
@@ -214,7 +217,7 @@ export class PointCard {
       lines.set("position", where);
       lines.set(label.replace("speed", "velocity").replaceAll("|", ""), withUnit(text, unit));
     }
-    lines.set(label, withUnit(numberText(size, VELOCITY_DIGITS), unit));
+    lines.set(label, withUnit(numberText(speedShown, VELOCITY_DIGITS), unit));
     for (const [name, value] of Object.entries(point.values)) {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
       lines.set(named.label, withUnit(numberText(value), named.unit));

@@ -8,6 +8,8 @@ import type { Four, Scene } from "./scene.ts";
 import { isMoving, type Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
 
+/** The layer whose fourth channel is the speed. */
+const SPEED_LAYER = 2;
 /** Points of a path between two slices, where it is a parabola. */
 const POINTS_BETWEEN_SLICES = 8;
 /** How many times as long as the part that is summed the path is that is shown. */
@@ -84,7 +86,9 @@ export function layersAt(at: PathPlace, beside: Beside = [0, 0]): Layers {
       const from = signs[n] < 0 && layer > 0 ? other : layer;
       steps.forEach((step, k) => {
         if (!shares[k]) return;
-        step(from, n).forEach((value, c) => {
+        step(from, n).forEach((channel, c) => {
+          // A negative speed is the share by which streaks fade, where the flow crosses the surface.
+          const value = layer === SPEED_LAYER && c === 3 ? Math.max(channel, 0) : channel;
           sum[c] += weight * shares[k] * value * (c < 3 ? signs[n] : 1);
         });
       });
@@ -233,8 +237,22 @@ function upTo(start: Vector, side: Vector[], most: number): Vector[] {
   return result;
 }
 
+/** The moments of the time steps around one, and their shares. */
+export function stepsAround([before, after, late]: Moment): [Moment, number][] {
+  if (before === after) return [[[before, before, 0], 1]];
+  return [[[before, before, 0], 1 - late], [[after, after, 0], late]];
+}
+
 /** Velocity in the surface. */
 export function velocityAt(at: PathPlace): Vector {
+  let velocity: Vector = [0, 0, 0];
+  for (const [moment, share] of stepsAround(at.moment)) {
+    if (share) velocity = add(velocity, velocityAtStep({ ...at, moment }), share);
+  }
+  return velocity;
+}
+
+function velocityAtStep(at: PathPlace): Vector {
   const { scene, position } = at;
   const { slices, image, speed } = scene.header;
   const layers = layersAt(at);
@@ -242,7 +260,7 @@ export function velocityAt(at: PathPlace): Vector {
   const slope: Vector = [x, y, z];
   const small = scale(slope, (SMALL * (image ? 1 / image.stepSize[0] : slices.cell)) / (length(slope) || 1));
   const along = length(slope) > LEAST_SLOPE ? subtract(mover(at)(small) ?? position, position) : slope;
-  return scale(unit(along), layers(2)[3] * speed.typical);
+  return scale(unit(along), layers(SPEED_LAYER)[3] * speed.typical);
 }
 
 /** The path through a point as the picture has it that is so many of the page's pixels high. */

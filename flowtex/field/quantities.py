@@ -49,7 +49,9 @@ class PointValues:
     flow leaves the surface, the speed is that along it, and ``speed_label`` says so. For a field
     with a projection, ``lonlat`` are longitude and latitude in degrees, ``eastward`` and
     ``northward`` the velocity on the Earth and ``speed`` its magnitude, while ``velocity`` is that
-    on the map.
+    on the map. Between two time steps the speed is interpolated like a scalar, as in pictures: it
+    is the mean of the speeds at both, which is more than the magnitude of the mean velocity where
+    the flow turns.
 
     Examples
     --------
@@ -79,8 +81,8 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
     They are bilinear in cells that are parallelograms, in longitude and latitude or in space,
-    elsewhere linear in the triangles of the drawn surface; and linear in time. Scalars that belong
-    to cells have the value of the cell.
+    elsewhere linear in the triangles of the drawn surface; and linear in time, as the speed is too.
+    Scalars that belong to cells have the value of the cell.
 
     Parameters
     ----------
@@ -154,13 +156,19 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
             return float(value(steps, lambda step: np.ravel(step)[point.cell]))
         return float(weights @ value(steps))
 
+    def mean(vectors: Floats) -> Floats:
+        if field.sign_free:
+            return weighted_axis(vectors, weights)
+        return np.asarray(weights @ vectors)
+
+    def speed(step: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(mean(point.corners(step))))
+
     scale, weights = field.speed_scale, point.weights
-    vectors = scale * value(field.velocity)
-    velocity = weighted_axis(vectors, weights) if field.sign_free else weights @ vectors
     values: dict[str, Any] = {
         "position": point.interpolate(field.surface.points),
-        "velocity": velocity,
-        "speed": float(np.linalg.norm(velocity)),
+        "velocity": mean(scale * value(field.velocity)),
+        "speed": float(scale * value(field.velocity, speed)),
         "scalars": {name: scalar(name) for name in field.scalars},
     }
     if field.leaves_surface:
@@ -202,12 +210,17 @@ def _on_earth(
         east, north = projection.components(side, lat, point.corners(nodal))
         return np.asarray(np.stack([east, north], axis=-1) * field.speed_scale)
 
-    east, north = at_time(components).T
-    if len(weights) == 4:
-        eastward, northward = weights @ east, weights @ north
-    else:  # directions differ between the corners, as around a pole
-        vector = weights @ EARTH.vectors(lon, lat, east, north)
-        eastward, northward = EARTH.components(here[0], here[1], vector)
+    def mean(nodal: Floats) -> Floats:
+        if len(weights) == 4:
+            return np.asarray(weights @ nodal)
+        # Directions differ between the corners, as around a pole.
+        vector = weights @ EARTH.vectors(lon, lat, *nodal.T)
+        return np.array(EARTH.components(here[0], here[1], vector))
+
+    def speed(nodal: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(mean(components(nodal))))
+
+    eastward, northward = mean(at_time(components))
     # On the map, or on the sphere; beyond the edge of a map the surface continues.
     position = projection.positions(here[0], here[1])
     about, size = values["position"], np.ptp(corners, axis=0).max()
@@ -220,7 +233,7 @@ def _on_earth(
         "lonlat": (float(turned(here[0])), float(here[1])),
         "eastward": float(eastward),
         "northward": float(northward),
-        "speed": float(np.hypot(eastward, northward)),
+        "speed": float(at_time(speed)),
     }
 
 

@@ -291,6 +291,46 @@ def test_what_is_read_off_follows_the_time(client: ClientPage) -> None:
         assert point["values"]["speed"] == pytest.approx(speed, rel=1e-2)
 
 
+@pytest.mark.parametrize("projection", ["", "robinson"])
+def test_the_card_has_the_speed_between_opposite_flows(client: ClientPage, projection: str) -> None:
+    x, y = np.meshgrid(np.arange(0.0, 61, 5), np.arange(20.0, 71, 5))
+    points, flow = np.stack([x, y], axis=-1), np.stack([3 + 0 * x, 4 + 0 * x], axis=-1)
+    map_of: dict[str, Any] = {}
+    if projection:
+        drawn = Projection(projection, (30.0, 45.0))
+        points, flow = drawn.positions(x, y), drawn.vectors(x, y, 3 + 0 * x, 4 + 0 * x)
+        map_of = {"projection": drawn, "length_unit": "m", "time_unit": "s"}
+    steps = np.stack([flow, -2 * flow])
+    scalars = {"warmth": x, "speed": np.stack([5 + 0 * x, 10 + 0 * x])}
+    field = FlowField.from_arrays(points, steps, times=[0, 1], scalars=scalars, **map_of)
+    view = web_views(field, Options.split(samples=9, scalars="warmth"))[0]
+    data = view.page_data()
+    header = data.header(view.scene.settings, time=1 / 3)
+    client.mount(packed(data, header, (0, 1)), SIZE, smooth=False, controls=False)
+    client.sharp()
+    client.page.wait_for_function("() => viewers[0].canPick")
+    client.page.evaluate("() => viewers[0].card.choose(0.11, 0.07)")
+    got = card(client.page)
+    assert float(got["speed"].split()[0]) == pytest.approx(20 / 3, rel=0.01)
+    drawn_velocity = client.page.evaluate(DRAWN)["velocity"]
+    assert np.linalg.norm(drawn_velocity) < 0.02
+    if projection:
+        assert float(got["eastward"].split()[0]) == pytest.approx(0, abs=0.02)
+
+
+def test_a_path_has_no_velocity_where_streaks_fade(client: ClientPage) -> None:
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    along = np.where(x < 0.5, 1e-4, 3.0)
+    flow = np.stack([along, 0 * x, 4 + 0 * x], axis=-1)
+    field = FlowField.from_arrays(np.stack([x, y, 0 * x], axis=-1), flow, scalars={"warmth": x})
+    mount(client, field)
+    client.page.wait_for_function("() => viewers[0].canPick")
+    point = client.page.evaluate("() => viewers[0].card.choose(-0.3, 0.1)")
+    assert point["position"][0] < 0.4
+    assert float(card(client.page)["speed in the surface"]) == pytest.approx(0, abs=0.02)
+    assert np.linalg.norm(client.page.evaluate(DRAWN)["velocity"]) < 0.02
+
+
 def test_another_surface_closes_the_card(client: ClientPage) -> None:
     mount(client, leaving(share=0.0))
     client.page.mouse.click(300, 150)

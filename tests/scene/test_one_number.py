@@ -143,7 +143,13 @@ def assert_by_scene(field: Any, place: tuple[float, ...], time: float, *, probed
 
 
 def assert_in_picture(
-    drawn: Any, places: Floats, values: Floats, crs: Any, limits: tuple[float, float], time: float
+    drawn: Any,
+    places: Floats,
+    values: Floats,
+    crs: Any,
+    limits: tuple[float, float],
+    time: float,
+    scalars: str = "q",
 ) -> None:
     """Compare colours of a picture on axes, read through the bar."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -154,7 +160,7 @@ def assert_in_picture(
     ax: Any = figure.add_axes((0, 0, 1, 1), projection=crs)
     ax.set_facecolor("#ff00ff")  # where there are no data
     look: dict[str, Any] = {
-        "scalars": "q",
+        "scalars": scalars,
         "cmap": "gray",
         "clim": limits,
         "strength": 0.0,
@@ -207,14 +213,14 @@ def test_datasets_fields_and_maps_have_one_number(seed: int) -> None:
         lon, lat = between(rng, data["lon"].values), between(rng, data["lat"].values)
         time = moment(rng, data["time"].values)
         exact = data.interp(lon=lon, lat=lat)
+        exact["speed"] = np.hypot(exact["u"], exact["v"])
         if data.sizes["time"] > 1:
             exact = exact.interp(time=time)
-        u, v, q = (float(exact[key].squeeze()) for key in "uvq")
+        wanted = [float(exact[key].squeeze()) for key in ("u", "v", "speed", "q")]
         for field in fields:
             got = field.at(lon, lat, time=time)
             if got is None:
                 continue  # beyond the edge of the map
-            wanted = [u, v, np.hypot(u, v), q]
             # A column of the data that is nearly on the edge of a map is moved there.
             assert numbers(got) == pytest.approx(wanted, rel=2e-3, abs=5e-3 * size)
     got = fields[0].at(lon, lat, time=time)
@@ -242,6 +248,77 @@ def test_colours_of_a_picture_are_the_numbers(seed: int) -> None:
     limits = float(data["q"].min()), float(data["q"].max())
     assert_in_picture(drawn, places, values, projections(rng), limits, time)
     count_case(KIND)
+
+
+def opposite(*, leaves: bool = False) -> dict[str, Any]:
+    """Return steps (2, J, I, 3) of a flow that turns round, with their positions and times."""
+    y, x = np.mgrid[0:5.0, 0:6.0]
+    flow = np.stack([3 + 0 * x, 4 + 0 * x, 12.0 * leaves + 0 * x], axis=-1)
+    return {
+        "points": np.stack([x, y], axis=-1),
+        "velocity": np.stack([flow, -2 * flow]),
+        "times": [0.0, 1.0],
+        "scalars": {"q": x},
+    }
+
+
+def turning(kind: str, place: Path) -> Any:
+    """Return a field whose speed goes from 5 to 10 while its flow turns round."""
+    parts = opposite(leaves=kind == "leaves the surface")
+    if kind == "triangles":
+        points = parts.pop("points").reshape(-1, 2)
+        flow = parts.pop("velocity").reshape(2, -1, 3)[..., :2]
+        warmth = {"q": parts.pop("scalars")["q"].ravel()}
+        return FlowField.from_triangles(
+            points, Delaunay(points).simplices, flow, times=parts["times"], scalars=warmth
+        )
+    if kind in ("globe", "robinson"):
+        return FlowField.from_xarray(on_earth(parts), projection=kind)
+    if kind != "store":
+        return FlowField.from_arrays(**parts)
+    pytest.importorskip("zarr")
+    flowtex.pyramid.build(FlowField.from_arrays(**parts), place / "flow.zarr", progress=False)
+    return flowtex.pyramid.open(place / "flow.zarr")
+
+
+def on_earth(parts: dict[str, Any]) -> Any:
+    """Return a dataset of steps whose x and y are longitude and latitude."""
+    dims = ("time", "lat", "lon")
+    data = xr.Dataset(
+        {"u": (dims, parts["velocity"][..., 0]), "v": (dims, parts["velocity"][..., 1])},
+        {
+            "lon": ("lon", parts["points"][0, :, 0], DEGREES["lon"]),
+            "lat": ("lat", parts["points"][:, 0, 1], DEGREES["lat"]),
+            "time": ("time", parts["times"], {"units": "s"}),
+        },
+    )
+    for key, way in (("u", "eastward"), ("v", "northward")):
+        data[key].attrs = {"standard_name": f"{way}_wind", "units": "m s-1"}
+    data["q"] = dims[1:], parts["scalars"]["q"]
+    return data
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize(
+    "kind", ["grid", "leaves the surface", "triangles", "globe", "robinson", "store"]
+)
+def test_speed_is_linear_between_steps_by_every_route(kind: str, tmp_path: Path) -> None:
+    field = turning(kind, tmp_path)
+    place = (2.3, 1.6)
+    if kind == "leaves the surface":
+        place += (0.0,)
+    for time in (0.0, 1 / 3, 0.75):
+        got = field.at(*place, time=time)
+        assert got is not None
+        speed = 5 * (1 + time)
+        assert got.speed == pytest.approx(speed, rel=1e-3)
+        assert_by_scene(field, place, time, probed=kind != "store")
+        scene = Scene.of(field)
+        scene.time = time
+        np.testing.assert_allclose(scene.scalar("speed")[field.valid], speed, rtol=2e-3)
+    if kind != "globe":  # which lies on axes as the map of their projection
+        spots, limits = np.array([place[:2]]), (4.0, 11.0)
+        assert_in_picture(field, spots, np.array([speed]), None, limits, time, "speed")
 
 
 @property_test(8, fuzz=60)
@@ -305,13 +382,14 @@ def test_triangles_and_sections_have_one_number(seed: int) -> None:
         got = field.at(*place.tolist(), time=time)
         if got is None or triangles.find_simplex(place) < 0:
             continue
-        exact: list[Any] = []
-        for part in parts:
-            later = part[min(before + 1, steps - 1)]
-            mixed = part[before] * (1 - share) + later * share
-            exact.append(float(LinearNDInterpolator(triangles, mixed)(place)[0]))
+        of_steps = []
+        for step in (before, min(before + 1, steps - 1)):
+            made = [LinearNDInterpolator(triangles, part[step]) for part in parts]
+            u, v, q = (float(each(place)[0]) for each in made)
+            of_steps.append([u, v, np.hypot(u, v), q])
         read = [*got.velocity[:2], got.speed, got.scalars["q"]]
-        assert read == pytest.approx([*exact[:2], np.hypot(*exact[:2]), exact[2]], abs=1e-6)
+        exact = np.average(of_steps, axis=0, weights=[1 - share, share])
+        assert read == pytest.approx(exact.tolist(), abs=1e-6)
         assert_by_scene(field, tuple(place.tolist()), time, probed=rng.uniform() < PROBED)
     assert_section(rng, steps)
     count_case(KIND)

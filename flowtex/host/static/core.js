@@ -724,57 +724,61 @@ abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"
 start,dates,step},times2,time){if(start===null){if(!dates.length)return null;let apart=times2.map(each=>Math.abs(each-time));
 return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(
 first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:
-19).replace("T"," ")}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_SLOPE=1e-6,SMALL=.001;
-function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[-di-dj,
-di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+columns.before,place[1]+
-dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map(
-(share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}
-function layersAt(at,beside=[0,0]){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(at,beside),[before,after,late]=moment,
-numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:[before,after]).map(step=>scene.texels(step,numbers)),
-shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map((_,n)=>steps[0](0,n))):texels.
-map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+(layer>slices.lags.length?
--1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,n).forEach(
-(value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];
-return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}
-function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(
-reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=
-POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/
-(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[
-before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{image,geometry}=scene.header;if(!image)
-return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=image,here=[between(alongI,place[0]),between(
-alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];
-return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(
-pointAt(scene,place),scene.header.geometry.center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.
-cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,
-local)}function sidesAt(scene,place){let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(
-scene,placeIn(Math.floor(place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(
-0,0))]}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(
-at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5))]}function partingAt(at,half){let{scene,place}=at,[first,second]=sidesAt(
-scene,place),normal=cross2(first,second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).
-slice(0,3))),across=unit(cross2(normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(
-normal,first)].map(side=>by*dot2(across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){
-let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
-let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,image}=scene.header,normal=cross2(...sidesAt(
-scene,place)),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/
-rows;if(image){let[across,up]=[image.alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.
-length-2);return(along2[n+1]-along2[n])*image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.
-lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2}let texel=geometry.extent/Number(settings.resolution),aside=dot2(ray,
-camera.at(camera.state.focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.
-grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],
-[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(
-add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function velocityAt(at){
-let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(
-slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(
-at)(small)??position,position):slope;return scale2(unit(along2),layers(2)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
-let{scene,position}=at,{slices,image}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
-slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
-sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
-lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}
-let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=sides===2?Math.floor(samples/
-2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(
-side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,
-FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
+19).replace("T"," ")}var SPEED_LAYER=2,POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_SLOPE=1e-6,
+SMALL=.001;function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){let more=[
+-di-dj,di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+columns.before,
+place[1]+dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*
+t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+
+column,share]})}function layersAt(at,beside=[0,0]){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(at,beside),
+[before,after,late]=moment,numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:[before,after]).map(step=>scene.
+texels(step,numbers)),shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map((_,n)=>steps[0](
+0,n))):texels.map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+(layer>slices.
+lags.length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,
+n).forEach((channel,c)=>{let value=layer===SPEED_LAYER&&c===3?Math.max(channel,0):channel;sum[c]+=weight*shares2[k]*value*
+(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(
+together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){let[
+before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
+lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/
+POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+
+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[before,from]=[after,lags[m]]}return result2}
+function mover({scene,place,position}){let{image,geometry}=scene.header;if(!image)return moved=>add(position,fromFrame(geometry.
+frame,moved));let{alongI,alongJ}=image,here=[between(alongI,place[0]),between(alongJ,place[1])],start=pointAt(scene,place);
+return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,
+subtract2(pointAt(scene,at),start))}}function nodeAt(scene,place){return add(pointAt(scene,place),scene.header.geometry.
+center)}function pointAt(scene,place){let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(
+c=>interpolated(corners,n=>data[3*n+c]));return fromFrame(scene.header.geometry.frame,local)}function sidesAt(scene,place){
+let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(
+place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0))]}let[i,j]=place.map(
+(n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(at(.5,0),at(-.5,0)),subtract2(
+at(0,.5),at(0,-.5))]}function partingAt(at,half){let{scene,place}=at,[first,second]=sidesAt(scene,place),normal=cross2(first,
+second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).slice(0,3))),across=unit(cross2(
+normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(normal,first)].map(side=>by*dot2(
+across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){let n=Math.min(
+Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){let n=values.
+findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-1])}function grainAt({
+scene,place,position},settings,camera,rows){let{geometry,image}=scene.header,normal=cross2(...sidesAt(scene,place)),{height,
+ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(image){let[
+across,up]=[image.alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+
+1]-along2[n])*image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.lod?Math.max(pixel/Math.
+sqrt(facing),texel2):texel2}let texel=geometry.extent/Number(settings.resolution),aside=dot2(ray,camera.at(camera.state.
+focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.grain);return settings.
+lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],[from,left]=[start,
+most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(
+point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function stepsAround([before,
+after,late]){return before===after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){
+let velocity=[0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,
+moment}),share));return velocity}function velocityAtStep(at){let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(
+at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),
+along2=length2(slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(
+SPEED_LAYER)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,image}=scene.
+header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(
+at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
+1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
+end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
+samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.
+spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));
+return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(
+count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
 i,j]){return[[i,j],[i+1,j],[i,j+1],[i+1,j+1]]}function cellOf({header},place){return place.map((at,axis)=>clamp(Math.floor(
 at),0,header.geometry.shape[1-axis]-2))}var sharesOf=([s,t])=>[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t];function sharesIn(scene,cell,[
 lon,lat],places){let{earth}=scene.header,known=cornersOf2(cell).map(node=>earth&&lonLatOf(earth,nodeAt(scene,node),places));
@@ -792,7 +796,9 @@ function velocityOnEarth(at,places){let{scene,place,position}=at,{earth,geometry
 position,places);if(!lonLat)return null;let componentsAt=each=>eastNorth(earth,each.position,velocityAt(each),places),cell=cellOf(
 scene,place);if(geometry.triangles||!sharesIn(scene,cell,lonLat,places))return componentsAt(at);let shares2=sharesOf(place.
 map((each,k)=>each-cell[k])),corners=cornersOf2(cell).map(node=>componentsAt({...at,place:node,position:nodeAt(scene,node)}));
-return[0,1].map(k=>corners.reduce((sum,each,n)=>sum+shares2[n]*each[k],0))}var FARTHEST=16;function pickedPoint(at,root,camera,moment,[x,y]){let{layer,coordinate,triangle}=at,{geometry}=layer.scene.
+return[0,1].map(k=>corners.reduce((sum,each,n)=>sum+shares2[n]*each[k],0))}function speedAt(at,places){let speed=0;for(let[
+moment,share]of stepsAround(at.moment)){let then={...at,moment};share&&(speed+=share*Math.hypot(...velocityOnEarth(then,
+places)??velocityAt(then)))}return speed}var FARTHEST=16;function pickedPoint(at,root,camera,moment,[x,y]){let{layer,coordinate,triangle}=at,{geometry}=layer.scene.
 header,near=geometry.triangles?placeIn(triangle,...coordinate):placeAmong(geometry,...coordinate),ray=camera.ray(x,y),beside=onRay(
 layer.scene,near,ray)[1],[position,there]=onRay(layer.scene,beside,ray),place=placeOnEarth(layer.scene,there,position,root.
 parts.get("lonlat")),index=geometry.triangles?place:wholeIndex(root.header,layer,place);return{point:{position,index,values:valuesAt(
@@ -1673,28 +1679,29 @@ this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=this.h
 !header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.
 position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now2={
 ...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now2,header,camera),this.show(now2,position,[])}let at={
-scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},eastNorth2=velocityOnEarth(
-at,this.host.parts.get("lonlat"))??void 0,now={...point,values:valuesAt(scene,shown,place),eastNorth:eastNorth2};this.report(
-now),this.tell(now,path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.
-explain(pixel)??[];this.show(path,position,samples)}report(point){let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(
-chosen.point.values)===JSON.stringify(point.values)||(this.chosen={...chosen,point:{...chosen.point,values:point.values}},
-this.host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){let{unit:unit3}=header.speed,{eastNorth:eastNorth2}=point,
-label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),lines=new Map,where=placeText(point.
-position,header,this.host.parts,camera,!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set(
-"eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),
-unit3))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),
-lines.set(label.replace("speed","velocity").replaceAll("|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(
-size,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(
-each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}point.mark&&lines.
-set("critical point",point.mark),this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom(
-"dd",{},[value])])),this.element.hidden=!this.hasNumbers||this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,
-stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf3=point2=>{let place=camera.
-project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
-map(placeOf3))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
-sampled,directed}=drawn.path,point=placeOf3(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
-dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf3(position);return place?[{place,radius:DOT_RADIUS*Math.
-sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
-dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},places=this.host.
+parts.get("lonlat"),eastNorth2=velocityOnEarth(at,places)??void 0,speed=exact?void 0:speedAt(at,places),now={...point,values:valuesAt(
+scene,shown,place),eastNorth:eastNorth2,speed};this.report(now),this.tell(now,path,header,camera);let pixel={at,settings,
+camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.show(path,position,samples)}report(point){
+let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(chosen.point.values)===JSON.stringify(point.values)||(this.chosen=
+{...chosen,point:{...chosen.point,values:point.values}},this.host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){
+let{unit:unit3}=header.speed,{eastNorth:eastNorth2,speed}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(
+...eastNorth2??velocity),speedShown=speed??size,lines=new Map,where=placeText(point.position,header,this.host.parts,camera,
+!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),
+unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,
+VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll(
+"|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(speedShown,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.
+entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
+withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark),this.list.replaceChildren(...[
+...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!this.hasNumbers||this.
+host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,
+clientHeight:height}=stage,placeOf3=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/
+2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf3))place?lines2[lines2.length-1].push(place):
+lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf3(drawn.point),
+{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf3(
+position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.
+length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(
+([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
