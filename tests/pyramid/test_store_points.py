@@ -188,7 +188,7 @@ def test_what_is_derived_needs_all_nodes(tmp_path: Path) -> None:
     build(derived, tmp_path / "more.zarr", progress=False)
     more: Any = open_store(tmp_path / "more.zarr")
     for place in places(field, 10):
-        longitude, latitude = place
+        longitude, latitude = place[:2]
         got = more.at(longitude, latitude, time=1.5)
         wanted = derived.at(longitude, latitude, time=1.5)
         if wanted is not None and np.isfinite(wanted.scalars["vorticity"]):

@@ -304,9 +304,9 @@ def on_earth(parts: dict[str, Any]) -> Any:
 )
 def test_speed_is_linear_between_steps_by_every_route(kind: str, tmp_path: Path) -> None:
     field = turning(kind, tmp_path)
-    place = (2.3, 1.6)
+    place: tuple[float, ...] = (2.3, 1.6)
     if kind == "leaves the surface":
-        place += (0.0,)
+        place = (*place, 0.0)
     for time in (0.0, 1 / 3, 0.75):
         got = field.at(*place, time=time)
         assert got is not None
