@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from triangle_meshes import cube, random_plane, soup, sphere
+from triangle_meshes import cube, polygon, random_plane, soup, sphere, tube
 
 from flowtex import FlowField
 from flowtex.field.uncertainty import with_uncertainty
@@ -155,6 +155,13 @@ def across(noise: float = 0.0) -> FlowField:
     points, triangles = cube(4)
     random = np.random.default_rng(3).normal(0, 1, points.shape)
     return FlowField.from_triangles(points, triangles, np.array([1.0, 0.0, 0.0]) + noise * random)
+
+
+def screw() -> FlowField:
+    """A flow along a closed cylinder that turns about it, on triangles that are long and thin."""
+    points, triangles = tube(polygon(40, 4), np.linspace(-1, 1, 4), closed=True)
+    velocity = np.column_stack([np.ones(len(points)), -points[:, 2], points[:, 1]])
+    return FlowField.from_triangles(points, triangles, velocity)
 
 
 def arched() -> FlowField:

@@ -43,6 +43,33 @@ def cube(cells: int) -> Mesh:
     return np.asarray(mesh.points, float), mesh.regular_faces.astype(int)
 
 
+def tube(around: Floats, along: Floats, *, closed: bool) -> Mesh:
+    """Return a tube along x with a section (n, 2) at places (m,), maybe with ends."""
+    count = len(around)
+    points = np.column_stack([np.repeat(along, count), np.tile(around, (len(along), 1))])
+    node = np.arange(len(points)).reshape(len(along), count)
+    after = np.roll(node, -1, axis=1)
+    near = np.stack([node[:-1], after[:-1], after[1:]], axis=-1)
+    far = np.stack([node[:-1], after[1:], node[1:]], axis=-1)
+    parts = [near.reshape(-1, 3), far.reshape(-1, 3)]
+    if closed:
+        middle = np.full(count, len(points))
+        parts.append(np.column_stack([after[0], node[0], middle]))
+        parts.append(np.column_stack([node[-1], after[-1], middle + 1]))
+        ends = [[along[0], 0, 0], [along[-1], 0, 0]]
+        points = np.concatenate([points, ends])
+    return points, np.concatenate(parts)
+
+
+def polygon(corners: int, pieces: int) -> Floats:
+    """Return points (n, 2) on a regular polygon of radius one half, whose sides are in pieces."""
+    angle = 2 * np.pi * (np.arange(corners + 1) + 0.5) / corners
+    corner = 0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    share = np.arange(pieces)[:, None] / pieces
+    sides = corner[:-1, None] * (1 - share) + corner[1:, None] * share
+    return np.asarray(sides.reshape(-1, 2))
+
+
 def soup(rng: np.random.Generator, mesh: Mesh) -> Mesh:
     """Return triangles that share no nodes and face either way, as STL files have them."""
     points, triangles = mesh

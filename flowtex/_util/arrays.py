@@ -51,6 +51,12 @@ def dot(one: Floats, other: Floats) -> Floats:
     return np.asarray(product @ np.ones(product.shape[-1], product.dtype))
 
 
+def smoothstep(low: float, high: float, x: Floats) -> Floats:
+    """Return a smooth step from 0 at ``low`` to 1 at ``high``."""
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(t * t * (3.0 - 2.0 * t))
+
+
 def norm(vectors: Floats) -> Floats:
     """Return lengths of vectors (..., C), of shape (...)."""
     return np.sqrt(dot(vectors, vectors))

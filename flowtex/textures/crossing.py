@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex._util.arrays import norm
+from flowtex._util.arrays import norm, smoothstep
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 
@@ -36,14 +36,8 @@ def shown_speed(field: FlowField, step: int, typical: float) -> Floats:
     share = np.divide(along, whole, out=np.ones_like(whole), where=whole > 0)
     few = np.flatnonzero((np.minimum(shown, share) < FADING_SHARE).ravel())
     low_share = share.ravel()[few]
-    clear = _smooth(np.maximum(shown.ravel()[few], low_share) / FADING_SHARE)
-    clear *= _smooth(low_share / ROUNDING_SHARE)
+    clear = smoothstep(0.0, FADING_SHARE, np.maximum(shown.ravel()[few], low_share))
+    clear *= smoothstep(0.0, ROUNDING_SHARE, low_share)
     faded = few[clear < 1.0]
     shown.ravel()[faded] = clear[clear < 1.0] - 1.0
     return shown
-
-
-def _smooth(share: Floats) -> Floats:
-    """Return a smooth step from 0 at 0 to 1 at 1."""
-    t = np.clip(share, 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t))

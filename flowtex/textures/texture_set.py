@@ -9,7 +9,8 @@ layer                 first three channels                                   fou
 0                     slope at lag zero                                      unit of lag
 1 ... M               slopes of the backward slices                          1: reach; 2: speed
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
-the last              of streamlines: layer 0 in cells, two channels         speed
+the last              of streamlines: layer 0 in cells, two channels;        speed
+                      sine of the angle by which paths leave their face
 ====================  =====================================================  =================
 
 Layers 3 and M + 3 have the uncertainty of the direction. The speed in layer 2 is that of
@@ -29,16 +30,18 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats32, Halves
+from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves
 from flowtex._util.arrays import dot, norm
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
 from flowtex.settings import SettingsError
 from flowtex.textures.crossing import shown_speed
+from flowtex.textures.edge_paths import EdgePaths
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -176,7 +179,7 @@ class TextureSet:
         """Drop data that are only needed to make layers."""
         self.store.forget()
         self.geometry.field.forget()
-        for name in ("_displacements", "_length"):
+        for name in ("_displacements", "_edge_paths", "_length"):
             self.__dict__.pop(name, None)
 
     def layers(self, step: int = 0, dtype: type = np.float16) -> AnyArray:
@@ -201,6 +204,7 @@ class TextureSet:
             return result
         if self.in_cells and layer == self.count - 1:
             result[..., :2] = slices.rate[0] * (self.cell / self.unit)
+            self._mark_edges(slices, tangent, result[..., 2])
             # Tangents by arc length do not contain the speed.
             timed = self.store.parameter == "time"
             result[..., 3] = 1.0 if timed else np.maximum(self._speed(slices), 0.0)
@@ -219,6 +223,7 @@ class TextureSet:
             error = SLOPE_ERROR * float(slices.lags[m]) * least * self.pace
             for channel, moved in enumerate(self._displacements(displacement[0, m], error)):
                 np.multiply(moved, by_length, out=result[..., channel])
+        self._straighten(slices, tangent, (side, m), result[..., :3])
         if m == 0:
             # Nodes at rest leave the reach to their neighbours.
             still = ~np.abs(slices.rate[0]).any(axis=-1)
@@ -229,6 +234,40 @@ class TextureSet:
         if m + 1 == UNCERTAIN_LAYER and (field := self.geometry.field).uncertainty:
             result[..., 3] = unknown_share(field, self._step(slices))[self.geometry.texels]
         return result
+
+    def _straighten(
+        self, slices: TraceSlices, tangent: AnyArray, number: tuple[int, int], slopes: AnyArray
+    ) -> None:
+        """Let paths that leave their faces go straight on, in the slice ``number`` of a side."""
+        if self._edge_paths is None:
+            return
+        side, m = number
+        length = float(slices.lags[m]) * self._length[..., 0]
+        sines = self._leaving(slices, tangent, side)
+        self._edge_paths.straighten(slopes, tangent, sines, length)
+
+    def _mark_edges(self, slices: TraceSlices, tangent: AnyArray, channel: AnyArray) -> None:
+        """Write how paths of any side leave their faces."""
+        if self._edge_paths is None:
+            return
+        by_side = [self._leaving(slices, tangent, side) for side in range(self.sides)]
+        channel[self._edge_paths.nodes] = np.max(by_side, axis=0)
+
+    def _leaving(self, slices: TraceSlices, tangent: AnyArray, side: int) -> Floats:
+        """Return the sines by which paths to a side leave their faces at sharp edges."""
+        assert self._edge_paths is not None
+        moved = slices.displacement
+        if side and slices.forward is not None:
+            moved = slices.forward
+        return self._edge_paths.sines(tangent, moved[0, 0] @ self.geometry.frame.T)
+
+    @cached_property
+    def _edge_paths(self) -> EdgePaths | None:
+        """Nodes of sharp edges, if there are any."""
+        surface = self.geometry.field.surface
+        if not isinstance(surface, TriangleSurface) or not surface.at_edge.any():
+            return None
+        return EdgePaths.of(surface, self.geometry.texels)
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
         field, step = self.geometry.field, self._step(slices)

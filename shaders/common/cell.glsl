@@ -82,15 +82,17 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   for (int n = 0; n < FLOWTEX_CELL_NODES; ++n)
   {
 #ifdef FLOWTEX_TRIANGLES
-    vec3 moved = flowtexFetch(n, 0).xyz * flowtexFetch(n, u_rateLayer).w;
+    vec4 turn = flowtexFetch(n, u_rateLayer);
+    vec3 moved = flowtexFetch(n, 0).xyz * turn.w;
     rate[n] = flowtexBy * moved;
     // One along any side of the triangle.
     float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
     float speed = length(moved);
-    // Velocities lie in the tangent planes of the nodes, and the path in that of the triangle.
+    // Velocities lie in the tangent planes of the nodes, and the path in that of the triangle. Paths
+    // of nodes at sharp edges may leave their face and not its plane.
     float height = dot(flowtexCellNormal, moved);
     velocity[n] = moved - height * flowtexCellNormal;
-    off = max(off, abs(height) / max(speed, FLOWTEX_LEAST_SPEED));
+    off = max(off, max(turn.z, abs(height) / max(speed, FLOWTEX_LEAST_SPEED)));
     for (int side = 0; side < u_sides; ++side)
     {
       vec3 slope = flowtexFetch(n, 1 + side * u_lagCount).xyz;

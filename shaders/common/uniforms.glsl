@@ -15,7 +15,7 @@ uniform int u_lagCount;
 uniform int u_sides;        // 1 backward only, 2 forward too
 uniform float u_unit;       // length that the fourth channel of layer 0 is measured in
 #ifdef FLOWTEX_CELLS
-uniform int u_rateLayer;    // layer 0 in cells, and the speed
+uniform int u_rateLayer;    // layer 0 in cells, how paths leave a face, and the speed
 uniform float u_cell;       // of this length
 #endif
 

@@ -95,6 +95,14 @@ class TriangleSurface(NodeSurface):
         """Nodes of sharp edges, (1, N), beside other nodes at the same place for other faces."""
         return (np.bincount(self.places)[self.places] > 1)[None]
 
+    @cached_property
+    def node_lengths(self) -> Floats:
+        """Length of the longest triangle at each node, (1, N)."""
+        result = np.zeros(self.shape)
+        for corner in self.triangles.T:
+            np.maximum.at(result[0], corner, self.cell_lengths)
+        return result
+
     @property
     def joined(self) -> Indices:
         """Nodes at the corners, (M, 3), the same ones for all faces at a sharp edge."""

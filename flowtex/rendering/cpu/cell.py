@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex._util.arrays import smoothstep
 from flowtex.rendering.cpu.path import Places, Slices, TrianglePlaces, TriangleSlices
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
@@ -32,11 +33,11 @@ class CellPath:
             sine_off = np.maximum(sine_off, sine)
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(coefficients[:, :3, 0], axis=1) / speed
-        edge = _smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
+        edge = smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
-        far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
+        far = smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
         #: Share of these paths in those of the fragments, (N,).
-        self.share = np.maximum(1 - _smoothstep(const.PARTING, const.AGREED, agreed), edge)
+        self.share = np.maximum(1 - smoothstep(const.PARTING, const.AGREED, agreed), edge)
         self.share *= 1 - far
         self._near = np.flatnonzero(self.share)
         self._coefficients = coefficients[self._near] / speed[self._near, None, None]
@@ -127,6 +128,7 @@ def _triangle(
         lengths = np.linalg.norm(moved, axis=1), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
         height = np.einsum("nc,nc->n", normal, moved)
         off = np.abs(height) / np.maximum(lengths[0], const.LEAST_SPEED)
+        off = np.maximum(off, turn[:, 2])
         for side in range(values["u_sides"]):
             slope = slices.at_node(number, 1 + side * len(values["u_lags"]))[:, :3]
             length = np.maximum(np.linalg.norm(slope, axis=1), const.LEAST_SPEED)
@@ -145,8 +147,3 @@ def unit(vector: Floats) -> Floats:
     return np.asarray(
         vector / np.sqrt(np.maximum(_dot(vector, vector), const.LEAST_SQUARE))[:, None]
     )
-
-
-def _smoothstep(low: float, high: float, x: Floats) -> Floats:
-    t = np.clip((x - low) / (high - low), 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t))
