@@ -156,7 +156,7 @@ export class FlowtexLayer implements CustomLayerInterface {
     };
     const view = await add();
     if (this.gl !== gl) return;
-    this.scene = { ...shared, add, make, mercator: new Mercator(header.earth, view.parts.get("lonlat")) };
+    this.scene = { ...shared, add, make, mercator: new Mercator(header.earth, view.parts.get("lonlat"), header.ends) };
     view.requests.open();
     this.options.onOpen?.();
     this.map?.triggerRepaint();
@@ -359,9 +359,19 @@ async function fetched(address: string): Promise<PackedScene> {
   return (await answer.json()) as PackedScene;
 }
 
-/** A header of what lies on a map: coasts and land are the map's. */
+/** A header of what lies on a map: coasts and land are the map's, which shows what goes around the Earth many times. */
 function bare(header: Header): Header {
   const { earth } = header;
   const none = { land: null, coastlines: false, graticule: false };
-  return { ...header, background: [0, 0, 0], opacity: 1, earth: earth && { ...earth, ...none } };
+  return { ...header, ends: endsOf(header), background: [0, 0, 0], opacity: 1, earth: earth && { ...earth, ...none } };
+}
+
+/** Where a map ends that goes around the Earth; null for others. */
+function endsOf({ earth, geometry, slices }: Header): Header["ends"] {
+  const { map } = earth ?? {};
+  if (!earth || !map || !geometry.periodic[1]) return null;
+  // The box of the map is a little larger.
+  const middle = 0.5 * (map[0] + map[2]);
+  const half = 0.5 * (slices.trace?.offset[3] ?? 2 * Math.PI * earth.radius);
+  return [middle - half, middle + half];
 }

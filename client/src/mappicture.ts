@@ -13,6 +13,8 @@ import { clamp, subtract, toFrame } from "./vectors.ts";
 /** Units along a side of a tile, in MapLibre, and its deepest tiles. */
 const TILE_UNITS = 8192;
 const DEEPEST_TILE = 22;
+/** Pixels of the page along a side of the map at zoom 0. */
+const WORLD_PIXELS = 512;
 /** Cells along a side of what is drawn on a globe. */
 const GLOBE_CELLS = 64;
 
@@ -115,7 +117,9 @@ export class MapPicture {
     const cells = globe ? GLOBE_CELLS : 1;
     // The world in which the middle of the picture lies next to that of the map.
     const nearest = globe ? 0 : Math.round(placeOn(frame.center)[0] - middle[0]);
-    for (const beside of frame.isRepeated && !globe ? [-1, 0, 1] : [0]) {
+    let most = 0;
+    if (frame.isRepeated && !globe) most = Math.ceil(gl.drawingBufferWidth / (WORLD_PIXELS * 2 ** frame.zoom));
+    for (let beside = -most; beside <= most; beside += 1) {
       const tileID = { wrap: world + nearest + beside, canonical };
       const data = frame.getProjectionData({ tileID, applyGlobeMatrix: globe });
       programs.use(program, {
@@ -128,6 +132,8 @@ export class MapPicture {
         u_mapCells: cells,
         u_flowMatrix: fromTile(this.view.header, camera, mercator, tile, 1 / (tiles * TILE_UNITS)),
         u_flowPicture: 0,
+        u_flowPixel: (2 * camera.height) / this.view.canvas.height / (x1 - x0),
+        u_repeated: !!this.view.header.ends,
         u_opacity: frame.opacity,
       });
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * cells + 2, cells);

@@ -3,7 +3,7 @@
 // Places of the web map are from 0 to 1, from west to east and from north to south.
 
 import type { CameraState } from "./camera.ts";
-import type { Earth, Part } from "./protocol.ts";
+import type { Earth, Header, Part } from "./protocol.ts";
 import type { Shown } from "./tilechoice.ts";
 import { clamp, dot, type Vector } from "./vectors.ts";
 
@@ -54,10 +54,12 @@ export class Mercator {
   /** Least and greatest position. */
   readonly box: readonly number[];
 
-  constructor(earth: Earth | null, lonLat: Part | undefined) {
+  /** `ends` are those along x of a map around the Earth. */
+  constructor(earth: Earth | null, lonLat: Part | undefined, ends?: Header["ends"]) {
     const map = earth?.map;
     if (!map || !lonLat) throw new Error(`the flow is not on a map; ${REMEDY}`);
-    this.box = map;
+    const [west, east] = ends ?? [map[0], map[2]];
+    this.box = [west, map[1], east, map[3]];
     const [rows, columns] = lonLat.shape;
     const at = (j: number, i: number) => {
       const [x, y, z] = lonLat.data.subarray(3 * (j * columns + i));
@@ -74,6 +76,11 @@ export class Mercator {
     const [x, y] = this.placeOf(middle.position);
     const isNear = Math.abs(x - turned(middle.place[0])) < NEAR && Math.abs(y - middle.place[1]) < NEAR;
     if (!isNear) throw new Error(`the flow is on another map; ${REMEDY}`);
+    if (!ends) return;
+    // The ends meet at a place, which single precision would miss by many metres.
+    this.slope = [1 / (east - west), -1 / (east - west)];
+    const place = [turned(middle.place[0]), middle.place[1]];
+    this.origin = [0, 1].map((k) => place[k] - this.slope[k] * middle.position[k]) as Place;
   }
 
   placeOf(position: readonly number[]): Place {
@@ -99,6 +106,8 @@ export class Mercator {
   look(map: MapLook, z: number): FlowLook[] {
     const unit = 1 / (512 * 2 ** map.zoom * this.slope[0]);
     const [x, y] = this.positionOf(placeOn(map.center));
+    const whole = this.wholeLook(map, unit, [x, y, z]);
+    if (whole) return [whole];
     const from = (at: number) =>
       map.globe ? this.globeLook(map, unit, [at, y, z]) : this.flatLook(map, unit, [at, y, z]);
     const looks = [from(x)];
@@ -110,6 +119,19 @@ export class Mercator {
     const isWhole = x - inside <= low && x + inside >= high;
     if (!isWhole && Math.abs(other - clamp(other, low, high)) < reach) looks.push(from(other));
     return looks;
+  }
+
+  /** All of data around the Earth, where a map shows both of their ends and copies beyond; else null. */
+  private wholeLook(map: MapLook, unit: number, [x, y, z]: number[]): FlowLook | null {
+    const [low, , high] = this.box;
+    const isAround = Math.abs((high - low) * this.slope[0] - 1) < NEAR;
+    if (!isAround || map.globe || map.pitch > 0) return null;
+    const reach = unit * farthest(map);
+    if (x - reach > low || x + reach < high) return null;
+    let { height } = map;
+    if (map.bearing) height = (2 * reach) / unit;
+    const width = (high - low) / unit;
+    return this.flatLook({ ...map, width, height, bearing: 0 }, unit, [0.5 * (low + high), y, z]);
   }
 
   private flatLook({ width, height, bearing, pitch, fov }: MapLook, unit: number, [x, y, z]: number[]): FlowLook {

@@ -298,6 +298,8 @@ export interface Header {
   variant: string[];
   shaders: Record<ShaderName, string> & Partial<Record<TraceShaderName, string>>;
   geometry: Geometry;
+  /** Positions along x of both ends of a map around the Earth that goes on beyond each at the other one. */
+  ends?: [west: number, east: number] | null;
   slices: {
     count: number;
     channels: number;

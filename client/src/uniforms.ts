@@ -2,7 +2,7 @@
 // fixture holds both to the same values. They depend on the view, so all is in double precision.
 
 import { isSignFree, type Header, type ImageTextures, type Settings } from "./protocol.ts";
-import { clamp, scale, subtract, toFrame, type Vector } from "./vectors.ts";
+import { clamp, dot, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
 export type Uniform = boolean | number | readonly number[] | Float32Array;
 
@@ -62,6 +62,7 @@ export function uniforms(header: Header, settings: Settings, view: ViewState): R
     u_fixed: s.fixed_grain,
     ...motionUniforms(header, s, view),
     ...noiseOrigin(header, view, finest),
+    ...turnUniforms(header, view, finest),
     u_noiseFinest: finest,
     u_texel: geometry.extent / s.resolution,
     u_apart: arrowDistance(header, settings) * view.density,
@@ -112,6 +113,7 @@ export function variantOf(header: Header, settings: Settings, isClose: boolean, 
     FLOWTEX_CELLS: isClose,
     FLOWTEX_MOVING: isMoving(header, settings, still),
     FLOWTEX_SPARSE: isSparse(header, settings),
+    FLOWTEX_REPEATED: !!header.ends,
   };
   return Object.entries(chosen).flatMap(([name, holds]) => (holds ? [name] : []));
 }
@@ -153,6 +155,27 @@ function noiseOrigin(header: Header, view: ViewState, finest: number): Record<st
     u_noiseOriginEven: even,
     u_noiseOriginOdd: whole,
     u_noiseRestOdd: odd.map((x, k) => x - whole[k]),
+  };
+}
+
+/** The ends of a map around the Earth, and from one to the other in the finest cells of both families of lattices. */
+function turnUniforms(header: Header, view: ViewState, finest: number): Record<string, Uniform> {
+  const { ends, geometry, constants } = header;
+  if (!ends) return {};
+  const { frame, center } = geometry;
+  const across = toFrame(frame, [1, 0, 0]);
+  const [low, high] = ends.map((end) => end - center[0] - dot(across, view.anchor));
+  const cells = 2 ** constants.clearDoublings;
+  const even = scale(across, (ends[1] - ends[0]) / finest);
+  const odd = scale(even, Math.SQRT1_2);
+  const wholeOf = (turn: Vector) => turn.map((x) => Math.floor(x / cells) * cells);
+  const restOf = (turn: Vector) => turn.map((x) => x - Math.floor(x / cells) * cells);
+  return {
+    u_ends: [across[0], across[1], low, high],
+    u_turnEven: wholeOf(even),
+    u_turnRestEven: restOf(even),
+    u_turnOdd: wholeOf(odd),
+    u_turnRestOdd: restOf(odd),
   };
 }
 

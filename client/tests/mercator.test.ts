@@ -106,7 +106,10 @@ test("where a map shows both ends of data around the Earth there are two picture
     near([main.state.focal_point[0], other.state.focal_point[0]], [(175 / 360) * world, (-185 / 360) * world], 100);
     assert.equal(around.look({ ...LOOK, center: { lng: 100, lat: 0 }, zoom: 4, globe }, 0).length, 1);
   }
-  // All of the data are in one picture, or there are none beyond their end.
+  // All of the data are in one picture, wherever its middle is, or there are none beyond their end.
+  const [whole, ...more] = around.look({ ...LOOK, center: { lng: -80, lat: 0 }, zoom: 0, width: 900, bearing: 30 }, 0);
+  assert.deepEqual(more, []);
+  near([whole.width, whole.height, whole.state.focal_point[0]], [512, Math.hypot(900, 400), 0], 0.1);
   assert.equal(around.look({ ...LOOK, center, zoom: 0, height: 1200, width: 1200 }, 0).length, 1);
   const region = new Mercator(...mapAround(0, 40, [-70, 70]));
   assert.equal(region.look({ ...LOOK, center: { lng: 40, lat: 0 }, zoom: 4 }, 0).length, 1);

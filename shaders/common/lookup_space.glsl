@@ -5,6 +5,11 @@ FlowtexLattice flowtexCoarse;
 float flowtexPixel;      // length that a pixel covers
 float flowtexLate;       // how far the level is from the finer octave to the coarser one
 float flowtexNoiseLevel; // octaves of a factor 2 above the grain that is fixed on the surface
+#ifdef FLOWTEX_REPEATED
+FlowtexLattice flowtexFineBeyond; // beyond the nearer end of the map: those of its other end
+FlowtexLattice flowtexCoarseBeyond;
+vec3 flowtexEnd; // unit vector towards that end, and the way there
+#endif
 
 vec2 flowtexLookup(vec3 displacement, float length_)
 {
@@ -12,6 +17,11 @@ vec2 flowtexLookup(vec3 displacement, float length_)
   vec2 turns = flowtexMotion.clock + flowtexMotion.turns * length_;
 #else
   const vec2 turns = vec2(0.0);
+#endif
+#ifdef FLOWTEX_REPEATED
+  if (dot(displacement.xy, flowtexEnd.xy) > flowtexEnd.z)
+    return vec2(flowtexOctave(flowtexFineBeyond, displacement, turns),
+                flowtexOctave(flowtexCoarseBeyond, displacement, turns));
 #endif
   return vec2(flowtexOctave(flowtexFine, displacement, turns),
               flowtexOctave(flowtexCoarse, displacement, turns));
@@ -56,7 +66,14 @@ float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sl
   float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, FLOWTEX_LAST_OCTAVE);
   int octave = int(level);
   flowtexLate = level - float(octave);
-  flowtexFine = flowtexLattice(position - u_noiseOrigin, octave);
-  flowtexCoarse = flowtexLattice(position - u_noiseOrigin, octave + 1);
+  flowtexFine = flowtexLattice(position - u_noiseOrigin, octave, 0.0);
+  flowtexCoarse = flowtexLattice(position - u_noiseOrigin, octave + 1, 0.0);
+#ifdef FLOWTEX_REPEATED
+  float along = dot(position.xy, u_ends.xy);
+  float turn = 2.0 * along > u_ends.z + u_ends.w ? 1.0 : -1.0;
+  flowtexEnd = vec3(turn * u_ends.xy, turn > 0.0 ? u_ends.w - along : along - u_ends.z);
+  flowtexFineBeyond = flowtexLattice(position - u_noiseOrigin, octave, turn);
+  flowtexCoarseBeyond = flowtexLattice(position - u_noiseOrigin, octave + 1, turn);
+#endif
   return flowtexTexture(coordinate, sliceLevel, u_spacing * grain);
 }

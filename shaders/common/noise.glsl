@@ -17,15 +17,22 @@ struct FlowtexLattice
   uvec3 key;     // hash of that lattice point, the octave and the seed, by axis
 };
 
-FlowtexLattice flowtexLattice(vec3 position, int octave)
+// ``turn`` is how often the noise there is that of the other end of a map around the Earth.
+FlowtexLattice flowtexLattice(vec3 position, int octave, float turn)
 {
   bool odd = (octave & 1) == 1;
+  vec3 whole = odd ? u_noiseOriginOdd : u_noiseOriginEven;
+  vec3 left = odd ? u_noiseRestOdd : vec3(0.0);
+#ifdef FLOWTEX_REPEATED
+  whole -= turn * (odd ? u_turnOdd : u_turnEven);
+  left -= turn * (odd ? u_turnRestOdd : u_turnRestEven);
+#endif
   int doublings = octave >> 1;
   float shrink = exp2(-float(doublings));
   float inverse = shrink / u_noiseFinest * (odd ? FLOWTEX_SQRT_HALF : 1.0);
-  ivec3 finest = ivec3(odd ? u_noiseOriginOdd : u_noiseOriginEven);
+  ivec3 finest = ivec3(whole);
   ivec3 origin = finest >> doublings;
-  vec3 rest = (vec3(finest - (origin << doublings)) + (odd ? u_noiseRestOdd : vec3(0.0))) * shrink;
+  vec3 rest = (vec3(finest - (origin << doublings)) + left) * shrink;
   uvec3 key = uvec3(origin) * FLOWTEX_AXIS_PRIMES;
   key.x += uint(octave) * FLOWTEX_OCTAVE_PRIME + uint(u_seed) * FLOWTEX_SEED_PRIME;
   return FlowtexLattice(position * inverse + rest, inverse, key);

@@ -2,6 +2,13 @@
 #define FLOWTEX_DEFERRED
 
 //#include common/uniforms.glsl
+#ifdef FLOWTEX_REPEATED
+uniform vec4 u_ends;         // of a map around the Earth: unit vector across it, and its ends along that
+uniform vec3 u_turnEven;     // from one end to the other in cells of octave 0: whole numbers,
+uniform vec3 u_turnRestEven; // and the rest
+uniform vec3 u_turnOdd;      // the same in cells of octave 1
+uniform vec3 u_turnRestOdd;
+#endif
 //#include common/flowtex.glsl
 //#include webgl2/mapped.glsl
 uniform highp usampler2D u_places; // as webgl2/place.glsl writes them

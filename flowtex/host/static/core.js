@@ -392,31 +392,37 @@ columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_
 signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,
 settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.
 indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
-show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,
-u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length===
-"speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.image?imageUniforms(header.image,s.tiles,view.
-density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&!isSignFree(header);return!header.
-image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.image&&settings.texture===
-"streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(header)&&!header.image}function arrowDistance({
-constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){
-let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,
-away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.
-density:geometry.extent/s.resolution;return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){
-let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings)};
-return Object.entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}function motionUniforms(header,s,view){let{geometry,
-constants}=header,{times:times2,pace}=header.slices,varies=times2.length>1,inPixels=!varies&&s.speed_in==="pixels",span=times2[times2.
-length-1]-times2[0],rounds=span*pace/geometry.extent,period=varies?span/(Math.round(rounds)||rounds):s.period,turns=(varies?
-view.time-times2[0]:view.clock)/period%constants.mostTurns,travel=period*(varies?pace:s.speed),fine=turns%constants.clockStep;
-return{u_clock:[turns-fine,fine],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||
-s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,
-clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**
-(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*
-cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*
-finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function imageUniforms({
-size,stepSize,repeat},tiles,density){return{u_stepSize:stepSize.map(n=>n*density),u_imageSize:size.map(n=>n*density*tiles),
-u_imageRound:[Number(repeat[1]),Number(repeat[0])],u_tiles:tiles}}function momentOf(times2,time){if(times2.length<2)return[
-0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-
-times2[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),...turnUniforms(header,
+view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,
+u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.image?imageUniforms(
+header.image,s.tiles,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&
+!isSignFree(header);return!header.image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.
+image&&settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(
+header)&&!header.image}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),
+constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.
+hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(
+view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(
+s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose,still){let chosen={
+FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings,still),FLOWTEX_SPARSE:isSparse(header,settings),FLOWTEX_REPEATED:!!header.
+ends};return Object.entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}function motionUniforms(header,s,view){let{
+geometry,constants}=header,{times:times2,pace}=header.slices,varies=times2.length>1,inPixels=!varies&&s.speed_in==="pixe\
+ls",span=times2[times2.length-1]-times2[0],rounds=span*pace/geometry.extent,period=varies?span/(Math.round(rounds)||rounds):
+s.period,turns=(varies?view.time-times2[0]:view.clock)/period%constants.mostTurns,travel=period*(varies?pace:s.speed),fine=turns%
+constants.clockStep;return{u_clock:[turns-fine,fine],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,
+u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){
+let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,
+center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/
+cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.
+map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}
+function turnUniforms(header,view,finest){let{ends:ends2,geometry,constants}=header;if(!ends2)return{};let{frame,center}=geometry,
+across=toFrame(frame,[1,0,0]),[low,high]=ends2.map(end=>end-center[0]-dot2(across,view.anchor)),cells=2**constants.clearDoublings,
+even=scale2(across,(ends2[1]-ends2[0])/finest),odd=scale2(even,Math.SQRT1_2),wholeOf=turn=>turn.map(x=>Math.floor(x/cells)*
+cells),restOf=turn=>turn.map(x=>x-Math.floor(x/cells)*cells);return{u_ends:[across[0],across[1],low,high],u_turnEven:wholeOf(
+even),u_turnRestEven:restOf(even),u_turnOdd:wholeOf(odd),u_turnRestOdd:restOf(odd)}}function imageUniforms({size,stepSize,
+repeat},tiles,density){return{u_stepSize:stepSize.map(n=>n*density),u_imageSize:size.map(n=>n*density*tiles),u_imageRound:[
+Number(repeat[1]),Number(repeat[0])],u_tiles:tiles}}function momentOf(times2,time){if(times2.length<2)return[0,0,0];let step=0;
+for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-times2[step]);return[
+step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
