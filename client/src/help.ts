@@ -30,7 +30,7 @@ export class Help {
   constructor(close: () => void) {
     const rows = HELP.flatMap(([keys, effect]) => [dom("dt", {}, [keys]), dom("dd", {}, [effect])]);
     const attributes = { class: "help glass", role: "dialog", "aria-label": TITLE, hidden: "" };
-    const head = dom("div", { class: "first" }, [dom("span", { class: "title" }, [TITLE]), this.button]);
+    const head = dom("div", { class: "first" }, [dom("strong", {}, [TITLE]), this.button]);
     this.element = dom("div", attributes, [head, dom("dl", {}, rows)]);
     this.button.addEventListener("click", close);
   }

@@ -1620,8 +1620,8 @@ nd -","zoom"],["space","play or pause"],[", and .","a step back or on"],["0","th
 on or off"],["h","the bar of controls"],["f","full screen"],["?","these keys"],["Esc","close panels and messages"]],Help=class{element;button=dom(
 "button",{type:"button",class:"link"},["Close"]);constructor(close){let rows=HELP.flatMap(([keys,effect])=>[dom("dt",{},
 [keys]),dom("dd",{},[effect])]),attributes={class:"help glass",role:"dialog","aria-label":TITLE,hidden:""},head=dom("div",
-{class:"first"},[dom("span",{class:"title"},[TITLE]),this.button]);this.element=dom("div",attributes,[head,dom("dl",{},rows)]),
-this.button.addEventListener("click",close)}show(shown){this.element.hidden=!shown,shown&&this.button.focus()}};function helpButton(root,key){
+{class:"first"},[dom("strong",{},[TITLE]),this.button]);this.element=dom("div",attributes,[head,dom("dl",{},rows)]),this.
+button.addEventListener("click",close)}show(shown){this.element.hidden=!shown,shown&&this.button.focus()}};function helpButton(root,key){
 let button=dom("button",{type:"button",class:"link"},[`${TITLE} (${key})`]),press={key,bubbles:!0,composed:!0,cancelable:!0};
 return button.addEventListener("click",()=>root.dispatchEvent(new KeyboardEvent("keydown",press))),button}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",HELP_KEY="\
