@@ -160,7 +160,10 @@ class Levels:
         zarr = import_extra("zarr", "store")
         name = f"{node.path}/{DOCUMENT}"
         kind = zarr.core.buffer.default_buffer_prototype()
-        stored = sync(self._objects.get(name, kind))
+        try:
+            stored = sync(self._objects.get(name, kind))
+        except FieldError as error:  # a document that is refused
+            raise self._error(name, error) from None
         if stored is None:
             raise DamageError(f"{name} of {self.place} is missing; build it again")
         try:

@@ -196,6 +196,20 @@ def _agree(values: AnyArray, reference: AnyArray) -> bool:
 
 
 def _of_others(place: str, options: FieldOptions) -> FlowField:
+    """Open a store of other programs; a PyramidError names one whose content is invalid."""
+    try:
+        return _field_of_others(place, options)
+    except (FieldError, ImportError):
+        raise
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError) as error:
+        # Libraries fail so where metadata or attributes are absurd.
+        raise PyramidError(
+            f"{place} cannot be read: its content is invalid ({type(error).__name__}: {error}); "
+            "check its metadata, or open it with xarray and pass the dataset"
+        ) from error
+
+
+def _field_of_others(place: str, options: FieldOptions) -> FlowField:
     """Open a store of others: its finest level that is not too large, or every n-th node."""
     finest, *coarser = datasets_at(place, options)
     name = Path(place).stem

@@ -228,3 +228,52 @@ def test_listed_codecs_are_read(tmp_path: Path, version: int) -> None:
     winds(place, version, encoding=encoding)
     assert FlowField.from_file(place).shape == (ROWS, COLUMNS)
     assert open_store(place).shape == (ROWS, COLUMNS)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of Zarr 3, with metadata in each array alone."""
+    wind = (("lat", "lon"), np.ones((ROWS, COLUMNS)))
+    axes = {"lat": np.linspace(10.0, 20.0, ROWS), "lon": np.linspace(10.0, 20.0, COLUMNS)}
+    ds = xr.Dataset({"u": wind, "v": wind}, coords=axes)
+    ds["lat"].attrs["units"] = "degrees_north"
+    ds["lon"].attrs["units"] = "degrees_east"
+    path = tmp_path_factory.mktemp("plain") / "wind.zarr"
+    ds.to_zarr(path, zarr_format=3, consolidated=False)
+    return path
+
+
+@pytest.mark.parametrize("read", [FlowField.from_file, open_store])
+@pytest.mark.parametrize(
+    "shape", ["[true, 9]", "[6, true]", "[1.5, 9]", "[0, 9]", "[-6, 9]", '["6", 9]', "true", "{}"]
+)
+def test_absurd_sizes_of_chunks_are_named(
+    plain: Path, read: Callable[[Path], FlowField], shape: str
+) -> None:
+    document = plain / "u" / "zarr.json"
+    whole = document.read_text(encoding="utf-8")
+    node = json.loads(whole)
+    node["chunk_grid"]["configuration"]["chunk_shape"] = json.loads(shape)
+    document.write_text(json.dumps(node), encoding="utf-8")
+    try:
+        with pytest.raises(FieldError) as raised:
+            read(plain)
+    finally:
+        document.write_text(whole, encoding="utf-8")
+    assert f"the array u has the chunk_shape {shape}; expected a list of whole" in str(raised.value)
+
+
+@pytest.mark.parametrize("read", [FlowField.from_file, open_store])
+def test_absurd_attributes_are_an_error_of_ours(
+    plain: Path, read: Callable[[Path], FlowField]
+) -> None:
+    document = plain / "u" / "zarr.json"
+    whole = document.read_text(encoding="utf-8")
+    node = json.loads(whole)
+    node["attributes"]["standard_name"] = [1.5, 9]
+    document.write_text(json.dumps(node), encoding="utf-8")
+    try:
+        with pytest.raises(FieldError, match="unhashable type: 'list'"):
+            read(plain)
+    finally:
+        document.write_text(whole, encoding="utf-8")

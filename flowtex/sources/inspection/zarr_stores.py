@@ -88,6 +88,7 @@ def _check_node(node: Any, name: str) -> None:
                 f"refused, because a codec may run any program; expected {expected}. Write the "
                 "array without it, or open the store with xarray and pass the dataset"
             )
+    _check_sizes(node, name)
     for holder in (node, node.get("consolidated_metadata")):
         members = holder.get("metadata") if isinstance(holder, dict) else None
         if isinstance(members, dict):
@@ -103,14 +104,50 @@ def _codecs(node: dict[str, Any]) -> Iterator[tuple[Any, frozenset[str]]]:
     """
     for entry in (*_entries(node.get("filters")), *_entries(node.get("compressor"))):
         yield _name(entry, "id"), OLD_CODECS
+    for entry in _chain(node):
+        yield _name(entry, "name"), CODECS
+
+
+def _chain(node: dict[str, Any]) -> Iterator[Any]:
+    """Yield the entries of all codecs of Zarr 3, also of those inside of shards."""
     waiting = _entries(node.get("codecs"))
     while waiting:
         entry = waiting.pop()
-        yield _name(entry, "name"), CODECS
-        inner = entry.get("configuration") if isinstance(entry, dict) else None
-        if isinstance(inner, dict):  # of shards
-            waiting += _entries(inner.get("codecs"))
-            waiting += _entries(inner.get("index_codecs"))
+        yield entry
+        inner = _configuration(entry)
+        waiting += _entries(inner.get("codecs"))
+        waiting += _entries(inner.get("index_codecs"))
+
+
+def _configuration(entry: Any) -> dict[str, Any]:
+    if isinstance(entry, dict) and isinstance(entry.get("configuration"), dict):
+        configuration: dict[str, Any] = entry["configuration"]
+        return configuration
+    return {}
+
+
+def _check_sizes(node: dict[str, Any], name: str) -> None:
+    """Raise a FieldError for a shape, or that of a chunk, that is no list of whole numbers.
+
+    Zarr takes ``true`` for 1, and divides by the sides of chunks.
+    """
+    _check_shape(node, "shape", 0, name)
+    _check_shape(node, "chunks", 1, name)
+    for entry in (node.get("chunk_grid"), *_chain(node)):
+        _check_shape(_configuration(entry), "chunk_shape", 1, name)
+
+
+def _check_shape(node: dict[str, Any], key: str, least: int, name: str) -> None:
+    if key not in node:
+        return
+    shape = node[key]
+    is_list = isinstance(shape, list)
+    if is_list and all(type(side) is int and side >= least for side in shape):
+        return
+    raise FieldError(
+        f"the array {name or 'at the root'} has the {key} {json.dumps(shape)[:80]}; expected a "
+        f"list of whole numbers of {least} or more: the store is damaged, write or copy it again"
+    )
 
 
 def _entries(value: Any) -> list[Any]:
