@@ -136,3 +136,14 @@ with ended_by_signals():
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert done.returncode == 128 + signal.SIGINT
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to a process itself")
+def test_ctrl_c_after_a_command_is_complete_changes_nothing() -> None:
+    """Python gives SIGINT its default effect late in its end, after the result was printed."""
+    code = (
+        "import os, signal; from flowtex._util import command; print('done', flush=True); "
+        "command._leave(); os.kill(os.getpid(), signal.SIGINT)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
