@@ -253,7 +253,8 @@ class FlowField(FieldConstructors, FieldQuantities):
             Descriptions of scalars for legends, where they differ from their names.
         projection
             The map from longitude and latitude to the points, for a field of the Earth. It is used
-            for coordinates of points and for coastlines.
+            for coordinates of points and for coastlines. On a flat map the speed on the Earth is
+            the scalar ``"speed"``, unless ``scalars`` has one.
 
         Returns
         -------
@@ -291,7 +292,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         surface, nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
         flow = cls._moving(t, scale, sign_free=sign_free, **words, **nodes)
         flow.__dict__["surface"] = surface  # equal to what the property would make
-        return flow
+        if "speed" in (scalars or {}):
+            return flow
+        return flow._with_speed_on_earth()
 
     @classmethod
     def from_triangles(
@@ -371,7 +374,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         surface, nodes = triangle_nodes(*parts, on_globe=on_globe)
         flow = cls._moving(t, scale, periodic=(False, False), **words, **nodes)
         flow.__dict__["surface"] = surface  # equal to what the property would make
-        return flow
+        if "speed" in (scalars or {}):
+            return flow
+        return flow._with_speed_on_earth()
 
     @classmethod
     def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:
@@ -381,6 +386,28 @@ class FlowField(FieldConstructors, FieldQuantities):
         if not moves(velocity):
             notify(ALL_AT_REST, UserWarning)
         return cls(velocity=velocity, times=times, **arrays)
+
+    def _with_speed_on_earth(self) -> FlowField:
+        """Return a field on a flat map with the speed on the Earth, which the map distorts."""
+        projection = self.projection
+        if projection is None or projection.is_globe:
+            return self
+        lon, lat = projection.lonlat(self.points)
+        on_map = self.scalars.get("speed")  # missing where only some steps have no data
+
+        def read(number: int) -> Floats:
+            east, north = projection.components(lon, lat, self.velocity[number])
+            speed = np.hypot(east, north) * self.speed_scale
+            if on_map is not None:
+                speed[np.isnan(on_map[number])] = np.nan
+            return speed
+
+        steps: Steps = LazySteps(len(self.velocity), read)
+        if not isinstance(self.velocity, LazySteps):
+            steps = np.asarray(steps)
+        scalars = {**self.scalars, "speed": steps}
+        units = {**self.units, "speed": self.speed_unit}
+        return self.same_flow(scalars=scalars, units=units)
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from datetime import datetime
+from typing import Any
 
 import numpy as np
 import pytest
@@ -182,6 +183,34 @@ def test_triangles_around_the_pole_agree_on_the_globe_and_a_map() -> None:
         assert [one.eastward, one.northward] == pytest.approx(parts, abs=0.1)
         same = [one.eastward, one.northward, one.speed]
         assert [other.eastward, other.northward, other.speed] == pytest.approx(same, abs=1e-5)
+
+
+@pytest.mark.parametrize("projection", ["mercator", "robinson", "+proj=laea +lat_0=40"])
+@pytest.mark.parametrize("kind", ["grid", "triangles", "gaps"])
+def test_arrays_on_a_map_have_the_speed_on_the_earth(projection: str, kind: str) -> None:
+    lon, lat = np.meshgrid(np.arange(0.0, 61, 5), np.arange(20.0, 71, 5))
+    drawn = Projection(projection, (30.0, 45.0))
+    points, flow = drawn.positions(lon, lat), drawn.vectors(lon, lat, 3 + 0 * lon, 4 + 0 * lon)
+    steps = np.stack([flow, -2 * flow])
+    given: Any = {"projection": drawn, "length_unit": "m", "time_unit": "s", "times": [0, 1]}
+    if kind == "triangles":
+        triangles = Delaunay(np.stack([lon.ravel(), lat.ravel()], axis=-1)).simplices
+        nodal = steps.reshape(2, -1, 3)
+        field = FlowField.from_triangles(points.reshape(-1, 3), triangles, nodal, **given)
+    else:
+        if kind == "gaps":
+            steps[1, 2, 3] = np.nan
+        field = FlowField.from_arrays(points, steps, **given)
+    scene = Scene.of(field)
+    shown = np.stack([np.asarray(step) for step in scene.scalar_steps("speed")])
+    expected = np.array([5.0, 10])[:, None, None] * np.ones(field.shape)
+    if kind == "gaps":
+        expected[1, 2, 3] = np.nan
+    np.testing.assert_allclose(shown, expected, rtol=1e-5)
+    got = field.at(30.0, 45.0, time=1)
+    assert got is not None
+    assert got.speed == pytest.approx(10, rel=1e-5)
+    assert (field.speed_unit, field.unit_of("speed")) == ("m/s", "m/s")
 
 
 def test_a_blank_place_has_no_values() -> None:
