@@ -56,7 +56,7 @@ def likeness(name: str, distance: float) -> float:
         mesh: Any = pv.PolyData.from_regular_faces(points, triangles.astype(int))
         mesh["U"] = np.column_stack([np.ones(len(points)), -points[:, 2], points[:, 1]])
         sides.append(side_of(mesh, distance).ravel())
-    return float(np.corrcoef(np.stack(sides))[0, 1])
+    return float(np.asarray(np.corrcoef(np.stack(sides)))[0, 1])
 
 
 @pytest.mark.parametrize(
