@@ -2,7 +2,7 @@
 // what shaders/common/texture.glsl does at the finest level of the slices, in double precision.
 
 import type { Camera } from "./camera.ts";
-import { grainAt, layersAt, mover, partingAt, type PathPlace } from "./pointpath.ts";
+import { grainAt, layersAt, mover, partingAt, stretchAt, type PathPlace } from "./pointpath.ts";
 import { isSignFree, type Settings } from "./protocol.ts";
 import { isMoving, isSparse, type Uniform, uniforms } from "./uniforms.ts";
 import { add, clamp, length, scale, subtract, toFrame, type Vector } from "./vectors.ts";
@@ -227,7 +227,8 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const sides = moves ? [...Array(Number(u.u_sides)).keys()] : [];
   const areSparse = isSparse(header, settings);
   const set = Number(u.u_samples);
-  const whole = u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
+  const usual = u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
+  const whole = usual * stretchAt(at, settings, camera);
   const sine = areSparse && !isSignFree(header) ? partingAt(at, 0.5 * whole * spacing) : 0;
   const cosine = Math.sqrt(Math.max(1 - sine ** 2, 0));
   const parting = clamp(2 * sine, 0, 1);

@@ -20,6 +20,8 @@ const FEWEST_SAMPLES = 10;
 const LEAST_FACING = 0.05;
 /** Shorter side of a pixel on the surface, over the longer one, that counts at least. */
 const LEAST_ROUND = 0.25;
+/** Samples of a streak seen aslant over the usual number, at most, and the reverse. */
+const MOST_STRETCH = 4;
 /** Slope below which nothing moves. */
 const LEAST_SLOPE = 1e-6;
 /** Part of a cell over which a direction in image coordinates is one in space. */
@@ -220,6 +222,27 @@ export function grainAt({ scene, place, position }: PathPlace, settings: Setting
   return settings.fixed_grain ? Math.max(grain, texel) : grain;
 }
 
+/** How many times as many samples are summed at a point, as shaders/common/lookup_space.glsl has it. */
+export function stretchAt(at: PathPlace, settings: Settings, camera: Camera): number {
+  const { scene, position } = at;
+  const { geometry, image } = scene.header;
+  if (image || !settings.lod || settings.fixed_grain) return 1;
+  const normal = unit(cross(...sidesAt(scene, at.place)));
+  const across = unit(cross(normal, fromFrame(geometry.frame, layersAt(at)(0).slice(0, 3))));
+  if (length(across) < 0.5) return 1;
+  const { ray } = camera.at(position);
+  const slant = dot(normal, ray);
+  const facing = (slant < 0 ? -1 : 1) * Math.max(Math.abs(slant), LEAST_FACING);
+  // What a pixel covers of the surface, in pixels of a plane parallel to the picture.
+  const [dx, dy] = camera.axes.slice(0, 2).map((side) => add(side, ray, -dot(normal, side) / facing));
+  const area = length(cross(dx, dy));
+  const half = 0.5 * (dot(dx, dx) + dot(dy, dy));
+  const longer = Math.sqrt(half + Math.sqrt(Math.max(half ** 2 - area ** 2, 0)));
+  const mean = Math.sqrt(longer * Math.max(area / longer, LEAST_ROUND * longer));
+  const side = Math.hypot(dot(dx, across), dot(dy, across));
+  return clamp(area / (side * mean), 1 / MOST_STRETCH, MOST_STRETCH);
+}
+
 /** The first points of a side, up to a length. */
 function upTo(start: Vector, side: Vector[], most: number): Vector[] {
   const result: Vector[] = [];
@@ -283,7 +306,8 @@ export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, r
   }
   const set = Number(settings.samples);
   const samples = isMoving(scene.header, settings, true) ? 2 * set - 1 : set;
-  const count = sides === 2 ? Math.floor(samples / 2) : samples - 1;
+  const usual = sides === 2 ? Math.floor(samples / 2) : samples - 1;
+  const count = usual * stretchAt(at, settings, camera);
   const step = Number(settings.spacing) * grainAt(at, settings, camera, rows);
   const joined = (reach: number) => {
     const [back = [], ahead = []] = whole.map((side) => upTo(position, side, reach));

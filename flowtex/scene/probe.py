@@ -27,6 +27,7 @@ from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker, slices_at, view_state
 from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Side, Summing, Sums
+from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
 from flowtex.textures.texture_set import TextureSet
@@ -196,7 +197,8 @@ class _Pixel:
         self._values, self._fragments = values, fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
-        self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
+        most_samples = int(const.MOST_STRETCH * values["u_samples"]) + 2
+        self._lookup = Recorder(loaded.make_lookup(fragments, values), most_samples)
         by_lag = textures.image is not None
         self._summing = Summing(self._slices, values, self._lookup, by_lag=by_lag)
         self._base = self._slices.layer(fragments.place, 0, self._level)
@@ -215,7 +217,8 @@ class _Pixel:
         first_slice, shares = bracket(knots, np.abs(lags), side="left")
         certainty = self._summing.certainty(self._fragments.place, self._level)
         faded = self._summing.faded(self._fragments.place, self._level, certainty)
-        cell = self._summing.cell(self._fragments.place, certainty)
+        count = self._summing.count(self._base, certainty)
+        cell = self._summing.cell(self._fragments.place, count)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
         moves = np.isfinite(sides[0].reach[0])
@@ -346,6 +349,10 @@ class Recorder(Lookup):
     def move(self, slope: Floats, speed: Floats) -> None:
         """Pass on to the inner look-up."""
         self.inner.move(slope, speed)
+
+    def stretch(self, tangent: Floats) -> Floats:
+        """Pass on to the inner look-up."""
+        return self.inner.stretch(tangent)
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Record the arguments and the value, and return the number of the sample as a row."""

@@ -51,5 +51,6 @@ float flowtexFragment(vec2 coordinate, vec2 at, vec2 dx, vec2 dy, float sliceLev
   float texels = flowtexCovered(dx, dy, u_stepSize);
   float width = u_lod ? max(texels, least) : least;
   float step_ = textureLod(u_stepImage, vec3(at, 0.0), flowtexMip(texels)).r * width;
-  return flowtexTexture(coordinate, sliceLevel, step_ * u_spacing);
+  vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
+  return flowtexTexture(coordinate, sliceLevel, base, step_ * u_spacing, 1.0);
 }

@@ -54,13 +54,29 @@ void flowtexMove(float slope, float speed)
   flowtexMotion.shares = shares * (FLOWTEX_MOST_GRAIN * inversesqrt(dot(shares, shares)));
 }
 
+// How many times as long a streak must be on the surface to be as long in the picture as where the
+// surface faces the eye.
+float flowtexStretch(vec3 dx, vec3 dy, vec2 footprint, vec3 tangent)
+{
+  if (!u_lod || u_fixed)
+    return 1.0;
+  vec3 across = flowtexUnit(cross(flowtexUnit(cross(dx, dy)), tangent));
+  // How far the pixel extends across the flow.
+  float side = length(vec2(dot(dx, across), dot(dy, across)));
+  float stretch = footprint.x * footprint.y / max(side * flowtexPixel, FLOWTEX_LEAST_SQUARE);
+  stretch = clamp(stretch, 1.0 / FLOWTEX_MOST_STRETCH, FLOWTEX_MOST_STRETCH);
+  return dot(across, across) > 0.5 ? stretch : 1.0;
+}
+
 // Texture at a position with the footprint given by its derivatives.
 float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
+  vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   vec2 footprint = flowtexFootprint(dx, dy);
   // The mean of both sides, as the longer one alone would draw grains out where it is far longer.
   float side = sqrt(footprint.x * max(footprint.y, FLOWTEX_LEAST_ROUND * footprint.x));
   flowtexPixel = u_lod ? side : u_texel / u_grain;
+  float stretch = flowtexStretch(dx, dy, footprint, base.xyz);
   float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
   flowtexNoiseLevel = log2(grain / u_texel);
   float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, FLOWTEX_LAST_OCTAVE);
@@ -75,5 +91,5 @@ float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sl
   flowtexFineBeyond = flowtexLattice(position - u_noiseOrigin, octave, turn);
   flowtexCoarseBeyond = flowtexLattice(position - u_noiseOrigin, octave + 1, turn);
 #endif
-  return flowtexTexture(coordinate, sliceLevel, u_spacing * grain);
+  return flowtexTexture(coordinate, sliceLevel, base, u_spacing * grain, stretch);
 }

@@ -179,9 +179,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         if (inCell)
           flowtexGoOn(side * spacing, displacement, alive);
         float weight = alive * (line + cosine);
-#if defined(FLOWTEX_UNCERTAIN) || defined(FLOWTEX_SPARSE)
         weight *= min(count - float(k) + 1.0, 1.0);
-#endif
         flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
         previous = weight;
         line += slant;
@@ -213,10 +211,10 @@ void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slo
 }
 
 // Texture of a fragment, of zero mean and about unit variance. ``spacing`` is that of the points
-// in nominal length, or in units of lag for an image.
-float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
+// in nominal length, or in units of lag for an image; ``stretch`` times as many as usual are summed.
+// ``base`` is layer 0 at the fragment.
+float flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing, float stretch)
 {
-  vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
 #ifndef FLOWTEX_IMAGE
@@ -226,7 +224,7 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #if defined(FLOWTEX_MOVING) && !defined(FLOWTEX_IMAGE)
   flowtexMove(speed, max(shown, 0.0));
 #endif
-  float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1);
+  float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1) * stretch;
 #ifdef FLOWTEX_UNCERTAIN
   float known = flowtexKnown(coordinate, sliceLevel);
   count *= known;

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Ints
+from flowtex.rendering.cpu.cell import unit
 from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint, on_surface
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
@@ -139,7 +140,9 @@ class SpaceNoise(Lookup):
         if fragments.normal is not None:
             position = on_surface(position, fragments.normal, np.asarray(values["u_eye"]))
         texel = values["u_texel"]
+        self._position = position
         longest, shortest = footprint(position.dx, position.dy)
+        self._area = longest * shortest
         self._pixel = np.sqrt(longest * np.maximum(shortest, const.LEAST_ROUND * longest))
         if not values["u_lod"]:
             self._pixel = np.full(len(fragments), texel / values["u_grain"])
@@ -155,6 +158,24 @@ class SpaceNoise(Lookup):
         self._fine, self._coarse = (
             noise_lattice(offset, octave_numbers + k, values) for k in range(2)
         )
+
+    def stretch(self, tangent: Floats) -> Floats:
+        """Return how many times as long streaks along tangents (N, 3) are on the surface, (N,).
+
+        In the picture they are then as long as where the surface faces the eye.
+        """
+        values, position = self._values, self._position
+        if values["u_fixed"] or not values["u_lod"]:
+            return np.ones(len(tangent))
+        normal = unit(np.cross(position.dx, position.dy))
+        across = unit(np.cross(normal, tangent))
+        by_x = np.einsum("nc,nc->n", position.dx, across)
+        by_y = np.einsum("nc,nc->n", position.dy, across)
+        side = np.maximum(np.hypot(by_x, by_y), np.finfo(float).tiny)
+        stretch = self._area / (side * self._pixel)
+        stretch = np.clip(stretch, 1.0 / const.MOST_STRETCH, const.MOST_STRETCH)
+        has_direction = np.einsum("nc,nc->n", across, across) > 0.5
+        return np.where(has_direction, stretch, 1.0)
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""

@@ -35,6 +35,10 @@ class Lookup(Protocol):
         """Take the slopes at lag zero and the speeds, (N,), before the first look-up."""
         return
 
+    def stretch(self, tangent: Floats) -> Floats:
+        """Return the factor of the number of samples, (N,), for tangents (N, 3) of the flow."""
+        return np.ones(len(tangent))
+
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Values (N, C) at displacements (N, 3) from the fragments, ``length`` (N,) on the way."""
 
@@ -100,8 +104,8 @@ class Summing:
         speed = np.linalg.norm(base[:, :3], axis=-1)
         certainty = self.certainty(coordinate, level)
         lookup.move(speed, np.maximum(self._shown(coordinate, level), 0.0))
-        cell = self.cell(coordinate, certainty)
-        count = self._count * certainty
+        count = self.count(base, certainty)
+        cell = self.cell(coordinate, count)
         self._parting = np.zeros(len(base))
         if values["sparse"] and not isinstance(self._slices, AxisSlices):
             sine = self._parted(coordinate, level, by, 0.5 * count * lookup.spacing, cell)
@@ -161,12 +165,11 @@ class Summing:
             return np.ones(len(level))
         return 1.0 - self._slices.layer(coordinate, const.UNCERTAIN_LAYER, level)[:, 3]
 
-    def cell(self, coordinate: Places, certainty: Floats | float = 1.0) -> CellPath | None:
-        """Paths in the cells of N fragments, where the view is so near."""
+    def cell(self, coordinate: Places, count: Floats) -> CellPath | None:
+        """Paths of ``count`` (N,) samples in the cells of fragments, where the view is so near."""
         if not self._values["near"]:
             return None
-        reach = self._count * certainty * self._lookup.spacing
-        return CellPath(self._slices, coordinate, reach, self._values)
+        return CellPath(self._slices, coordinate, count * self._lookup.spacing, self._values)
 
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
@@ -181,10 +184,12 @@ class Summing:
             reach = np.where(speed > const.LEAST_SPEED, next_[:, 3], -np.inf)
             yield Side(sign, path, spacing, reach, scale)
 
-    @property
-    def _count(self) -> int:
-        samples: int = self._values["u_samples"]
-        return samples // 2 if self._values["u_sides"] == 2 else samples - 1
+    def count(self, base: Floats, certainty: Floats) -> Floats:
+        """Return the number of samples on a side, (N,), for layer 0 (N, 4) and certainties (N,)."""
+        count: int = self._values["u_samples"] - 1
+        if self._values["u_sides"] == 2:
+            count = self._values["u_samples"] // 2
+        return count * certainty * self._lookup.stretch(base[:, :3])
 
     def _add(self, sums: Sums, side: Side, cell: CellPath | None, count: Floats) -> None:
         """Add one side of the paths, of this many samples (N,), and where it stays in its cell."""
