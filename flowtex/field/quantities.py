@@ -150,12 +150,6 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
     def value(steps: Steps, corners: Callable[[Floats], Floats] = point.corners) -> Floats:
         return at_moment(steps, between, corners)
 
-    def scalar(name: str) -> float:
-        steps = field.scalars[name]
-        if name in field.on_cells:
-            return float(value(steps, lambda step: np.ravel(step)[point.cell]))
-        return float(weights @ value(steps))
-
     def mean(vectors: Floats) -> Floats:
         if field.sign_free:
             return weighted_axis(vectors, weights)
@@ -169,13 +163,14 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
         "position": point.interpolate(field.surface.points),
         "velocity": mean(scale * value(field.velocity)),
         "speed": float(scale * value(field.velocity, speed)),
-        "scalars": {name: scalar(name) for name in field.scalars},
+        "scalars": Scalars(),
     }
+    for name in field.scalars:
+        values["scalars"][name] = _scalar_at(field, name, point, between)
     if field.leaves_surface:
         values["speed"] = float(weights @ value(field.index_velocity.speed) * scale)
     if field.projection is not None:
         values |= _on_earth(field, field.projection, point, values, partial(value, field.velocity))
-    values["scalars"] = Scalars(values["scalars"])
     return PointValues(
         index=point.index,
         time=moment,
@@ -185,6 +180,16 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
         speed_label=field.speed_label,
         **values,
     )
+
+
+def _scalar_at(
+    field: Any, name: str, point: SurfacePoint, between: tuple[int, int, float]
+) -> float:
+    """Return a scalar at a point between two time steps; one on cells has the cell's value."""
+    steps = field.scalars[name]
+    if name in field.on_cells:
+        return float(at_moment(steps, between, lambda step: np.ravel(step)[point.cell]))
+    return float(point.weights @ at_moment(steps, between, point.corners))
 
 
 def _on_earth(

@@ -168,12 +168,9 @@ def _made(
         units["speed"] = field.speed_unit
         velocity_unit = ""
         scalars["speed"] = map_steps(field.velocity, speed)
-    times = None
-    if len(field.times) > 1:
-        times = field.times
     made = make(
         map_steps(field.velocity, vectors),
-        times=times,
+        times=_changing_times(field),
         scalars=scalars,
         projection=nodes.projection,
         length_unit=field.length_unit,
@@ -191,6 +188,13 @@ def _made(
         uncertainty=field.uncertainty,
         volume_values=field.volume_values,
     )
+
+
+def _changing_times(field: FlowField) -> Floats | None:
+    """Return the times of a field, or ``None`` for a single one."""
+    if len(field.times) == 1:
+        return None
+    return field.times
 
 
 def _nodal_scalars(field: FlowField, nodes: Placed, chosen: Any) -> dict[str, Steps]:

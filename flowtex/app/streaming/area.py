@@ -107,10 +107,7 @@ class FlowArea(AppearanceAttributes):
         self.parameter_asked = Signal()
         self.ref = self.state.key("element")
         self._routes = Routes.of(server)
-        script = self._routes.give(
-            "client", lambda _rest: (client_module().encode(), "text/javascript", None)
-        )
-        self._client = f"{script}.js"
+        self._client = _client_script(self._routes)
         self._scenes: list[HandedScene] = []
         self._handed: tuple[object, ...] = ()
         self._sent: Header = {}
@@ -414,6 +411,16 @@ class FlowArea(AppearanceAttributes):
             return
         self.server.controller.rc_area_register(self.stream)
         self._tasks.append(asyncio.create_task(self.stream.run()))
+
+
+def _client_script(routes: Routes) -> str:
+    """Give the browser client to pages, and return its address."""
+
+    def answer(_rest: object) -> tuple[bytes, str, None]:
+        return client_module().encode(), "text/javascript", None
+
+    address = routes.give("client", answer)
+    return f"{address}.js"
 
 
 def _appearance(pane: FlowHandle) -> tuple[object, ...]:
