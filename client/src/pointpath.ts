@@ -22,6 +22,8 @@ const LEAST_FACING = 0.05;
 const LEAST_ROUND = 0.25;
 /** Samples of a streak seen aslant over the usual number, at most, and the reverse. */
 const MOST_STRETCH = 4;
+/** Change of their number below which it stays the usual one. */
+const LEAST_STRETCH = 0.01;
 /** Slope below which nothing moves. */
 const LEAST_SLOPE = 1e-6;
 /** Part of a cell over which a direction in image coordinates is one in space. */
@@ -240,7 +242,8 @@ export function stretchAt(at: PathPlace, settings: Settings, camera: Camera): nu
   const longer = Math.sqrt(half + Math.sqrt(Math.max(half ** 2 - area ** 2, 0)));
   const mean = Math.sqrt(longer * Math.max(area / longer, LEAST_ROUND * longer));
   const side = Math.hypot(dot(dx, across), dot(dy, across));
-  return clamp(area / (side * mean), 1 / MOST_STRETCH, MOST_STRETCH);
+  const stretch = clamp(area / (side * mean), 1 / MOST_STRETCH, MOST_STRETCH);
+  return Math.abs(stretch - 1) < LEAST_STRETCH ? 1 : stretch;
 }
 
 /** The first points of a side, up to a length. */

@@ -35,6 +35,7 @@ const float FLOWTEX_LEAST_SQUARE = 1e-30; // square of the longest side of a foo
 const float FLOWTEX_LEAST_TEXELS = 1e-6;  // side of a footprint in texels
 const float FLOWTEX_LEAST_ROUND = 0.25;   // shorter side of a footprint, over the longer one, that counts
 const float FLOWTEX_MOST_STRETCH = 4.0;    // samples of a streak seen aslant over the usual number, and the reverse
+const float FLOWTEX_LEAST_STRETCH = 0.01;  // change of their number below which it stays the usual one
 const float FLOWTEX_LEAST_FACING = 0.05;  // cosine between the normal and the ray to the eye
 const float FLOWTEX_PLACE_FAR = 16.0;     // cells from a place as it is drawn beyond which it is not corrected
 const float FLOWTEX_SHARP = 0.86;         // cosine between the normals of triangle and node at a sharp edge

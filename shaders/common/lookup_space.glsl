@@ -65,7 +65,8 @@ float flowtexStretch(vec3 dx, vec3 dy, vec2 footprint, vec3 tangent)
   float side = length(vec2(dot(dx, across), dot(dy, across)));
   float stretch = footprint.x * footprint.y / max(side * flowtexPixel, FLOWTEX_LEAST_SQUARE);
   stretch = clamp(stretch, 1.0 / FLOWTEX_MOST_STRETCH, FLOWTEX_MOST_STRETCH);
-  return dot(across, across) > 0.5 ? stretch : 1.0;
+  bool isUsual = abs(stretch - 1.0) < FLOWTEX_LEAST_STRETCH || dot(across, across) < 0.5;
+  return isUsual ? 1.0 : stretch;
 }
 
 // Texture at a position with the footprint given by its derivatives.

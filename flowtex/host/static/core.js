@@ -731,19 +731,19 @@ start,dates,step},times2,time){if(start===null){if(!dates.length)return null;let
 return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(
 first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:
 19).replace("T"," ")}var SPEED_LAYER=2,POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,MOST_STRETCH=4,
-LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.header.geometry;if(triangles){
-let more=[-di-dj,di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}let[x,y]=[place[0]+di+
-columns.before,place[1]+dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),
-s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*
-columns.size+column,share]})}function layersAt(at,beside=[0,0]){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(
-at,beside),[before,after,late]=moment,numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:[before,after]).
-map(step=>scene.texels(step,numbers)),shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.
-map((_,n)=>steps[0](0,n))):texels.map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+
-(layer>slices.lags.length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&
-step(from,n).forEach((channel,c)=>{let value=layer===SPEED_LAYER&&c===3?Math.max(channel,0):channel;sum[c]+=weight*shares2[k]*
-value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(
-together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){let[
-before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
+LEAST_STRETCH=.01,LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.
+header.geometry;if(triangles){let more=[-di-dj,di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}
+let[x,y]=[place[0]+di+columns.before,place[1]+dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];
+return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>
+1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at,beside=[0,0]){let{scene,moment}=at,{slices}=scene.header,
+texels=texelsAt(at,beside),[before,after,late]=moment,numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:
+[before,after]).map(step=>scene.texels(step,numbers)),shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?
+signsOf(texels.map((_,n)=>steps[0](0,n))):texels.map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{
+let other=layer+(layer>slices.lags.length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{
+shares2[k]&&step(from,n).forEach((channel,c)=>{let value=layer===SPEED_LAYER&&c===3?Math.max(channel,0):channel;sum[c]+=
+weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(
+([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){
+let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
 lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/
 POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+
 late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[before,from]=[after,lags[m]]}return result2}
@@ -774,23 +774,24 @@ at.place))),across=unit(cross2(normal,fromFrame(geometry.frame,layersAt(at)(0).s
 let{ray}=camera.at(position),slant=dot2(normal,ray),facing=(slant<0?-1:1)*Math.max(Math.abs(slant),LEAST_FACING),[dx,dy]=camera.
 axes.slice(0,2).map(side2=>add(side2,ray,-dot2(normal,side2)/facing)),area=length2(cross2(dx,dy)),half=.5*(dot2(dx,dx)+dot2(
 dy,dy)),longer=Math.sqrt(half+Math.sqrt(Math.max(half**2-area**2,0))),mean=Math.sqrt(longer*Math.max(area/longer,LEAST_ROUND*
-longer)),side=Math.hypot(dot2(dx,across),dot2(dy,across));return clamp(area/(side*mean),1/MOST_STRETCH,MOST_STRETCH)}function upTo(start,side,most){
-let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
-0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
-function stepsAround([before,after,late]){return before===after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,
-after,0],late]]}function velocityAt(at){let velocity=[0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=
-add(velocity,velocityAtStep({...at,moment}),share));return velocity}function velocityAtStep(at){let{scene,position}=at,{
-slices,image,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.
-stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):
-slope;return scale2(unit(along2),layers(SPEED_LAYER)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){let{
-scene,position}=at,{slices,image}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[
-base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
-sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
-lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}
-let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/
-2):samples-1)*stretchAt(at,settings,camera),step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{
-let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(
-PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
+longer)),side=Math.hypot(dot2(dx,across),dot2(dy,across)),stretch=clamp(area/(side*mean),1/MOST_STRETCH,MOST_STRETCH);return Math.
+abs(stretch-1)<LEAST_STRETCH?1:stretch}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
+let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));
+break}result2.push(point),left-=step,from=point}return result2}function stepsAround([before,after,late]){return before===
+after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){let velocity=[
+0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,moment}),share));
+return velocity}function velocityAtStep(at){let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(at),
+[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(
+slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(SPEED_LAYER)[3]*
+speed.typical)}function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,image}=scene.header,layers=layersAt(
+at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.
+two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*
+slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===
+null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings,
+!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/2):samples-1)*stretchAt(at,settings,camera),step=Number(settings.spacing)*
+grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[
+...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(
+count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
 i,j]){return[[i,j],[i+1,j],[i,j+1],[i+1,j+1]]}function cellOf({header},place){return place.map((at,axis)=>clamp(Math.floor(
 at),0,header.geometry.shape[1-axis]-2))}var sharesOf=([s,t])=>[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t];function sharesIn(scene,cell,[
 lon,lat],places){let{earth}=scene.header,known=cornersOf2(cell).map(node=>earth&&lonLatOf(earth,nodeAt(scene,node),places));

@@ -69,7 +69,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new Xr[o](s);for(let u=0,m=0;u<c;u+=1)for(let p=u;p<s;p+=c,m+=1){let f=0;for(let d=0;d<o;d+=1)f|=e[d*s+m]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=i*c;for(let u=0;u<r[0];u+=1)for(let m=h;m<s;m+=1)l[m]+=l[m-h];for(let u=0;u<r[1];u+=1)for(let m=0;m<
 s;m+=h)for(let p=m+c;p<m+h;p+=1)l[p]+=l[p-c];return Kr(a,n?Ha(l,n.map(u=>2**u)):l)}function Ha(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>jr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var ur=1e-6,rt=typeof Float32Array<"u"?Float32Array:Array;var Hc=Math.PI/180,zc=180/Math.PI;function tn(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>jr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var ur=1e-6,rt=typeof Float32Array<"u"?Float32Array:Array;var zc=Math.PI/180,Gc=180/Math.PI;function tn(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function rn(a,e,t){var r=t[0],n=t[1],s=t[2],o=Math.sqrt(r*r+n*n+s*s),i,c,l;return o<ur?null:(o=1/o,r*=o,n*=o,s*=o,i=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*i,a[2]=s*r*l-n*i,a[3]=0,a[4]=r*n*l-s*i,a[5]=n*n*l+c,a[6]=s*n*l+r*i,
 a[7]=0,a[8]=r*s*l+n*i,a[9]=n*s*l-r*i,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function Wa(){var a=new rt(3);return rt!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function nn(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function sn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function an(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function on(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -77,7 +77,7 @@ r,a[2]=e[2]+t[2]*r,a}function cn(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;ret
 s,a}function ln(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function hn(a,e,t){var r=e[0],n=e[1],s=e[2],o=t[0],i=t[1],c=t[2];
 return a[0]=n*c-s*i,a[1]=s*o-r*c,a[2]=r*i-n*o,a}function un(a,e,t){var r=e[0],n=e[1],s=e[2],o=t[3]*r+t[7]*n+t[11]*s+t[15];return o=o||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 o,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/o,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/o,a}function mr(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var $c=(function(){var a=Wa();return function(e,t,r,n,s,o){var i,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var jc=(function(){var a=Wa();return function(e,t,r,n,s,o){var i,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
 e.length,i=r;i<c;i+=t)a[0]=e[i],a[1]=e[i+1],a[2]=e[i+2],s(a,a,o),e[i]=a[0],e[i+1]=a[1],e[i+2]=a[2];return e}})();var W=a=>a,te=()=>[0,0,0],mn=a=>new Array(a).fill(0),P=(a,e)=>ln(W(a),W(e)),F=a=>nn(W(a)),E=(a,e)=>sn(te(),W(a),W(e)),k=(a,e)=>an(
 te(),W(a),e),N=(a,e)=>hn(te(),W(a),W(e)),V=a=>cn(te(),W(a)),R=(a,e,t=1)=>on(te(),W(a),W(e),t);function nt(a,e,t){let r=rn(
 mn(16),t*Math.PI/180,W(e));return r===null?te():un(te(),W(a),r)}function O(a,e){let t=tn(mn(9),a);return mr(te(),W(e),t)}
@@ -368,76 +368,76 @@ c+l+b)+y]})}),p}function xt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?
 atan2(s,Math.hypot(r,n))];return o.every(Number.isFinite)?[o[0]*Zn,o[1]*Zn]:null}function es(a,e,t,r){let[n,s]=[e,t];if(a.
 map&&r){let{map:p,radius:f}=a,d=Vo*(p[2]-p[0])/(Math.hypot(...t)||1),[g,b]=[-d,d].map(y=>wr(p,r,e.map((x,v)=>x+y*t[v])));
 n=wr(p,r,e),s=b.map((y,x)=>f*(y-g[x])/(2*d))}let[o,i,c]=n,[l,h]=[Math.hypot(o,i)||1,Math.hypot(o,i,c)||1],u=(o*s[1]-i*s[0])/
-l,m=(o*s[0]+i*s[1])/l;return[u,(l*s[2]-c*m)/h]}var as=2,ts=8,Bo=4,Ho=10,os=.05,is=.25,rs=4,cs=1e-6,zo=.001;function Go({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:o}=a.
-header.geometry;if(o){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[i,c]=[e[0]+t+s.before,e[1]+r+
-n.before],[l,h]=[Math.floor(i),Math.floor(c)],[u,m]=[i-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map((p,f)=>{let d=T(
-l+(f&1),0,s.size-1);return[T(h+(f>>1),0,n.size-1)*s.size+d,p]})}function Mr(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.
-header,s=Go(a,e),[o,i,c]=r,l=s.map(([p])=>p),h=(o===i?[o]:[o,i]).map(p=>t.texels(p,l)),u=o===i?[1]:[1-c,c],m=ue(t.header)?
-Wo(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let b=p+(p>n.lags.length?
--1:1)*n.lags.length,y=m[g]<0&&p>0?b:p;h.forEach((x,v)=>{u[v]&&x(y,g).forEach((w,M)=>{let A=p===as&&M===3?Math.max(w,0):w;
-f[M]+=d*u[v]*A*(M<3?m[g]:1)})})}),f}}function Wo(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=P(e,[t,r,n])<0?-1:1;return e=
-R(e,[t,r,n],s),s})}function $o(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(i,e[e.length-1]),l=[];for(let h=0;h<
-e.length&&o<c;h+=1){let u=a(t+h+1).slice(0,3);for(let m=1;m<=ts;m+=1){let p=m/ts,f=Math.min(o+p*(e[h]-o),c),d=(f-o)/(e[h]-
-o),g=s.map((b,y)=>b+d*(u[y]-b));if(l.push(k(g,r*f*n)),f===c)break}[s,o]=[u,e[h]]}return l}function ls({scene:a,place:e,position:t}){
-let{image:r,geometry:n}=a.header;if(!r)return l=>R(t,K(n.frame,l));let{alongI:s,alongJ:o}=r,i=[ns(s,e[0]),ns(o,e[1])],c=Ne(
-a,e);return([l,h])=>{let u=[ss(s,i[0]+l),ss(o,i[1]+h)];return u.some(Number.isNaN)?null:R(t,E(Ne(a,u),c))}}function Ie(a,e){
-return R(Ne(a,e),a.header.geometry.center)}function Ne(a,e){let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(
-s=>yt(r,o=>t[3*o+s]));return K(a.header.geometry.frame,n)}function hs(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){
-let i=(c,l)=>Ne(a,Fe(Math.floor(e[1]),c,l));return[E(i(1,0),i(0,0)),E(i(0,1),i(0,0))]}let[n,s]=e.map((i,c)=>T(i,.5,t[1-c]-
-1.5)),o=(i,c)=>Ne(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function ns(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function ss(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function jo({scene:a,place:e,position:t},r,n,s){let{
+l,m=(o*s[0]+i*s[1])/l;return[u,(l*s[2]-c*m)/h]}var as=2,ts=8,Bo=4,Ho=10,os=.05,is=.25,rs=4,zo=.01,cs=1e-6,Go=.001;function Wo({scene:a,place:e},[t,r]){let{rows:n,columns:s,
+triangles:o}=a.header.geometry;if(o){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],g)=>[f,d+p[g]])}let[i,c]=[e[0]+t+
+s.before,e[1]+r+n.before],[l,h]=[Math.floor(i),Math.floor(c)],[u,m]=[i-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map(
+(p,f)=>{let d=T(l+(f&1),0,s.size-1);return[T(h+(f>>1),0,n.size-1)*s.size+d,p]})}function Mr(a,e=[0,0]){let{scene:t,moment:r}=a,
+{slices:n}=t.header,s=Wo(a,e),[o,i,c]=r,l=s.map(([p])=>p),h=(o===i?[o]:[o,i]).map(p=>t.texels(p,l)),u=o===i?[1]:[1-c,c],
+m=ue(t.header)?$o(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],g)=>{let b=p+(p>
+n.lags.length?-1:1)*n.lags.length,y=m[g]<0&&p>0?b:p;h.forEach((x,v)=>{u[v]&&x(y,g).forEach((w,M)=>{let A=p===as&&M===3?Math.
+max(w,0):w;f[M]+=d*u[v]*A*(M<3?m[g]:1)})})}),f}}function $o(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=P(e,[t,r,n])<
+0?-1:1;return e=R(e,[t,r,n],s),s})}function jo(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(i,e[e.length-
+1]),l=[];for(let h=0;h<e.length&&o<c;h+=1){let u=a(t+h+1).slice(0,3);for(let m=1;m<=ts;m+=1){let p=m/ts,f=Math.min(o+p*(e[h]-
+o),c),d=(f-o)/(e[h]-o),g=s.map((b,y)=>b+d*(u[y]-b));if(l.push(k(g,r*f*n)),f===c)break}[s,o]=[u,e[h]]}return l}function ls({
+scene:a,place:e,position:t}){let{image:r,geometry:n}=a.header;if(!r)return l=>R(t,K(n.frame,l));let{alongI:s,alongJ:o}=r,
+i=[ns(s,e[0]),ns(o,e[1])],c=Ne(a,e);return([l,h])=>{let u=[ss(s,i[0]+l),ss(o,i[1]+h)];return u.some(Number.isNaN)?null:R(
+t,E(Ne(a,u),c))}}function Ie(a,e){return R(Ne(a,e),a.header.geometry.center)}function Ne(a,e){let{data:t}=a.part("positi\
+on"),r=a.cornersAt(e),n=[0,1,2].map(s=>yt(r,o=>t[3*o+s]));return K(a.header.geometry.frame,n)}function hs(a,e){let{shape:t,
+triangles:r}=a.header.geometry;if(r){let i=(c,l)=>Ne(a,Fe(Math.floor(e[1]),c,l));return[E(i(1,0),i(0,0)),E(i(0,1),i(0,0))]}
+let[n,s]=e.map((i,c)=>T(i,.5,t[1-c]-1.5)),o=(i,c)=>Ne(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function ns(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function ss(a,e){let t=a.findIndex(
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function Yo({scene:a,place:e,position:t},r,n,s){let{
 geometry:o,image:i}=a.header,c=N(...hs(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(P(V(c),h)),os),m=2*l/s;if(i){let[
 b,y]=[i.alongI,i.alongJ].map((v,w)=>{let M=Math.min(Math.floor(e[w]),v.length-2);return(v[M+1]-v[M])*i.stepSize[w]}),x=Math.
 sqrt(F(c)/(b*y));return r.lod?Math.max(m/Math.sqrt(u),x):x}let p=o.extent/Number(r.resolution),f=P(h,n.at(n.state.focal_point).
-ray),g=m*Math.sqrt(Math.max(f,is/u)/u)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Yo(a,e,t){let{
+ray),g=m*Math.sqrt(Math.max(f,is/u)/u)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(g,p):g:p}function Xo(a,e,t){let{
 scene:r,position:n}=a,{geometry:s,image:o}=r.header;if(o||!e.lod||e.fixed_grain)return 1;let i=V(N(...hs(r,a.place))),c=V(
 N(i,K(s.frame,Mr(a)(0).slice(0,3))));if(F(c)<.5)return 1;let{ray:l}=t.at(n),h=P(i,l),u=(h<0?-1:1)*Math.max(Math.abs(h),os),
-[m,p]=t.axes.slice(0,2).map(x=>R(x,l,-P(i,x)/u)),f=F(N(m,p)),d=.5*(P(m,m)+P(p,p)),g=Math.sqrt(d+Math.sqrt(Math.max(d**2-
-f**2,0))),b=Math.sqrt(g*Math.max(f/g,is*g)),y=Math.hypot(P(m,c),P(p,c));return T(f/(y*b),1/rs,rs)}function Xo(a,e,t){let r=[],
-[n,s]=[a,t];for(let o of e){let i=F(E(o,n));if(i>=s){s>0&&r.push(R(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}return r}
-function us([a,e,t]){return a===e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Er(a){let e=[0,0,0];for(let[t,r]of us(
-a.moment))r&&(e=R(e,qo({...a,moment:t}),r));return e}function qo(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.
-header,o=Mr(a),[i,c,l]=o(0),h=[i,c,l],u=k(h,zo*(n?1/n.stepSize[0]:r.cell)/(F(h)||1)),m=F(h)>cs?E(ls(a)(u)??t,t):h;return k(
-V(m),o(as)[3]*s.typical)}function ms(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.header,c=Mr(a),l=!ue(n.header),
-h=c(0),u=[h[0],h[1],h[2]],m=ls(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&F(u)>cs;M+=1){let A=i?1:h[3]*o.unit,
-_=$o(c,o.lags,M*o.lags.length,M?1:-1,A).map(m),L=_.findIndex(C=>C===null);p.push(_.slice(0,L<0?void 0:L))}let d=Number(e.
-samples),g=lt(n.header,e,!0)?2*d-1:d,y=(f===2?Math.floor(g/2):g-1)*Yo(a,e,t),x=Number(e.spacing)*jo(a,e,t,r),v=M=>{let[A=[],
-S=[]]=p.map(_=>Xo(s,_,M));return[...A.reverse(),s,...S]};return{path:v(Bo*Math.max(y,Ho)*x),sampled:v(y*x),directed:l,velocity:Er(
-a)}}var Ko=8,Jo=1e-6,Zo=.001,Qo=89.99,ei=a=>a-360*Math.round(a/360);function Sr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+[m,p]=t.axes.slice(0,2).map(v=>R(v,l,-P(i,v)/u)),f=F(N(m,p)),d=.5*(P(m,m)+P(p,p)),g=Math.sqrt(d+Math.sqrt(Math.max(d**2-
+f**2,0))),b=Math.sqrt(g*Math.max(f/g,is*g)),y=Math.hypot(P(m,c),P(p,c)),x=T(f/(y*b),1/rs,rs);return Math.abs(x-1)<zo?1:x}
+function qo(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){let i=F(E(o,n));if(i>=s){s>0&&r.push(R(n,E(o,n),s/(i||1)));break}
+r.push(o),s-=i,n=o}return r}function us([a,e,t]){return a===e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Er(a){let e=[
+0,0,0];for(let[t,r]of us(a.moment))r&&(e=R(e,Ko({...a,moment:t}),r));return e}function Ko(a){let{scene:e,position:t}=a,{
+slices:r,image:n,speed:s}=e.header,o=Mr(a),[i,c,l]=o(0),h=[i,c,l],u=k(h,Go*(n?1/n.stepSize[0]:r.cell)/(F(h)||1)),m=F(h)>
+cs?E(ls(a)(u)??t,t):h;return k(V(m),o(as)[3]*s.typical)}function ms(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.
+header,c=Mr(a),l=!ue(n.header),h=c(0),u=[h[0],h[1],h[2]],m=ls(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&F(u)>
+cs;M+=1){let A=i?1:h[3]*o.unit,_=jo(c,o.lags,M*o.lags.length,M?1:-1,A).map(m),L=_.findIndex(C=>C===null);p.push(_.slice(
+0,L<0?void 0:L))}let d=Number(e.samples),g=lt(n.header,e,!0)?2*d-1:d,y=(f===2?Math.floor(g/2):g-1)*Xo(a,e,t),x=Number(e.
+spacing)*Yo(a,e,t,r),v=M=>{let[A=[],S=[]]=p.map(_=>qo(s,_,M));return[...A.reverse(),s,...S]};return{path:v(Bo*Math.max(y,
+Ho)*x),sampled:v(y*x),directed:l,velocity:Er(a)}}var Jo=8,Zo=1e-6,Qo=.001,ei=89.99,ti=a=>a-360*Math.round(a/360);function Sr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function vt({header:a},e){return e.map((t,r)=>T(Math.floor(t),0,a.geometry.shape[1-r]-2))}var ps=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function fs(a,e,[t,r],n){let{earth:s}=a.header,o=Sr(e).map(d=>s&&xt(s,Ie(a,d),n));if(o.some(d=>!d||Math.
-abs(d[1])>Qo))return null;let[i,c,l,h]=o.map(d=>[ei(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-i[0],d[1]-i[1]]),p=Math.max(
-...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(i[d]-c[d]-l[d]+h[d])>Zo*p)?null:[(i[1]*
+abs(d[1])>ei))return null;let[i,c,l,h]=o.map(d=>[ti(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-i[0],d[1]-i[1]]),p=Math.max(
+...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(i[d]-c[d]-l[d]+h[d])>Qo*p)?null:[(i[1]*
 m[0]-i[0]*m[1])/f,(i[0]*u[1]-i[1]*u[0])/f]}function ds(a,e,t,r){let{earth:n,geometry:s}=a.header,o=n&&!s.triangles&&xt(n,
-t,r);if(!o)return e;let i=vt(a,e);for(let c=0;c<Ko;c+=1){let l=fs(a,i,o,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
-.5+Jo?m:0),u=vt(a,i.map((m,p)=>m+h[p]));if(String(u)===String(i))return i.map((m,p)=>m+T(l[p],0,1));i=u}return e}function gs(a,e){
+t,r);if(!o)return e;let i=vt(a,e);for(let c=0;c<Jo;c+=1){let l=fs(a,i,o,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
+.5+Zo?m:0),u=vt(a,i.map((m,p)=>m+h[p]));if(String(u)===String(i))return i.map((m,p)=>m+T(l[p],0,1));i=u}return e}function gs(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=vt(a,e),s=ps(e.map((o,i)=>o-n[i]));return Sr(
 n).map(([o,i],c)=>[i*r.shape[1]+o,s[c]])}function bs(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:o}=t.header,
 i=s&&xt(s,n,e);if(!i)return null;let c=m=>es(s,m.position,Er(m),e),l=vt(t,r);if(o.triangles||!fs(t,l,i,e))return c(a);let h=ps(
 r.map((m,p)=>m-l[p])),u=Sr(l).map(m=>c({...a,place:m,position:Ie(t,m)}));return[0,1].map(m=>u.reduce((p,f,d)=>p+h[d]*f[m],
-0))}var ti=16;function xs(a,e,t,r,[n,s]){let{layer:o,coordinate:i,triangle:c}=a,{geometry:l}=o.scene.header,h=l.triangles?Fe(
-c,...i):ri(l,...i),u=t.ray(n,s),m=ys(o.scene,h,u)[1],[p,f]=ys(o.scene,m,u),d=ds(o.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
-d:ni(e.header,o,d);return{point:{position:p,index:g,values:si(o.scene,r,d)},layer:o,place:d}}function ri({rows:a,columns:e,
-shape:t},r,n){let s=(o,{size:i,before:c},l)=>T(o*i-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function ni(a,{key:e},[t,
+0))}var ri=16;function xs(a,e,t,r,[n,s]){let{layer:o,coordinate:i,triangle:c}=a,{geometry:l}=o.scene.header,h=l.triangles?Fe(
+c,...i):ni(l,...i),u=t.ray(n,s),m=ys(o.scene,h,u)[1],[p,f]=ys(o.scene,m,u),d=ds(o.scene,f,p,e.parts.get("lonlat")),g=l.triangles?
+d:si(e.header,o,d);return{point:{position:p,index:g,values:ai(o.scene,r,d)},layer:o,place:d}}function ni({rows:a,columns:e,
+shape:t},r,n){let s=(o,{size:i,before:c},l)=>T(o*i-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function si(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:o,formula:i}=a,[c,l,h]=e,[u,m]=n?.shapes[0]??s.shape,p=o.tileCells*(n?.tileBlocks??0),
 f=i?2**(n?.depth??0):1,d=(g,b,y)=>ft(g+b*p,c,y)/f;return[d(t,h,m),d(r,l,u)]}function ys(a,e,[t,r]){let{geometry:n}=a.header,
 {data:s}=a.part("position"),o=a.cornersAt(e).map(([v])=>v),[i,c,l]=o.map(v=>R(K(n.frame,[...s.subarray(3*v,3*v+3)]),n.center)),
 [h,u]=[E(c,i),E(l,i)],m=N(h,u),p=R(t,r,P(m,E(i,t))/P(m,r)),f=E(p,i),[d,g]=[N(f,u),N(h,f)].map(v=>P(v,m)/P(m,m));if(!(Math.
-max(Math.abs(d),Math.abs(g))<ti)){let v=Ie(a,e);return[R(t,r,P(E(v,t),r)/P(r,r)),e]}if(n.triangles)return[p,Fe(Math.floor(
+max(Math.abs(d),Math.abs(g))<ri)){let v=Ie(a,e);return[R(t,r,P(E(v,t),r)/P(r,r)),e]}if(n.triangles)return[p,Fe(Math.floor(
 e[1]),d,Math.max(g,0))];let[b,y]=n.shape,x=(v,w)=>{let[M,A,S]=o.map(v);return T(M+d*(A-M)+g*(S-M),0,w-1)};return[p,[x(v=>v%
-y,y),x(v=>Math.floor(v/y),b)]]}function si(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=gs(a,t),c=o.triangles?
+y,y),x(v=>Math.floor(v/y),b)]]}function ai(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=gs(a,t),c=o.triangles?
 Math.floor(t[1]):i[0][0],[l,h,u]=e,m={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
 l,h,f),[g,b]=d.map(x=>n.get(x)?.data);if(f.name===null||f.name in m||!g||!b)continue;let y=x=>g[x]+u*(b[x]-g[x]);m[f.name]=
-f.flat?y(c):yt(i,y)}return m}var ai=3,vs=5;function ws({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
+f.flat?y(c):yt(i,y)}return m}var oi=3,vs=5;function ws({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let u of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let m of[Math.floor((h-1)/n),Math.floor(h/n)])u>=0&&u<s&&m>=0&&m<o&&(i[u*o+m]=0)}return i}function Ms({
 shape:a,data:e},t,r,n,s){let[o,i]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(o*i).fill(-1),h=[1,1,-1,-1];for(let u=0;u<
 l.length;u+=1){let[m,p]=[Math.floor(u/i),u%i],f=e.subarray(vs*u,vs*(u+1));if(n.some(([b,y,x])=>m>=b&&m<b+x&&p>=y&&p<y+x)||
-!yr(c,f))continue;let g=Math.floor(Math.log2(ai/xr(c,f)));l[u]=Math.min(Math.max(g,0),s[u]),oi(t,f).forEach((b,y)=>h[y]=
-y<2?Math.min(h[y],b):Math.max(h[y],b))}return{levels:l,box:h}}function oi(a,[e,t,r,n]){let[s,o,i]=a.axes,{parallel:c,position:l,
+!yr(c,f))continue;let g=Math.floor(Math.log2(oi/xr(c,f)));l[u]=Math.min(Math.max(g,0),s[u]),ii(t,f).forEach((b,y)=>h[y]=
+y<2?Math.min(h[y],b):Math.max(h[y],b))}return{levels:l,box:h}}function ii(a,[e,t,r,n]){let[s,o,i]=a.axes,{parallel:c,position:l,
 focal_point:h}=a.state,u=E([e,t,r],c?h:l),m=[-n,n].map(d=>a.at(R([e,t,r],i,d)).height);if(!(m[0]>0))return[-1,-1,1,1];let[
 p,f]=[-n,n].map(d=>[P(u,s)/a.aspect,P(u,o)].map((g,b)=>m.map(y=>(g+d/(b?1:a.aspect))/y)));return[...p.map(d=>Math.min(...d)),
-...f.map(d=>Math.max(...d))]}var ii=1024,Es=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
+...f.map(d=>Math.max(...d))]}var ci=1024,Es=["u_places","u_depths","u_colours","u_strides"].map(a=>de.indexOf(a)),wt=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let o=e.map(({scene:p,covered:f})=>[p.number,p.version,
 f]),i=JSON.stringify([o,t.state,t.aspect,r,n,s]);if(i===this.key)return;Object.assign(this,{key:i,layers:e,width:n,height:s});
 let c=this.graphics.context,{frames:l}=this.make(n,s),[{scene:h}]=e,u=Math.min(...e.map(({key:[p]})=>p))+Math.log2(h.header.
@@ -466,7 +466,7 @@ u),o.bindFramebuffer(o.FRAMEBUFFER,null);let m=+(i>=l+1)+2*+(c>=h+1),p=4*([m,m^1
 u.buffer,4*p,2);return u[p+3]?{layer:s[u[p+3]-1],coordinate:[f,d],triangle:u[p+2]}:null}dispose(){let{graphics:e,target:t}=this;
 for(let r of t?.textures??[])e.free("Texture",r);for(let r of t?.frames??[])e.free("Framebuffer",r);this.target=null,this.
 key=""}sendStrides(){let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:o,geometry:i}=s.header,
-c=i.triangles?[1,1]:o?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/ii)),0);let l=2**
+c=i.triangles?[1,1]:o?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/ci)),0);let l=2**
 -this.squares,[h,u]=c.map(p=>Math.ceil(p*l)),m=new Uint8Array(h*u);e.forEach(({scene:p,key:[f,...d]},g)=>{let b=p.blocks.
 shape[1],y=2**f*l;t[g].levels.forEach((x,v)=>{if(x<0||i.triangles)return;let[[w,M],[A,S]]=[Math.floor(v/b),v%b].map((_,L)=>{
 let C=(_+d[L]*(o?.tileBlocks??0))*y;return[Math.floor(C),Math.min(Math.ceil(C+y),[h,u][L])]});for(let _=w;_<M;_+=1)for(let L=A+
@@ -482,11 +482,11 @@ this.target={frames:l,textures:c,...i}}bind(){let e=this.graphics.context;Es.for
 t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+de.length)}};function Ss(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],o=e[4],i=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*i-s*o)*c,a[5]=(r*o-t*i)*c,a):null}function As(a){return a[0]*a[3]-a[1]*a[2]}function Ts(a,e,t){var r=e[0],n=e[1],
 s=e[2],o=e[3],i=e[4],c=e[5],l=t[0],h=t[1],u=t[2],m=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+o*h,a[2]=r*u+s*m,a[3]=
-n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var li=14,hi=40,ui=256;function _s(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var mi=(a,e)=>a.getContext(
+n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var hi=14,ui=40,mi=256;function _s(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var pi=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
 this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=e.canvas;let{canvas:r,last:n,coarse:s}=this,o=[r,n,s].
-map(i=>mi(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
+map(i=>pi(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
 1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=
 !0}resize(e,t){let{canvas:r,coarse:n,last:s}=this;n.width=r.width,n.height=r.height,this.coarsePen?.drawImage(r,0,0),r.width=
 s.width=e,r.height=s.height=t,n.width>1&&this.pen?.drawImage(n,0,0,e,t)}dispose(){for(let e of[this.last,this.coarse,this.
@@ -495,14 +495,14 @@ return!1;let s=!1;do s=this.strip(e,t)&&!this.isRefined;while(!s&&performance.no
 viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(e){this.isRefined=
 !1,this.layers=this.content.arrange(e)}draft(e,t,r){let{width:n,height:s}=this.canvas,o=Number(this.viewer.settings.samples),
 i=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(o),l=this.viewer.player.playing&&!this.viewer.
-isHeld,h=En(c,this.fixed,n*s,o,l),u=Math.max(h/i,li),m=Mn(c,this.fixed,n*s,o,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
+isHeld,h=En(c,this.fixed,n*s,o,l),u=Math.max(h/i,hi),m=Mn(c,this.fixed,n*s,o,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
 max(Math.round(s*m.scale),1);this.draftVersion=this.version;let d=m.scale<1?this.reuse():null;if(!d?.covers){let b=performance.
 now();this.place(t,p,f);let y=this.sum(e,t,0,f,m.samples);this.show(t,!1),this.fixed+=.5*(T(performance.now()-b-y,.5,500)-
 this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),_s(this.pen,this.last),
 this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=m.scale<1||m.samples<o;let g=!this.isCoarse&&!this.content.smooth;return g&&
 this.complete(),this.drawLines(t),g&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(this.viewer.settings.
 samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))return!1;this.place(
-t,r,n);let o=e.price*this.factor(s),i=Math.min(n-this.rowsDone,Sn(hi,o,r,s));return this.sum(e,t,this.rowsDone,i,s),this.
+t,r,n);let o=e.price*this.factor(s),i=Math.min(n-this.rowsDone,Sn(ui,o,r,s));return this.sum(e,t,this.rowsDone,i,s),this.
 rowsDone+=i,this.rowsDone<n?!1:(this.show(t,this.content.smooth),this.complete(),this.drawLines(t),!0)}drawLines(e){let{
 front:t,frontPen:r,graphics:n}=this,{camera:s,ratio:o}=this.viewer,{scene:i}=this.content,{width:c,height:l}=this.canvas;
 if(!i||!s||!r)return;let{earth:h,bodies:u}=i;if(!h.lines.length&&!u.labels.length)return;let{state:m,aspect:p}=s,f=JSON.
@@ -513,7 +513,7 @@ f}this.pen?.drawImage(t,0,0)}complete(){let{camera:e,player:t}=this.viewer;this.
 !1,this.draftVersion=this.version,_s(this.lastPen,this.canvas),e&&!t.playing&&(this.lastCamera=new fe(e.state,e.limits,e.
 flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.content;if(!r?.header.geometry.planar||
 !t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,s=E(t.state.focal_point,n.center),o=O(
-n.frame,s),[i,c]=[e,t].map(l=>z(n,l,o));return di(i,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
+n.frame,s),[i,c]=[e,t].map(l=>z(n,l,o));return gi(i,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,player:r}=this.
 viewer;return t.motion!=="off"||r.varies&&r.playing?An(e):1}placeAt(e,t,r){let{places:n}=this.content;return this.place(
 e,n?.width||this.canvas.width,n?.height||this.canvas.height),n?.at(t,r)??null}place(e,t,r){let{viewer:n,layers:s,content:o}=this,
 {camera:i}=n;if(!i||!s.length)return;let{anchor:c}=n.view(e,this.density(r));o.places?.draw({layers:s,camera:i,anchor:c,
@@ -522,7 +522,7 @@ width:t,height:r})}density(e){return this.viewer.ratio*e/this.canvas.height}sum(
 settings.samples||h!==this.canvas.height,p=g=>(g.bindNodes(u.anchor),g.bindTextures(t[0],t[1]),{...this.values(g,i,c,u,s,
 m),...bn(g.header.geometry,c,u.anchor,l,h)});e.warm||o.sum(e,r,1,p),e.warm=!0;let f=performance.now();o.sum(e,r,n,p);let d=performance.
 now()-f;return e.price=Tn(e.price,d,l*n,s,this.factor(s)),d}show(e,t){let{places:r}=this.content;if(!r)return;let{width:n,
-height:s}=r,{canvas:o}=this.graphics;o.width<n&&(o.width=n),o.height<s&&(o.height=s);let i=t?ui:s;for(let c=0;c<s;c+=i)this.
+height:s}=r,{canvas:o}=this.graphics;o.width<n&&(o.width=n),o.height<s&&(o.height=s);let i=t?mi:s;for(let c=0;c<s;c+=i)this.
 render(e,c,Math.min(i,s-c),t)}render(e,t,r,n){let{graphics:s,viewer:o}=this,{camera:i}=o,{scene:c,places:l}=this.content;
 if(!i||!c||!l)return;let h=s.context,{width:u,height:m}=l,p=o.view(e,this.density(m));n?s.bindSmooth(u,r):h.bindFramebuffer(
 h.FRAMEBUFFER,null),h.viewport(0,-t,u,m),h.enable(h.SCISSOR_TEST),h.scissor(0,0,u,r),h.enable(h.DEPTH_TEST),h.depthFunc(
@@ -541,9 +541,9 @@ let{settings:i}=this.viewer,{columns:c,rows:l}=e.geometry,h=e.scalars.name!==nul
 [1,1,1],u_opacity:t.areBehind?1:e.opacity,u_toEye:O(e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)
 return;let{canvas:o}=this.graphics,i=o.height-n,[c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=
 c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:u,coarsePen:m}=this;u.width=e,u.height=n,m?.drawImage(o,0,i,e,n,0,0,e,n),
-[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),s.drawImage(o,0,i,e,n,0,h,c,n*l)}},pi=4,fi=.3,Ar=1e-6,Ps=(a,e)=>Ts([0,
-0,0,0,0,0],a,e),Rs=a=>Ss([0,0,0,0,0,0],a);function di(a,e,t,r){let[n,s]=[t/2,r/2],o=M=>Ps([n,0,0,-s,n,s],[M[0],M[1],M[4],
-M[5],M[12],M[13]]),i=Ps(o(e),Rs(o(a))),c=Math.abs(As(i));if(!(c>fi**2&&c<pi**2))return null;let[l,h,u,m,p,f]=Rs(i),d=([M,
+[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),s.drawImage(o,0,i,e,n,0,h,c,n*l)}},fi=4,di=.3,Ar=1e-6,Ps=(a,e)=>Ts([0,
+0,0,0,0,0],a,e),Rs=a=>Ss([0,0,0,0,0,0],a);function gi(a,e,t,r){let[n,s]=[t/2,r/2],o=M=>Ps([n,0,0,-s,n,s],[M[0],M[1],M[4],
+M[5],M[12],M[13]]),i=Ps(o(e),Rs(o(a))),c=Math.abs(As(i));if(!(c>di**2&&c<fi**2))return null;let[l,h,u,m,p,f]=Rs(i),d=([M,
 A])=>Math.abs((l*M+u*A+p)/n-1)<1+Ar&&Math.abs((h*M+m*A+f)/s-1)<1+Ar,g=[[0,0],[t,0],[0,r],[t,r]].every(d),[b,y,x,v]=i,w=Math.
 abs(b-1)+Math.abs(v-1)+Math.abs(y)+Math.abs(x)<Ar;if(w)for(let M of[4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:g,
 shifts:w}}var Tt=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
@@ -569,22 +569,22 @@ l.position)),l.radius<r?!1:(i.add(l.position),!0)));return[...e,...c]}isNeeded(e
 limits,{cell:c,low:l,size:h}=e,u=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[m,p]=this.sides(e),f=.5*(F(m)+
 F(p)),d=Math.max(Os(t,u)-f,0);return!(n<s*o*r*_r(t,d))&&this.sees(t,u,f+i*n)}divided(e,t){let r=e.filter(o=>this.area(o)>
 t);if(!r.length)return e;let n=r.map(o=>{let[i,c]=this.sides(o),l=F(c)>F(i)?1:0,h=[...o.size];h[l]*=.5;let u=[...o.low];
-return u[l]+=h[l],[{...o,size:h,key:ce(o.key+Et)},{...o,size:h,low:u,key:ce(o.key+gi)}]}),s=e.filter(o=>this.area(o)<=t);
+return u[l]+=h[l],[{...o,size:h,key:ce(o.key+Et)},{...o,size:h,low:u,key:ce(o.key+bi)}]}),s=e.filter(o=>this.area(o)<=t);
 return this.divided([...s,...n.map(([o])=>o),...n.map(([,o])=>o)],t)}sides({cell:e,low:t,size:r}){let n=(s,o)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*o]);return[E(n(1,.5),n(0,.5)),E(n(.5,1),n(.5,0))]}area(e){return F(N(...this.sides(e)))}};function Ce(a,e,[
 t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],o=new Array(n).fill(0);for(let i=0;i<Tt;i+=1)for(let c=0;c<n;c+=1)o[c]+=
 s[i]*a[n*e[i]+c];return o}var Pt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
 t/this.most))}add(e){let t=ks(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
 n]=this.cube(e),s=this.most;for(let o=0;o<27;o+=1){let i=ks(t+o%3-1,r+Math.floor(o/3)%3-1,n+Math.floor(o/9)-1);for(let c of this.
-cubes.get(i)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,gi=2246822507,bi=[739982445,695872825],Ls=15;function ks(a,e,t){
-return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of bi)
+cubes.get(i)??[])s=Math.min(s,F(E(e,c)))}return s}},Et=2654435769,bi=2246822507,yi=[739982445,695872825],Ls=15;function ks(a,e,t){
+return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function ce(a){let e=a>>>0;for(let t of yi)
 e=Math.imul(e^e>>>Ls,t)>>>0;return(e^e>>>Ls)>>>0}var St=a=>a/2**32;function Tr(a){return{cell:a,low:[0,0],size:[1,1],key:ce(
-a)}}var Os=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>_r(a,Os(a,e));var Is=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Fs=4,yi=Is.reduce((a,[,e])=>a+e,0),xi=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+a)}}var Os=({eye:a},e)=>a?F(E(e,a)):1,_r=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>_r(a,Os(a,e));var Is=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Fs=4,xi=Is.reduce((a,[,e])=>a+e,0),vi=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),Ns=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!ke(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new _t(this.surface,n.constants.arrows);let o=this.seeds.seen(e,gr(n,t));if(s?.seeds===
-o&&xi(r,s.layers))return s.shared;let{corners:i}=this.surface,c=o.map(({cell:u,place:m,radius:p})=>{let f=i.subarray(4*u,
+o&&vi(r,s.layers))return s.shared;let{corners:i}=this.surface,c=o.map(({cell:u,place:m,radius:p})=>{let f=i.subarray(4*u,
 4*u+4);return{corners:f,place:m,radius:p,cell:n.geometry.triangles?u:f[0]}}),l=new Map(r.map(u=>[u,[]])),h=[...r].sort((u,m)=>Ns(
 u)-Ns(m));for(let u of c)for(let m of h){let p=m.tile?this.inTile(u,m,m.tile):u;if(p){l.get(m)?.push(p);break}}return this.
 last={seeds:o,layers:r,shared:l},l}draw(e,t,r,n,s){let{graphics:o}=this,i=o.context;this.array??=this.make(),i.bindVertexArray(
@@ -601,7 +601,7 @@ M?null:[_,S-_]},g=d(e[0]%f+t[0],1,i,p-1),b=d(Math.floor(e[0]/f)+t[1],0,o,m-1);if
 (p-1)+g[0]]===0)return null;let y=b[0]*p+g[0];return{corners:[y,y+1,y+p,y+p+1],place:[g[1],b[1]],radius:r,cell:y}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of Is)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,yi*Fs,r),e.vertexAttribDivisor(n,1),r+=s*Fs;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+n,s,e.FLOAT,!1,xi*Fs,r),e.vertexAttribDivisor(n,1),r+=s*Fs;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 o=t.map(h=>this.parts.get(h)?.data??new Float32Array),i=bt(o,s),c=this.nodes,l=n.triangles?null:jn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:u,radius:m,cell:p})=>{let[f,d]=u,[g,b,y,x]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
 v=N(E(R(b,x),R(g,y)),E(R(y,x),R(g,b)));return[...E(Ce(c,h,u,3),r),...l?Ce(l,h,u,2):[f*(1-d),d],...V(v),...s.flat?i.subarray(
@@ -609,8 +609,8 @@ v=N(E(R(b,x),R(g,y)),E(R(y,x),R(g,b)));return[...E(Ce(c,h,u,3),r),...l?Ce(l,h,u,
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let o=this.parts.get("triangles")?.data??[];for(let i=0;i<o.length;i+=3)n.push(
 o[i],o[i+1],o[i+2],o[i+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let o=0;o<(t-1)*(r-1);o+=1){
-if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ue=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Cs=8,[vi,wi]=[24,8],Te=[1,2],Mi=.2;function Ve(a,e,t){
-let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let o=0;o<t;o+=1)n[t*s+o]=a[t*e[s]+o];return n}function Ei({
+if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ue=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Cs=8,[wi,Mi]=[24,8],Te=[1,2],Ei=.2;function Ve(a,e,t){
+let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let o=0;o<t;o+=1)n[t*s+o]=a[t*e[s]+o];return n}function Si({
 geometry:a,bodies:e},t){let[r,n,s]=t.axes,o=(e?.lights??[]).slice(0,Cs),i=o.map(({way:l,turns:h})=>{let u=R(R(k(r,l[0]),
 n,l[1]),s,-l[2]);return O(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Cs},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
 i),u_lightColours:c(o.map(({color:l})=>l))}}var Lt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
@@ -626,11 +626,11 @@ r.BLEND),r.disable(r.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height
 runs.filter(({clear:A})=>A===i);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:u}=l,m=h.context,[p,f]=this.
 programs,d=this.drawn??=this.make(),g=z(u,e,t),[b,y,x,v]=e.eye,w=O(u.frame,E([b,y,x],k(u.center,v)));i&&(m.enable(m.BLEND),
 m.blendFuncSeparate(m.SRC_ALPHA,m.ONE_MINUS_SRC_ALPHA,m.ZERO,m.ONE),m.depthMask(!1)),h.programs.use(p,{u_matrix:g,u_anchor:t,
-u_eye:[...E(w,k(t,v)),v],...Ei(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Te[1],Te[1]);
+u_eye:[...E(w,k(t,v)),v],...Si(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Te[1],Te[1]);
 for(let{faces:[A,S],ambient:_,diffuse:L}of c)S&&(h.programs.use(p,{u_ambient:_,u_diffuse:L}),m.drawElements(m.TRIANGLES,
 3*S,m.UNSIGNED_INT,12*A));m.disable(m.POLYGON_OFFSET_FILL);let M={u_matrix:g,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
 1]};h.programs.use(f,M),m.bindVertexArray(d.pieces);for(let{pieces:[A,S],width:_}of c)if(S){h.programs.use(f,{u_width:_*
-s});for(let[L,C,I,J,se]of[[d.ends,3,m.FLOAT,vi,0],[d.colours,4,m.UNSIGNED_BYTE,wi,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let U of[
+s});for(let[L,C,I,J,se]of[[d.ends,3,m.FLOAT,wi,0],[d.colours,4,m.UNSIGNED_BYTE,Mi,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let U of[
 0,1])m.vertexAttribPointer(se+U,C,I,C===4,J,J*(A+U/2))}m.drawArraysInstanced(m.TRIANGLE_STRIP,0,4,S)}m.bindVertexArray(null),
 m.depthMask(!0),m.disable(m.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,o=this.drawn??=
 this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
@@ -638,7 +638,7 @@ s.bindVertexArray(o.faces);for(let{faces:[i,c],clear:l}of r)l||s.drawElements(s.
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:o}){let{geometry:i}=this.
 header,c=z(i,t,r);for(let{text:l,position:h,size:u,color:m,plate:p}of this.labels){let f=E(O(i.frame,E(h,i.center)),r),[
 d,g,,b]=[0,1,2,3].map(S=>c[S]*f[0]+c[4+S]*f[1]+c[8+S]*f[2]+c[12+S]);if(b<=0)continue;let[y,x]=[(.5+.5*d/b)*n,(.5-.5*g/b)*
-s],v=u*o,w=Mi*v;e.font=`600 ${v}px system-ui, sans-serif`,e.textBaseline="middle";let[M,A]=[e.measureText(l).width+2*w,v+
+s],v=u*o,w=Ei*v;e.font=`600 ${v}px system-ui, sans-serif`,e.textBaseline="middle";let[M,A]=[e.measureText(l).width+2*w,v+
 2*w];e.fillStyle=Us(p),e.beginPath(),e.roundRect(y,x-A,M,A,w),e.fill(),e.fillStyle=Us(m),e.fillText(l,y+w,x-.5*A)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,o,i,c]=Ue.map(b=>t.get(b)?.data??[]),l=()=>{let b=e.counted(r.createVertexArray());
 return r.bindVertexArray(b),b},h=(b,y=r.ARRAY_BUFFER)=>{let x=e.counted(r.createBuffer());return r.bindBuffer(y,x),r.bufferData(
@@ -646,15 +646,15 @@ y,b,r.STATIC_DRAW),x},u=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[o,4,r.UNSIGNED_BYTE]]
 v),r.vertexAttribPointer(v,y,x,x!==r.FLOAT,0,0),w});p.push(h(i,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ve(n,c,3)),g=h(Ve(
 o,c,4));for(let b=0;b<4;b+=1)r.enableVertexAttribArray(b),r.vertexAttribDivisor(b,1);return r.bindVertexArray(null),{faces:u,
 pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Us([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}var kt=["land","missing"],Si=.18;function Vs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=P(t.map(s=>s**
-2.2),[.2126,.7152,.0722])>=Si?0:1;return t.map(s=>s*(1-r)+n*r)}var Gs=1e30,Ds=65535,Bs=256;function Ai(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
-[]);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Ds,e[c]+n[c]/Ds*t[c]));r[r.length-1].push(o)}return r}function Ti(a,e){return e?
+join(" ")} / ${r})`}var kt=["land","missing"],Ai=.18;function Vs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=P(t.map(s=>s**
+2.2),[.2126,.7152,.0722])>=Ai?0:1;return t.map(s=>s*(1-r)+n*r)}var Gs=1e30,Ds=65535,Bs=256;function Ti(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
+[]);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Ds,e[c]+n[c]/Ds*t[c]));r[r.length-1].push(o)}return r}function _i(a,e){return e?
 a.flatMap(t=>{let r=0,n=t.filter((s,o)=>{let i=r;return o&&(r+=Math.hypot(...s.map((l,h)=>l-t[o-1][h]))),Math.floor(r/e)>
-Math.floor(i/e)||o===0||o===t.length-1});return r<e?[]:[n]}):a}function _i(a,e){let t=a.reduce((s,o)=>s+o.length+1,0),r=new Float32Array(
-3*t).fill(Gs),n=0;for(let s of a){n+=3;for(let o of s)for(let i=0;i<3;i+=1)r[n++]=o[i]-e[i]}return r}function Pi(a){let e=[],
+Math.floor(i/e)||o===0||o===t.length-1});return r<e?[]:[n]}):a}function Pi(a,e){let t=a.reduce((s,o)=>s+o.length+1,0),r=new Float32Array(
+3*t).fill(Gs),n=0;for(let s of a){n+=3;for(let o of s)for(let i=0;i<3;i+=1)r[n++]=o[i]-e[i]}return r}function Ri(a){let e=[],
 t=a.length/3-1;for(let r=0;r<t;r+=Bs){let n=Math.min(Bs,t-r),[s,o]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let l=3*r;l<3*(r+
 n+1);l+=1)a[l]!==Math.fround(Gs)&&(s[l%3]=Math.min(s[l%3],a[l]),o[l%3]=Math.max(o[l%3],a[l]));let i=s.map((l,h)=>(l+o[h])/
-2),c=Math.hypot(...s.map((l,h)=>(o[h]-l)/2));e.push({first:r,count:n,middle:i,radius:c})}return e}function Ri(a,e){let t=[];
+2),c=Math.hypot(...s.map((l,h)=>(o[h]-l)/2));e.push({first:r,count:n,middle:i,radius:c})}return e}function Li(a,e){let t=[];
 for(let{first:r,count:n,middle:[s,o,i],radius:c}of a){let l=([u,m,p,f])=>u*s+m*o+p*i+f<-c*Math.hypot(u,m,p);if(e.some(l))
 continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var Hs=12,zs=2;var Ot=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
 this.version+=1;for(let t of e==="position"?kt:[e])this.drop(t)}dispose(){for(let e of[...this.drawn.keys()])this.drop(e)}drop(e){
@@ -667,7 +667,7 @@ c.enable(c.SCISSOR_TEST),c.scissor(0,0,u,m),c.disable(c.DEPTH_TEST),c.enable(c.B
 p/s.usualHeight),...s.widthRange),x=s.spacingPixels*b,v=s.spacings.find(w=>w<=x)??0;for(let{option:w,color:M,opacity:A,width:S}of s.
 strokes){if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let _=this.take(w,h,()=>this.linesOf(w,h,v),v);
 n.programs.use(i,{u_matrix:z(r.geometry,l,h),u_picture:[u,m],u_width:S*y*p,u_lineColour:[...M,A],u_horizon:f?g[g.length-
-1]:[0,0,0,1]}),c.bindVertexArray(_.array),c.bindBuffer(c.ARRAY_BUFFER,_.buffers[0]);for(let[L,C]of Ri(_.groups,g)){for(let I=0;I<
+1]:[0,0,0,1]}),c.bindVertexArray(_.array),c.bindBuffer(c.ARRAY_BUFFER,_.buffers[0]);for(let[L,C]of Li(_.groups,g)){for(let I=0;I<
 zs;I+=1)c.vertexAttribPointer(I,3,c.FLOAT,!1,Hs,(L+I)*Hs);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,C)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders,
 {earth:r}=this.header;return r?.land&&(r.map===null&&r.below&&!this.groundProgram("FLOWTEX_GLOBE").ready||this.hasCells&&
@@ -690,17 +690,17 @@ let s=this.drawn.get(e);if(s&&String([s.anchor,s.spacing])===String([t,n]))retur
 spacing:n};return this.drawn.set(e,o),o}emptyArray(){let{graphics:e}=this;return{array:e.counted(e.context.createVertexArray()),
 buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(e,t){let{graphics:r}=this,n=r.context,s=r.counted(n.createBuffer());
 return n.bindBuffer(e,s),n.bufferData(e,t,n.STATIC_DRAW),s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,
-o=this.parts.get(e)?.data??[],i=s?Ai(o,s):[],c=_i(Ti(i,r),t),l={...this.emptyArray(),groups:Pi(c)};n.bindVertexArray(l.array),
+o=this.parts.get(e)?.data??[],i=s?Ti(o,s):[],c=Pi(_i(i,r),t),l={...this.emptyArray(),groups:Ri(c)};n.bindVertexArray(l.array),
 l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<zs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);
 return l}cellsOf(e,t){let r=this.graphics.context,n=this.parts.get(e),s=this.parts.get("position"),o=this.emptyArray();if(!n||
-!s)return o;let i=this.header.geometry.triangles?n.data:Li(n);r.bindVertexArray(o.array);let c=gt(s.data,t);return o.buffers=
+!s)return o;let i=this.header.geometry.triangles?n.data:ki(n);r.bindVertexArray(o.array);let c=gt(s.data,t);return o.buffers=
 [this.buffer(r.ARRAY_BUFFER,c),this.buffer(r.ELEMENT_ARRAY_BUFFER,i)],o.count=i.length,r.enableVertexAttribArray(0),r.vertexAttribPointer(
-0,3,r.FLOAT,!1,0,0),o}};function Li({data:a,shape:[e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.
-floor(n/t),o=s+t+1;r.push(s,s+1,o+1,s,o+1,o)}return Uint32Array.from(r)}var[ki,Oi]=[.01,.2],[re,Ws]=[4,24],$s=9;function js(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+0,3,r.FLOAT,!1,0,0),o}};function ki({data:a,shape:[e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.
+floor(n/t),o=s+t+1;r.push(s,s+1,o+1,s,o+1,o)}return Uint32Array.from(r)}var[Oi,Fi]=[.01,.2],[re,Ws]=[4,24],$s=9;function js(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/re,t.points);s+=1){let o=a[re*s+3];(r.points[o]??=[]).push(
 ...[0,1,2].map(i=>a[re*s+i]))}let n=NaN;for(let s=0;s<e.length/re;s+=1){let o=e[re*s+3];if(o>=tt.saddle*t.saddles)continue;
 let i=o&tt.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[i[o&tt.leaving?0:1]];o!==n&&c.push(
-[]),n=o,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function Fi(a,e){let t=[];for(let r=0;r<a.length;r+=re)
+[]),n=o,c[c.length-1].push(...[0,1,2].map(l=>e[re*s+l]))}return r}function Ni(a,e){let t=[];for(let r=0;r<a.length;r+=re)
 a[r+3]===e&&t.push(a[r],a[r+1],a[r+2]);return Float32Array.from(t)}function De(a,e=!1){let t=Float32Array.from(a.flat());
 if(e)return Ve(t,Array.from({length:2*t.length/3},(s,o)=>o>>1),3);let r=[],n=0;for(let s of a){let o=s.length/3;for(let i=n;i<
 n+o-1;i+=1)r.push(i,i+1);n+=o}return Ve(t,r,3)}var Ft=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(e,t,r){
@@ -718,12 +718,12 @@ let{header:c,graphics:l}=this,{structure:h,geometry:u}=c,m=h&&this.layers(h,o,i)
 Math.hypot(...y);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:z(u,e,t),u_anchor:t,u_eye:[...E(y,k(t,b)),
 b],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:A,color:S,width:_,
-above:L}of m){let[C,I,J,se=1]=S;l.programs.use(w,{u_width:_*x,u_nearer:ki*v*(1+Oi*L)});for(let U of[0,1])p.vertexAttribPointer(
+above:L}of m){let[C,I,J,se=1]=S;l.programs.use(w,{u_width:_*x,u_nearer:Oi*v*(1+Fi*L)});for(let U of[0,1])p.vertexAttribPointer(
 U,3,p.FLOAT,!1,Ws,Ws*(M+U/2)),p.vertexAttrib4f(2+U,C,I,J,se);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,A)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[o,i],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,o,i?.digest,c?.digest,Pr(r)]);if(this.drawn?.key===l)return this.
 drawn.layers;let h=js(s?.data??[],i?.data??[],{points:n,saddles:o}),{line:u,dot:m,rim:p,middle:f}=e,d=[],g=[],b=0,y=(w,M,A,S)=>{
-let _=w.length/6;_&&d.push({first:b,count:_,color:M,width:A,above:S}),g.push(w),b+=_},x=e.nullclines.map((w,M)=>Fi(c?.data??
+let _=w.length/6;_&&d.push({first:b,count:_,color:M,width:A,above:S}),g.push(w),b+=_},x=e.nullclines.map((w,M)=>Ni(c?.data??
 [],M));x.forEach(w=>y(w,p,u[0],0)),x.forEach((w,M)=>y(w,e.nullclines[M].color,u[1],1)),y(De(Object.values(h.lines).flat()),
 p,u[0],1.5),Object.entries(h.lines).forEach(([w,M],A)=>y(De(M),e.lines[w],u[1],2+A));let v=e.kinds.map((w,M)=>h.points[M]??
 []);return y(De(v,!0),p,m[0],6),e.kinds.forEach(({color:w},M)=>y(De([v[M]],!0),w,m[1],7)),y(De(v.filter((w,M)=>e.kinds[M].
@@ -735,10 +735,10 @@ header,[l,h]=this.shown(s,o,"critical"),u=2*n.height/Math.max(r,1),[m,p]=["",$s]
 1){let[d,g,b,y]=[0,1,2,3].map(M=>Number(h?.data[re*f+M])),x=R(K(i.frame,[d,g,b]),i.center),v=n.project(x);if(!v||Math.hypot(
 ...E(x,t))>4*$s*u)continue;let w=.5*r*Math.hypot((v[0]-e[0])*n.aspect,v[1]-e[1]);w<p&&([m,p]=[c?.kinds[y]?.name??"",w])}
 return m}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
-buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var Ni={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],image:["image"],step:["step"],scalars:["scalar"]},Ys=["padded","unit","open","nearest","rays"],Ii=8*(4/3),Ci=2048,
-Ui=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],Vi=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=Vi+=1;constructor(e,t,r,n=null){
+buffer=this.drawn=null}};function Pr([a,e,t]){return t<.5?a:e}var Ii={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
+"cmap"],image:["image"],step:["step"],scalars:["scalar"]},Ys=["padded","unit","open","nearest","rays"],Ci=8*(4/3),Ui=2048,
+Vi=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],Di=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=Di+=1;constructor(e,t,r,n=null){
 this.tile=n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Ot(e,t,r),this.bodies=new Lt(e,t,r),this.arrows=new Rt(
 e,t,r),this.marks=new Ft(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(i=>this.arrows.program(e,i));return[...["place","surfa\
 ce","smooth","probe"].filter(i=>t||i!=="smooth").map(i=>this.programs(i).ready),this.earth.isReady,this.bodies.isReady,this.
@@ -766,7 +766,7 @@ digest:t};n.release(s.get(e)),s.set(e,n.hold(o)),this.forget(e)}isMade(e){return
 tracings.delete(this.tracing),this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(`the part "${e}" of \
 the scene is missing`);return t}forget(e){let[t,r]=e.split("/");["position","cells","triangles"].includes(t)&&this.arrows.
 forget();let n=["slices","extra","flow"].includes(t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=1,this.most=
-null),Ue.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:Ni[t]??[])this.drop(s);Ys.includes(t)&&(this.
+null),Ue.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:Ii[t]??[])this.drop(s);Ys.includes(t)&&(this.
 wanted=[],this.dropSlices(NaN,NaN))}drop(e){let t=this.resources.get(e);this.resources.delete(e),t&&(t.users-=1,!t.users&&
 (this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){for(let e of[...this.resources.keys()])
 this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(e,...t){
@@ -777,19 +777,19 @@ l||(u.count=s(h)||0),c&&i.common.set(c,u),h}get blocks(){return this.part("mesh"
 header;return this.most??=ws(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
 header.geometry;return t?Jn(this.part("triangles").data,e):qn(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`sli\
 ces/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.
-startsWith("slices/")).length*Ii*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
+startsWith("slices/")).length*Ci*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
 let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.header.geometry;e.some((u,m)=>u!==this.anchor[m])&&this.
 drop("nodes"),this.anchor=e;let[o,i]=this.nodesSize,c=this.texture("nodes",this.key(["position","normal"],i,e),u=>{cr(t,
 i,o),t.bindTexture(t.TEXTURE_2D_ARRAY,u);let m=new Float32Array((s?3:6)*i*o);m.set(gt(this.part("position").data,e)),s||
 m.set(Xn(this.part("normal").data),3*i*o);let p=[i,o,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,...p,0,t.RGB,t.FLOAT,
 m),Xs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table("cells",this.key(["tr\
-iangles","blocks"]),t.RGBA32UI,Ci,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.
+iangles","blocks"]),t.RGBA32UI,Ui,()=>Kn(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.
 key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_corners":"u_open",h)}get nodesSize(){
 let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:e}bind(e,t){let r=this.graphics.
-context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Ui.includes(e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(
+context;r.activeTexture(r.TEXTURE0+de.indexOf(e)),r.bindTexture(Vi.includes(e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(
 r.TEXTURE0+de.length)}table(e,t,r,n,s){let o=this.graphics.context,i={[o.RGBA32UI]:[o.RGBA_INTEGER,o.UNSIGNED_INT,4],[o.
 R8UI]:[o.RED_INTEGER,o.UNSIGNED_BYTE,1],[o.RG32F]:[o.RG,o.FLOAT,2],[o.RGBA32F]:[o.RGBA,o.FLOAT,4]},[c,l,h]=i[r];return this.
-texture(e,t,u=>{let m=s(),p=Math.ceil(m.length/h/n);o.bindTexture(o.TEXTURE_2D,u),o.pixelStorei(o.UNPACK_ALIGNMENT,1);let f=Di(
+texture(e,t,u=>{let m=s(),p=Math.ceil(m.length/h/n);o.bindTexture(o.TEXTURE_2D,u),o.pixelStorei(o.UNPACK_ALIGNMENT,1);let f=Bi(
 m,h*n*p);o.texImage2D(o.TEXTURE_2D,0,r,n,p,0,c,l,f),Xs(o,o.TEXTURE_2D)})}shares(e,t){let{geometry:r,scalars:n}=this.header,
 {shape:s}=r,o=this.scalarParts(e,t);return[this.key(["triangles",...new Set(o)],s,n.low,n.high,n.log),()=>bt(o.map(l=>this.
 part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Texture",t,()=>n.createTexture(),r)}slices(e){
@@ -817,7 +817,7 @@ this.parts.get("cmap")?.data??new Uint8Array(4),s);this.bind("u_cmap",this.table
 i.length/4,()=>i));let[c,l]=this.shares(e,t);this.bind("u_shares",s.name===null?null:this.table("scalar",c,r.RG32F,this.
 nodesSize[1],l));let h=()=>Yn(n?.alongI??[],n?.alongJ??[]);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(
 n.alongI.length,n.alongJ.length),h))}};function Xs(a,e){a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(
-e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Di(a,e){if(a.length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Bi=60,Hi=25,zi=9e8,Gi=3.5,Wi={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Bi(a,e){if(a.length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Hi=60,zi=25,Gi=9e8,Wi=3.5,$i={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ae;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
@@ -837,7 +837,7 @@ D?[this.root.header.pyramid?.depth??0,0,0]:ie(s);return o?[{scene:o,key:c,covere
 root,{settings:n,canvas:s,ratio:o}=this.host;if(!r.pyramid)return new Map;this.pyramid??=new pt(r.pyramid,Un(r)??this.root.
 part("places").data);let i=this.pyramid.choose({...e.sight(s.height/o),planes:e.planes,cellPixels:Dn(r.pyramid,n),shownOn:this.
 host.shownOn});this.count+=1;for(let u of i.keys()){let m=this.tiles.get(u);m&&(m.used=this.count)}let c=performance.now()+
-Hi,l=this.obtainable(Bn(i),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
+zi,l=this.obtainable(Bn(i),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
 this.isHere(u,t)&&this.load(u,t,c);let h=vr(i,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
 l.filter(u=>!this.isHere(u,t)||!this.isLoaded(u,t)).length,this.chosen={choices:i,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
 let n=[t,...t.map(i=>[i])],s=i=>n.some(c=>this.failed.has(this.need(i,c))),o=e.map(i=>{let[c,l,h]=ie(i);for(;c<r&&s(G([c,
@@ -847,12 +847,12 @@ return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;this.isWaiting||
 !(this.missing.length||this.hasAsked)||(this.isWaiting=!0,t.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=
 this.missing.length>0;let r=(o,i)=>this.tiles.get(o)?.scene?.lacking(i)??oe(this.root.header,i),n=this.missing.flatMap(o=>this.
-chosen.steps.flatMap(i=>r(o,i))),s=[...new Set(n)].sort((o,i)=>o-i);e.wantTiles(this.missing.map(ie),s)},Bi))}trim(e){let t=0;
+chosen.steps.flatMap(i=>r(o,i))),s=[...new Set(n)].sort((o,i)=>o-i);e.wantTiles(this.missing.map(ie),s)},Hi))}trim(e){let t=0;
 for(let[r,n]of[...this.tiles].sort(([,s],[,o])=>o.used-s.used)){let{parts:s,scene:o,used:i}=n,c=o?.header.slices.trace?"\
 flow":"slices",l=[...s.keys()].filter(u=>u.startsWith(`${c}/`)),h=o?e.flatMap(u=>oe(o.header,u)):e;for(let u of l.slice(
-0,Math.max(l.length-Wi[c],0))){let m=X(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
+0,Math.max(l.length-$i[c],0))){let m=X(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
 let p=[...s.keys()].filter(f=>Ee(f,m,this.root.header));for(let f of p)this.release(n,f)}for(let{data:u}of s.values())t+=
-Gi*u.byteLength;t+=o?.tracedBytes??0,t>(this.host.options.source?.memory??zi)&&i<this.count&&this.drop(r)}}drop(e){let t=this.
+Wi*u.byteLength;t+=o?.tracedBytes??0,t>(this.host.options.source?.memory??Gi)&&i<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
 t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var It=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];isLate=!1;constructor(e){this.view=e,this.
 renderer=new Mt(e,this),!e.graphics.gl&&e.panel.fail("This browser has no WebGL2 with floating-point targets, which are \
@@ -957,7 +957,7 @@ void main()
   flowtexSidesOut = vec2(cell.x, u_mapCells - cell.x) / u_mapCells;
   gl_Position = projectTile(place);
 }
-`;var Lr=1e-5,Pe=Math.atan(Math.sinh(Math.PI))*180/Math.PI,B=Math.PI/180,Yi=88*B,Js='export it with projection="mercator"';
+`;var Lr=1e-5,Pe=Math.atan(Math.sinh(Math.PI))*180/Math.PI,B=Math.PI/180,Xi=88*B,Js='export it with projection="mercator"';
 function ge({lng:a,lat:e}){let t=Math.sin(T(e,-Pe,Pe)*B);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}var Ut=class{origin;slope;box;constructor(e,t,r){
 let n=e?.map;if(!n||!t)throw new Error(`the flow is not on a map; ${Js}`);let[s,o]=r??[n[0],n[2]];this.box=[s,n[1],o,n[3]];
 let[i,c]=t.shape,l=(x,v)=>{let[w,M,A]=t.data.subarray(3*(x*c+v)),S=ge({lng:Math.atan2(M,w)/B,lat:Math.asin(A/Math.hypot(
@@ -986,8 +986,8 @@ e,this.middle=Zs(t,s),this.cosine=Math.cos(s*B),this.seen=n}sees(e){let[t,r,,n]=
 mercator.lngLatOf([t,r])),this.middle),-1,1))<=this.seen+this.angle(n)}scale(e){let[,t,,r]=Array.from(e),n=Math.abs(2*Math.
 PI*(this.mercator.placeOf([0,t])[1]-.5)),s=Math.max(n-this.angle(r),0);return Math.min(1/Math.cosh(s)/this.cosine,1)}angle(e){
 return 2*Math.PI*this.mercator.slope[0]*e}};function Zs(a,e){let t=Math.cos(e*B);return[t*Math.cos(a*B),t*Math.sin(a*B),
-Math.sin(e*B)]}function kr({width:a,height:e,pitch:t,fov:r}){let[n,s]=[t*B,.5*r*B],o=n+s;if(o>Yi)return 1/0;let c=.5*e/Math.
-tan(s)*Math.cos(n)*(Math.tan(o)-Math.tan(n));return Math.hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(o))}var Fr=8192,Xi=22,qi=512,Ki=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=
+Math.sin(e*B)]}function kr({width:a,height:e,pitch:t,fov:r}){let[n,s]=[t*B,.5*r*B],o=n+s;if(o>Xi)return 1/0;let c=.5*e/Math.
+tan(s)*Math.cos(n)*(Math.tan(o)-Math.tan(n));return Math.hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(o))}var Fr=8192,qi=22,Ki=512,Ji=64,Vt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=t,this.texture=
 e.createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
 e!==void 0,this.view.shownOn=e?.shownOn??null,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.next=null}painted(e){
 let{camera:t}=this.view;t&&this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,next:t,shown:r}=this;
@@ -999,16 +999,16 @@ e.TEXTURE_MAG_FILTER,e.LINEAR),this.shown=this.next,this.next=null}}draw(e){let{
 define:i}=e.shaderData,c=r.get(`${i}
 ${o}
 ${Ks}`,qs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(T(e.zoom,0,Xi)),u=n.placeOf(l.state.focal_point),m=2**h,
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(T(e.zoom,0,qi)),u=n.placeOf(l.state.focal_point),m=2**h,
 p=[Math.floor(u[0]*m),T(Math.floor(u[1]*m),0,m-1)],f=Math.floor(p[0]/m),d={z:h,x:p[0]-f*m,y:p[1]},g=L=>L.map((C,I)=>(C*m-
-p[I])*Fr),[b,y,x,v]=n.box,[w,M]=[[b,y],[x,v]].map(L=>g(n.placeOf(L)));t.bindVertexArray(e.array);let A=s?Ki:1,S=s?0:Math.
-round(ge(e.center)[0]-u[0]),_=0;e.isRepeated&&!s&&(_=Math.ceil(t.drawingBufferWidth/(qi*2**e.zoom)));for(let L=-_;L<=_;L+=
+p[I])*Fr),[b,y,x,v]=n.box,[w,M]=[[b,y],[x,v]].map(L=>g(n.placeOf(L)));t.bindVertexArray(e.array);let A=s?Ji:1,S=s?0:Math.
+round(ge(e.center)[0]-u[0]),_=0;e.isRepeated&&!s&&(_=Math.ceil(t.drawingBufferWidth/(Ki*2**e.zoom)));for(let L=-_;L<=_;L+=
 1){let C={wrap:f+S+L,canonical:d},I=e.getProjectionData({tileID:C,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:I.mainMatrix,
 u_projection_fallback_matrix:I.fallbackMatrix,u_projection_tile_mercator_coords:I.tileMercatorCoords,u_projection_clipping_plane:I.
-clippingPlane,u_projection_transition:I.projectionTransition,u_box:[...w,M[0]-w[0],M[1]-w[1]],u_mapCells:A,u_flowMatrix:Ji(
+clippingPlane,u_projection_transition:I.projectionTransition,u_box:[...w,M[0]-w[0],M[1]-w[1]],u_mapCells:A,u_flowMatrix:Zi(
 this.view.header,l,n,p,1/(m*Fr)),u_flowPicture:0,u_flowPixel:2*l.height/this.view.canvas.height/(x-b),u_repeated:!!this.
 view.header.ends,u_opacity:e.opacity}),t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*A+2,A)}return t.bindVertexArray(null),
-!0}};function Ji({geometry:a},e,t,r,n){let{center:s,frame:o}=a,{focal_point:i}=e.state,c=O(o,E(i,s)),l=z(a,e,c),h=[0,1].
+!0}};function Zi({geometry:a},e,t,r,n){let{center:s,frame:o}=a,{focal_point:i}=e.state,c=O(o,E(i,s)),l=z(a,e,c),h=[0,1].
 map(f=>O(o,[0,1].map(d=>d===f?n/t.slope[f]:0).concat(0))),u=t.placeOf(i),m=[0,1].map(f=>(r[f]*n*Fr-u[f])/t.slope[f]).concat(
 0);return[...h,[0,0,0],O(o,m)].flatMap((f,d)=>[0,1,2,3].map(g=>f.reduce((b,y,x)=>b+l[4*x+g]*y,d===3?l[12+g]:0)))}var Dt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
 n;for(let s of t){let[{name:o,digest:i},c]=s,l=me(o)?.[0];l?this.tiles.set(l,[...this.tiles.get(l)??[],s]):this.parts.push(
@@ -1038,11 +1038,11 @@ configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r]
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new H(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new H(`Unsupported or unknown dtype: ${a}`);return t===
-"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Zi(a){return(a.id==="fixedscaleoffset"||a.id==="num\
+"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function Qi(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
 ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function na(a,e={}){let t=[],r=Qs(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
-scaleoffset"){if(!Zi(s))throw new H(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
+scaleoffset"){if(!Qi(s))throw new H(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
 configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=Qs(c).dataType;
 if(!Bt(l,"number")&&!Bt(l,"bigint"))throw new H(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:o,...i}=s;t.
@@ -1061,20 +1061,20 @@ fill_value]}return a.fill_value}function Ir(a,...e){if(!e.some(t=>a instanceof t
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
 a.byteLength);r=new Response(n.slice().buffer)}oa(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var ca=Qi();function Qi(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+ed to decode ${e}`)}}var ca=ec();function ec(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
 18}function la(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var Ye=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=Ht(t.dataType),this.#s=t.shape,this.#e=zt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
 return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ca&&this.#n==="big"&&(t=t.slice(),Nr(t,la(this.#t))),
 t}computeEncodedSize(e){return e}decode(e){return ca&&this.#n==="big"&&(e=e.slice(),Nr(e,la(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Wt=class{};function $t(a){return()=>{throw new ye(`${a} encode`)}}var jt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=$t("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Yt=class{};var Xt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=$t("gzip");async decode(e){let t=await ia(
-e,{format:"gzip"});return new Uint8Array(t)}};var Xe=class{};var qt=class{};var Kt=class{};var Jt=class{};var qe=class{};var Zt=class{};function ec(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"gzip"});return new Uint8Array(t)}};var Xe=class{};var qt=class{};var Kt=class{};var Jt=class{};var qe=class{};var Zt=class{};function tc(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Xt,n=()=>Zt;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>Jt).set("bytes",()=>Ye).set("crc32c",()=>jt).set("vlen-utf8",()=>qe).set("json2",()=>Xe).set("bit\
 round",()=>Be).set("cast_value",()=>Wt).set("scale_offset",()=>qt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>qe).set("numcodecs.shuf\
-fle",()=>Kt).set("numcodecs.delta",()=>Yt).set("numcodecs.bitround",()=>Be).set("numcodecs.json2",()=>Xe)}var Ke=ec();function Je(a){
-let e;function t(){return e||(e=tc(a)),e}async function r(n,s,o){try{return await o()}catch(i){throw new ze({direction:n,
+fle",()=>Kt).set("numcodecs.delta",()=>Yt).set("numcodecs.bitround",()=>Be).set("numcodecs.json2",()=>Xe)}var Ke=tc();function Je(a){
+let e;function t(){return e||(e=rc(a)),e}async function r(n,s,o){try{return await o()}catch(i){throw new ze({direction:n,
 codec:s,cause:i})}}return{async encode(n){let s=await t();for(let{name:i,codec:c}of s.arrayToArray)n=await r("encode",i,
 ()=>c.encode(n));let o=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:i,codec:c}of s.
 bytesToBytes)o=await r("encode",i,()=>c.encode(o));return o},async decode(n){let s=await t();for(let i=s.bytesToBytes.length-
@@ -1083,12 +1083,12 @@ name,()=>s.arrayToBytes.codec.decode(n));for(let i=s.arrayToArray.length-1;i>=0;
 o=await r("decode",c,()=>l.decode(o))}return o},async computeEncodedSize(n){let s=await t(),o=ha(s.arrayToBytes.name,s.arrayToBytes.
 codec,n);for(let{name:i,codec:c}of s.bytesToBytes)o=ha(i,c,o);return o}}}function ha(a,e,t){if(!e.computeEncodedSize)throw new H(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
-ine`);return e.computeEncodedSize(t)}async function tc(a){let e=a.codecs.map(async o=>{let i=await Ke.get(o.name)?.();if(!i)
+ine`);return e.computeEncodedSize(t)}async function rc(a){let e=a.codecs.map(async o=>{let i=await Ke.get(o.name)?.();if(!i)
 throw new He(o.name);return{Codec:i,meta:o}}),t=[],r,n=[],s={...a};for await(let{Codec:o,meta:i}of e){let c=o.fromConfig(
 i.configuration,s);switch(c.kind){case"array_to_array":t.push({name:i.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
-s));break;case"array_to_bytes":r={name:i.name,codec:c};break;default:n.push({name:i.name,codec:c})}}if(!r){if(!rc(s))throw new H(
+s));break;case"array_to_bytes":r={name:i.name,codec:c};break;default:n.push({name:i.name,codec:c})}}if(!r){if(!nc(s))throw new H(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:Ye.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function rc(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var ua=18446744073709551615n;function ma(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function nc(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var ua=18446744073709551615n;function ma(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),o=Je({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),i=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let u=l.map((v,w)=>Math.floor(v/s[w])),
 m=a.resolve(t(u)).path;m in c||(c[m]=(async()=>{let v=await o.computeEncodedSize(i),w=await n(m,{suffixLength:v},h);return w?
@@ -1097,56 +1097,56 @@ b=l.map((v,w)=>v%d[w]).reduce((v,w,M)=>v+w*g[M],0),y=f[b],x=f[b+1];if(!(y===ua&&
 x)},h)}}var ne=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function er(a){return new ne(
 a??new Map)}var xe=class extends ne{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function pa(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function nc(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function fa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?nc(
-a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function sc(a,e){let{configuration:t}=e.codecs.find(aa)??{},r={encodeChunkKey:ra(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
+function pa(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function sc(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function fa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?sc(
+a,t):a;return zt(e,r)}}var Qt=Symbol("zarrita.context");function ac(a,e){let{configuration:t}=e.codecs.find(aa)??{},r={encodeChunkKey:ra(e.chunk_key_encoding),TypedArray:Ht(e.data_type),
 fillValue:e.fill_value};if(t){let s=pa(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:Je({dataType:e.
 data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:fa(s),getChunkBytes:ma(a,e.chunk_grid.
 configuration.chunk_shape,r.encodeChunkKey,t)}}let n=pa(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:Je({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
 getStrides:fa(n),async getChunkBytes(s,o){let i=r.encodeChunkKey(s),c=a.resolve(i).path;return a.store.get(c,o)}}}var le=class extends ne{kind="\
-array";#e;[Qt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Gt(r)},this[Qt]=sc(this,this.#e)}get attrs(){return this.#e.
+array";#e;[Qt];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Gt(r)},this[Qt]=ac(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[Qt].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
 ea();let n=this[Qt],s=await n.getChunkBytes(e,t);if(!s){let o=n.chunkShape.reduce((c,l)=>c*l,1),i;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
  non-buffer-backed data types."),i=new n.TypedArray(o);else{let l=ta(o*c.BYTES_PER_ELEMENT,!0);i=new n.TypedArray(l,0,o)}}else
 i=new n.TypedArray(o);return i.fill(n.fillValue),{data:i,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Bt(this.dtype,e)}};function da(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function ga(a,...e){return da(a,e)}async function xa(a){let e=a.store.arrayExtensions;return e?.length?await ga(a,...e):a}var tr=ac();function ac(){let a=new WeakMap;
+codec.decode(s)}is(e){return Bt(this.dtype,e)}};function da(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function ga(a,...e){return da(a,e)}async function xa(a){let e=a.store.arrayExtensions;return e?.length?await ga(a,...e):a}var tr=oc();function oc(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function oc(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-je(t):{}}async function ic(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await oc(t,r)),
+return r.v3>r.v2?"v3":"v2"}}}async function ic(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+je(t):{}}async function cc(a,e={}){let t="store"in a?a:new ne(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await ic(t,r)),
 r?.throwIfAborted(),e.kind==="array"?ba(t,n,r):e.kind==="group"?ya(t,n,r):ba(t,n,r).catch(s=>(Ir(s,q,H),ya(t,n,r)))}async function ba(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new q("v2 array",{path:r});return tr.increment(
 a.store,"v2"),xa(new le(a.store,a.path,na(je(n),e)))}async function ya(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
 store.get(r,{signal:t});if(!n)throw new q("v2 group",{path:r});return tr.increment(a.store,"v2"),new xe(a.store,a.path,sa(
-je(n),e))}async function cc(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new q(
+je(n),e))}async function lc(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new q(
 "v3 array or group",{path:r});let s=je(n);return s.node_type==="array"&&(s.fill_value=Gt(s)),s.node_type==="array"?xa(new le(
-t,a.path,s)):new xe(t,a.path,s)}async function lc(a,e={}){let t="store"in a?a:new ne(a),r=await cc(t,e.signal);if(tr.increment(
+t,a.path,s)):new xe(t,a.path,s)}async function hc(a,e={}){let t="store"in a?a:new ne(a),r=await lc(t,e.signal);if(tr.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof le||e.kind==="group"&&r instanceof xe)return r;let n=r instanceof
 le?"array":"group";throw new q(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function Q(a,e={}){let t="store"in a?
-a.store:a,r=tr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(o=>(Ir(o,q,H),s(a,e)))}Q.v2=ic;
-Q.v3=lc;var va=[300,1e3,3e3],wa=2e4,uc=[401,403,404,410],Ea=200,mc=429,pc=500,fc=2197175160,Cr=4,dc=8,gc=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
-super(t),this.fault=e,this.detail=r}},bc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
-8*(e+1);s+=1)n=n>>>1^(n&1?fc:0);return n}));function yc(a){let[e,t,r,n]=bc,s=a.length-a.length%4,o=4294967295;for(let i=0;i<
+a.store:a,r=tr.versionMax(t),n=r==="v2"?Q.v2:Q.v3,s=r==="v2"?Q.v3:Q.v2;return n(a,e).catch(o=>(Ir(o,q,H),s(a,e)))}Q.v2=cc;
+Q.v3=hc;var va=[300,1e3,3e3],wa=2e4,mc=[401,403,404,410],Ea=200,pc=429,fc=500,dc=2197175160,Cr=4,gc=8,bc=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
+super(t),this.fault=e,this.detail=r}},yc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
+8*(e+1);s+=1)n=n>>>1^(n&1?dc:0);return n}));function xc(a){let[e,t,r,n]=yc,s=a.length-a.length%4,o=4294967295;for(let i=0;i<
 s;i+=4)o^=a[i]|a[i+1]<<8|a[i+2]<<16|a[i+3]<<24,o=n[o&255]^r[o>>>8&255]^t[o>>>16&255]^e[o>>>24];for(let i=s;i<a.length;i+=
 1)o=o>>>8^e[(o^a[i])&255];return~o>>>0}async function Sa(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:o=!0,value:i}=await n?.
 read()??{};if(o||!i)break;t.push(i),r+=i.length,e(r)}}catch(o){throw n?.cancel().catch(()=>{}),o}let s=new Uint8Array(r);
 return t.reduce((o,i)=>(s.set(i,o),o+i.length),0),s}var Ur=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Cr;if(t<0)throw new Error("the checksum is missing");
-let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Cr).getUint32(0,!0),o=new Uint8Array(r,n,t);if(s!==yc(o))throw new Error(
+let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Cr).getUint32(0,!0),o=new Uint8Array(r,n,t);if(s!==xc(o))throw new Error(
 "checksum mismatch");return o}computeEncodedSize(e){return e+Cr}},Vr=class a{kind="bytes_to_bytes";most;constructor(e){this.
-most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,dc),gc))}encode(){throw new Error("nothi\
+most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,gc),bc))}encode(){throw new Error("nothi\
 ng is written")}async decode(e){let t=new Blob([e]).stream();return Sa(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};Ke.set("gzip",()=>Promise.resolve(
-Vr));Ke.set("crc32c",()=>Promise.resolve(Ur));function xc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
-reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function vc(a,e){
+Vr));Ke.set("crc32c",()=>Promise.resolve(Ur));function vc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
+reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function wc(a,e){
 let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,wa);try{e.throwIfAborted();
 let{status:s,body:o}=await fetch(a,{signal:t.signal}),i=await Sa(s===Ea?o:null,()=>{clearTimeout(n),n=setTimeout(r,wa)});
 return[s,i]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function Ma(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await vc(a,e);if(n===Ea)return s;if(uc.includes(n))return;if(r=`the server answer\
-s ${n}`,n<pc&&n!==mc)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===va.length)throw new $(
-"unreachable",r);await xc(va[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+let r="no server answers";try{let[n,s]=await wc(a,e);if(n===Ea)return s;if(mc.includes(n))return;if(r=`the server answer\
+s ${n}`,n<fc&&n!==pc)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===va.length)throw new $(
+"unreachable",r);await vc(va[t],e)}}var rr=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
 s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await Ma(this.url+e,t);if(!r)
@@ -1155,20 +1155,20 @@ url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>t
 if(a instanceof $)return a;let e=a instanceof q&&!a.found?"missing":"broken";return new $(e,a instanceof Error?a.message:
 String(a))}var nr=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new rr(
 this.url,this.described);return(await Q.v3(er(e),{kind:"group"})).attrs}async array(e){let t=new rr(this.url,this.described),
-r=await Q.v3(er(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var wc=64,Mc=32,sr=4096,Ec=2**28,Sc=["padded","unit","open","nearest","normal","rays"],Ac={missing:"it is not in the sto\
+r=await Q.v3(er(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var Mc=64,Ec=32,sr=4096,Sc=2**28,Ac=["padded","unit","open","nearest","normal","rays"],Tc={missing:"it is not in the sto\
 re, or the store is not public.",broken:"its data in the store are corrupt.",unreachable:"the store does not answer. The\
- server or the network may be down, or the server does not allow this page to read it (CORS)."},Tc=["format","fingerprin\
+ server or the network may be down, or the server does not allow this page to read it (CORS)."},_c=["format","fingerprin\
 t","parameter","lines"],ve=(a,e)=>Number.isInteger(a)&&Number(a)>0&&Number(a)<=e,j=(a,e)=>Array.isArray(a)&&a.every(Number.
-isFinite)&&(e??a.length)===a.length,_c=(a,e)=>j(a,e)&&a.every(Number.isInteger);function Pc({nodes:a,longest:e=0,poles:t=[]}){
+isFinite)&&(e??a.length)===a.length,Pc=(a,e)=>j(a,e)&&a.every(Number.isInteger);function Rc({nodes:a,longest:e=0,poles:t=[]}){
 return Number.isFinite(e)&&t.length<=2&&t.every(({component:r,line:n,inward:s,near:o,plane:i})=>[0,1].includes(r)&&r===t[0].
-component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(o,sr)&&j(i,6))}function Rc(a,{geometry:e,slices:t}){let{geometry:r,
+component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(o,sr)&&j(i,6))}function Lc(a,{geometry:e,slices:t}){let{geometry:r,
 slices:n}=a,{shape:s,rows:o,columns:i}=r,{trace:c}=n;if(!(j(s,2)&&s.every(h=>ve(h,sr)&&h>1)&&[o,i].every(({before:h,size:u},m)=>Number.
 isInteger(h)&&ve(u,sr)&&h>=0&&h+s[m]<=u)&&Number.isInteger(r.levels)&&r.levels>=0&&2**r.levels<=Math.max(o.size,i.size)&&
 r.triangles===e.triangles&&r.planar===e.planar&&Number.isFinite(r.extent)&&j(r.periodic.map(Number),2)&&j(r.center,3)&&j(
-r.frame,9)&&ve(n.count,wc)&&[2,4].includes(n.channels)&&j(n.lags)&&ve(n.lags.length,Mc)&&n.sides===t.sides&&j(n.extra)&&
-n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>Sc.includes(
-h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,sr)&&c.drawn[u]+s[u]<=h)&&_c([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
-0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&Pc(c)&&(!c.timed||j([c.timed.unit,c.
+r.frame,9)&&ve(n.count,Mc)&&[2,4].includes(n.channels)&&j(n.lags)&&ve(n.lags.length,Ec)&&n.sides===t.sides&&j(n.extra)&&
+n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>Ac.includes(
+h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,sr)&&c.drawn[u]+s[u]<=h)&&Pc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
+0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&Rc(c)&&(!c.timed||j([c.timed.unit,c.
 timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function _a({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:o,extra:i}=e,c=(p,...f)=>[...p,...f].reduce((d,g)=>d*g,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
@@ -1178,16 +1178,16 @@ columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[In
 o)]],u.extra=[Uint16Array,[c(l,i.length)]];let m=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:u,
 needed:m}}function Dr(a,e,t){let{sizes:r}=_a(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:o,shape:i}of a){
 let c=r[s.split("/")[0]];if(!(c?o instanceof c[0]&&c[1].includes(o.length):s==="mesh"&&o instanceof Float32Array&&i.length===
-3&&i[0]===n[0]&&i[1]===n[1]&&o.length===i[0]*i[1]*i[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function Lc(a,{
+3&&i[0]===n[0]&&i[1]===n[1]&&o.length===i[0]*i[1]*i[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function kc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[o,{drawn:i,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let u=(Math.floor(h/s)+i[0])*c[1]+h%s+i[1];l[h]=r*Le[Number(a.data[o*(u+1)-1-Number(t.
 trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function Ta(a){let e=Aa(a);return e.
-fault==="other"||e.detail!==e.message?e:new $(e.fault,Ac[e.fault],e.message)}var ar=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
+fault==="other"||e.detail!==e.message?e:new $(e.fault,Tc[e.fault],e.message)}var ar=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
 r.url,t),this.store=new nr(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=Ta(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
-file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if(Tc.every(n=>t?.[n]===
+file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if(_c.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
 ion: export the page again.`;throw new $("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],o=G(s);return this.
 loaded(r,async i=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(o):
@@ -1199,7 +1199,7 @@ e/${o}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEvent
 try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),Ta(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),o=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},i=await o(0),[c,l]=hr(i),h=c.reduce((f,{bytes:d})=>f+d,l);if(!ve(
-h,Ec))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/i.length)*i.length);u.set(
+h,Sc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/i.length)*i.length);u.set(
 i);for(let f=1;f*i.length<h;f+=1)u.set(await o(f),f*i.length);let m=new Map;for(let f of Jr(u.buffer)){let[d,g]=me(f.name)??
 ["",f.name];if(d&&d!==G(t))throw new Error(`in place of tile ${G(t)} is ${d}`);m.set(g,{...f,name:g})}if(new TextDecoder().
 decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${G(t)} belongs to another flow`);return m.delete(
@@ -1208,21 +1208,21 @@ decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${G(t)} 
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),o={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${G(e)} header`};return{header:n,parts:[o,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:o,pace:i}=this.header.
-slices;return Rc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:o,pace:i}}}async flow(e,t,r){
+slices;return Lc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:o,pace:i}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(o=>{let[i,c]=o.name.split("\
 /");if(Number(c)!==n)throw new Error(`in place of step ${n} is ${o.name}`);return{...o,name:`${i}/${t}`}})}async values(e,t,r,n,s,o){
 let i=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,m=(l>1?r:[0]).map(d=>h?`scalars/${d}/${h}`:`scala\
 rs/${d}`),p=c===null?[]:m.filter(d=>!n(d)&&!i.has(d));if(!p.length)return[...i.values()];let f=await Promise.all(p.map(async d=>{
-let g=l>1?X(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[v]=await(o.get(g)??this.flow(e,g,s));return{...Lc(v,
+let g=l>1?X(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[v]=await(o.get(g)??this.flow(e,g,s));return{...kc(v,
 t,this.header.speed.typical),name:d}}let b=l>1?this.told.steps[g]:0,x=(await this.file("values",e,[b,e[1],e[2],h],s)).get(
 `scalars/${b}/${h}`);if(!x)throw new Error(`tile ${G(e)} has no values of step ${b}`);return{...x,name:d}}));Dr(f,t,this.
-header.mesh.tileCells);for(let d of f)i.set(d.name,d)}}};var kc=4096,Oc=4,Pa=32,Fc=.25,Nc=1e4,Ra=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)i.set(d.name,d)}}};var Oc=4096,Fc=4,Pa=32,Nc=.25,Ic=1e4,Ra=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Se(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
-ng"?t:"",location.href).href,{headers:s,parts:o}=typeof t=="string"?await Ic(n):t;if(this.gl!==e)return;let i=Cc(s[0]),c=new Dt(
+ng"?t:"",location.href).href,{headers:s,parts:o}=typeof t=="string"?await Cc(n):t;if(this.gl!==e)return;let i=Uc(s[0]),c=new Dt(
 i,o.flatMap(([f,d,g])=>f?[]:[[d,g]]),new Map,new Map),l=i.store?new ar(i,n):c,h={header:i,settings:{...i.settings,...i.own,
 ...this.own},player:new ut};this.shownOpacity=r??s[0].opacity;let u=async(f,d)=>{let g=!0,b=new Ct(f,{...h,source:l,isComing:()=>g});
 d(b);for(let y of c.parts){let x=await c.kept(y);if(b.lifetime.isOver)break;b.setPart(x)}return g=!1,Object.keys(this.colours).
@@ -1246,7 +1246,7 @@ l=e.painter.shown;if(!o||!r||!c||!l)return null;let h=c.point.position,u={scene:
 [m,p]=bs(u,n.get("lonlat"))??[NaN,NaN],{path:f}=ms(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
 map(d=>o.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:o}=t.mercator,{pyramid:i,geometry:c}=t.
-header,l=Fc*(o[2]-o[0])/(i?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
+header,l=Nc*(o[2]-o[0])/(i?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
 parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Pa,Pa,1),await ka(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:o,opacity:i}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
@@ -1255,13 +1255,13 @@ shaderData:m,getProjectionData:p}=t,f={gl:e,programs:s,array:o,shaderData:m,getP
 opacity:i};for(let d of u){let g=d.draw({...f,mercator:n.mercator,isRepeated:u.length===1});typeof g=="string"&&g?this.failed(
 "The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:o,
 ratio:i,text:c}=La(e,s);if(c===this.look)return;let l=t.look(o,r.geometry.center[2]);l.length>this.pictures.length&&n(),
-[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(Oc*o.width*o.height/(u*m));this.pictures[h]?.follow(l[h],
-Math.min(i,i*p,kc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
+[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(Fc*o.width*o.height/(u*m));this.pictures[h]?.follow(l[h],
+Math.min(i,i*p,Oc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
 scene||!t.every(r=>r.isComplete)?!1:this.look===La(e,this.globe).text}};function La(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
 fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function ka(a){
-let e=performance.now()+Nc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Ic(a){
+let e=performance.now()+Ic;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Cc(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function Cc(a){let{earth:e}=a,t={land:null,coastlines:!1,graticule:!1};return{...a,ends:Uc(a),background:[0,0,0],
-opacity:1,earth:e&&{...e,...t}}}function Uc({earth:a,geometry:e,slices:t}){let{map:r}=a??{};if(!a||!r||!e.periodic[1])return null;
+json()}function Uc(a){let{earth:e}=a,t={land:null,coastlines:!1,graticule:!1};return{...a,ends:Vc(a),background:[0,0,0],
+opacity:1,earth:e&&{...e,...t}}}function Vc({earth:a,geometry:e,slices:t}){let{map:r}=a??{};if(!a||!r||!e.periodic[1])return null;
 let n=.5*(r[0]+r[2]),s=.5*(t.trace?.offset[3]??2*Math.PI*a.radius);return[n-s,n+s]}export{Ra as FlowtexLayer};

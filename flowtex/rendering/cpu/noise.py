@@ -174,8 +174,9 @@ class SpaceNoise(Lookup):
         side = np.maximum(np.hypot(by_x, by_y), np.finfo(float).tiny)
         stretch = self._area / (side * self._pixel)
         stretch = np.clip(stretch, 1.0 / const.MOST_STRETCH, const.MOST_STRETCH)
-        has_direction = np.einsum("nc,nc->n", across, across) > 0.5
-        return np.where(has_direction, stretch, 1.0)
+        has_no_direction = np.einsum("nc,nc->n", across, across) < 0.5
+        is_usual = (np.abs(stretch - 1.0) < const.LEAST_STRETCH) | has_no_direction
+        return np.where(is_usual, 1.0, stretch)
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""
