@@ -91,7 +91,7 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     Raises
     ------
     FieldError
-        When an argument is none of ``plotter.add_scalar_bar``, or one that flows set themselves.
+        If ``plotter.add_scalar_bar`` has no such argument, or flowtex sets it.
     """
     parameters = inspect.signature(pv.Plotter.add_scalar_bar).parameters
     known = [name for name in parameters if name not in ("self", *OWN_ARGUMENTS)]
