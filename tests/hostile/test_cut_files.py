@@ -15,6 +15,7 @@ from cfd_files import CGNS, box, write_ensight, write_exodus, write_foam
 from hypothesis import given
 from hypothesis import strategies as st
 from lying_files import winds
+from mutations import legacy, xml
 from strategies import property_test
 
 from flowtex import FlowField
@@ -42,36 +43,8 @@ def surface() -> Any:
     return flow(pv.Plane(i_resolution=4, j_resolution=4).triangulate())
 
 
-def legacy(mesh: Any, *, text: bool, version: int) -> Callable[[Path], None]:
-    def write(path: Path) -> None:
-        from vtkmodules import vtkIOLegacy
-
-        kind = type(mesh).__name__.replace("ImageData", "StructuredPoints")
-        writer = getattr(vtkIOLegacy, f"vtk{kind}Writer")()
-        writer.SetFileVersion(version)
-        writer.SetFileType(1 if text else 2)
-        writer.SetFileName(str(path))
-        writer.SetInputData(mesh)
-        writer.Write()
-
-    return write
-
-
 def saved(mesh: Any, *, binary: bool = True) -> Callable[[Path], None]:
     return lambda path: mesh.save(path, binary=binary)
-
-
-def encoded(mesh: Any) -> Callable[[Path], None]:
-    def write(path: Path) -> None:
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-        writer = vtkXMLPolyDataWriter()
-        writer.SetDataModeToBinary()
-        writer.SetFileName(str(path))
-        writer.SetInputData(mesh)
-        writer.Write()
-
-    return write
 
 
 def dataset(kind: Any) -> Callable[[Path], None]:
@@ -161,7 +134,7 @@ FORMATS: dict[str, Callable[[Path], None]] = {
     "appended.vts": saved(structured()),
     "text.vts": saved(structured(), binary=False),
     "cells.vtu": saved(surface().cast_to_unstructured_grid()),
-    "encoded.vtp": encoded(surface()),
+    "encoded.vtp": xml(surface(), "Binary", compressed=True),
     "classic.nc": dataset("NETCDF3_CLASSIC"),
     "offset.nc": dataset("NETCDF3_64BIT_OFFSET"),
     "cdf5.nc": dataset("NETCDF3_64BIT_DATA"),
