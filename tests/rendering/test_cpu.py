@@ -440,6 +440,8 @@ def test_the_texture_fades_where_the_flow_is_slow() -> None:
     share = np.clip(across / (0.8 * np.sqrt(np.mean(x**2))), 0, 1)
     np.testing.assert_allclose(faded[seen], plain[seen] * share**2 * (3 - 2 * share), atol=0.01)
     assert (faded[seen] == plain[seen])[share == 1].all()
+    least = value(field, shot, fade=1e-311)
+    assert (least[seen] == plain[seen]).all(), "a fade near zero is none"
 
 
 def test_an_empty_view_is_an_empty_picture() -> None:

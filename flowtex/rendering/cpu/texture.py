@@ -150,8 +150,9 @@ class Summing:
         share = (speed >= const.LEAST_SPEED) * (const.FADED + (1 - const.FADED) * certainty)
         shown = self._shown(coordinate, level)
         share *= np.clip(1.0 + shown, 0.0, 1.0)
-        if self._values["u_fade"] > 0:
-            usual = np.clip(shown / self._values["u_fade"], 0, 1)
+        fade = self._values["u_fade"]
+        if fade > 0:
+            usual = np.clip(shown, 0, fade) / fade
             share = share * usual**2 * (3 - 2 * usual)
         return np.asarray(share)
 
