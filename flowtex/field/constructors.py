@@ -35,11 +35,12 @@ class FieldConstructors:
         Parameters
         ----------
         mesh
-            A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns; or a
-            PolyData or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this
-            is the outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one
-            structured block, or one volume, is treated as that block; otherwise the surfaces of its
-            blocks are drawn together. The time steps of a series are a list or tuple of meshes, a
+            A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns, or as
+            triangles if its cells turn by 35 degrees or more along a line of nodes; or a PolyData
+            or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this is the
+            outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one structured
+            block, or one volume, is treated as that block; otherwise the surfaces of its blocks are
+            drawn together. The time steps of a series are a list or tuple of meshes, a
             MultiBlock of meshes with the same nodes, or a PyVista reader with time values.
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only

@@ -28,6 +28,7 @@ from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
 from flowtex.field.derived import SIGNED, steps_of
+from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Steps
@@ -521,6 +522,8 @@ def make_scenes(mesh: Any, options: Options) -> list[Scene]:
     where an argument does not fit.
     """
     field, changes = share_field(read_field(mesh, options.field)), options.view.beside
+    if mixes_at_folds(field):
+        notify(FOLDED)
     first = Scene(field, options.make_settings(field), options.appearance)
     return [first] if changes is None else [first, first.beside(changes)]
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import bounds, norm, row_blocks
+from flowtex.field.grids.creases import has_creases
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_space
@@ -87,6 +88,13 @@ class GridSurface(NodeSurface):
     def is_closed(self) -> bool:
         """Whether all nodes have positions, and lines collapse to poles at both ends."""
         return bool(self.has_position.all()) and len(tuple(self.poles or ())) == 2
+
+    @cached_property
+    def is_folded(self) -> bool:
+        """Whether some cells lie at a sharp angle to the cells beside them."""
+        if self.frame is not None or self.on_globe:
+            return False
+        return has_creases(self.points, self.cells, self.closes)
 
     @cached_property
     def drawn(self) -> Indices:

@@ -20,6 +20,8 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.derived import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
+from flowtex.field.folds import MOST_NODES
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.options import OF_EARTH, FieldOptions
 from flowtex.sources.meshes import parts, volume
 from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
@@ -62,6 +64,9 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
             'cut a volume as in slice="x=0.5"'
         )
     velocity, chosen = choose(first.grid, options.vectors, plane, cut, record)
+    is_plain = periodic is None and not sign_free
+    if chosen is not None and is_plain and _has_cells_at_folds(first.grid, chosen, velocity):
+        chosen = None
 
     def draw(grid: Any) -> Sheet:
         if chosen is not None:
@@ -78,7 +83,7 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     arrays["volume_values"] = ranges.values()
     if first.grid.max_cell_dimensionality < 3:
         arrays["notable_normal"] = NOTABLE_SHARE
-    if on_grid:
+    if chosen is not None:
         return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
     return TriangleArrays(**arrays)
 
@@ -93,6 +98,15 @@ def choose(
     else:
         check_cut(grid, cut)
     return select_velocity(grid, vectors, record), chosen
+
+
+def _has_cells_at_folds(grid: Any, plane: volume.Plane, velocity: MeshArray) -> bool:
+    """Return whether a surface has a velocity on its cells, and folds where means are per face."""
+    if velocity.where != "cells" or grid.max_cell_dimensionality != 2:
+        return False
+    points = volume.plane_positions(grid, plane)
+    known = np.isfinite(points).all(axis=-1)
+    return known.size <= MOST_NODES and GridSurface(points, known, (False, False)).is_folded
 
 
 def _stacked(

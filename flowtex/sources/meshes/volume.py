@@ -194,7 +194,7 @@ def plane_sheet(
     grid: Any, plane: Plane, velocity: MeshArray, periodic: str | None, *, sign_free: bool
 ) -> Sheet:
     """Return the nodes of a plane of a structured mesh, (J, I)."""
-    points = _positions(grid, plane)
+    points = plane_positions(grid, plane)
     shown = ~plane.nodes(vectors.hidden_nodes(grid))
     # Only values of cells are spread beyond the last line.
     known = np.where(shown[..., None], points, np.nan)
@@ -232,7 +232,7 @@ def plane_sheet(
     )
 
 
-def _positions(grid: Any, plane: Plane) -> Floats:
+def plane_positions(grid: Any, plane: Plane) -> Floats:
     """Return positions of the nodes of a plane, (J, I, 3)."""
     import pyvista as pv
 

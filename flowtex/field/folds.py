@@ -1,0 +1,97 @@
+"""Structured surfaces that are folded: their cells turn sharply along lines of nodes.
+
+A node of a fold has one tangent plane, between both faces, so that velocities and speeds of the
+faces would mix over one cell. As triangles, each face has nodes of its own there.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from flowtex._util.array_types import Floats, Indices
+from flowtex.field.finer import finest_of
+from flowtex.field.steps import map_steps
+from flowtex.field.triangles.triangle_nodes import repeated, solid_triangles
+
+#: Most nodes of a grid that becomes triangles; larger ones are drawn in tiles of a grid.
+MOST_NODES = 1_000_000
+#: Attributes of a field that its nodes do not change.
+TEXTS = (
+    "name",
+    "length_unit",
+    "time_unit",
+    "units",
+    "long_names",
+    "start",
+    "section",
+    "reading",
+    "velocity_unit",
+    "volume_values",
+    "vectors",
+)
+#: What a picture of a grid with folds lacks.
+FOLDED = (
+    "cells of this grid turn by 35 degrees or more, and the values of both sides mix over one cell "
+    "there; expected triangles, as FlowField.from_pyvista makes of a StructuredGrid of up to "
+    f"{MOST_NODES:,} nodes, or FlowField.from_triangles"
+)
+
+
+def mixes_at_folds(field: Any) -> bool:
+    """Return whether a field on a grid mixes the values of faces at folds."""
+    if field.triangles is not None or field.projection is not None:
+        return False
+    return finest_of(field) is None and bool(field.surface.is_folded)
+
+
+def with_faces(field: Any) -> Any:
+    """Return a field with nodes for each face where a grid is folded; others as they are.
+
+    Parameters
+    ----------
+    field
+        A :class:`flowtex.FlowField`.
+
+    Returns
+    -------
+    FlowField
+        On triangles, two for each cell, where faces meet at sharp angles. Sign-free fields and
+        grids of more than :data:`MOST_NODES` nodes stay grids.
+    """
+    if field.sign_free or field.valid.size > MOST_NODES or not mixes_at_folds(field):
+        return field
+    surface = field.surface
+    numbers = surface.drawn
+    corners = surface.corners_of(numbers)
+    points = surface.points.reshape(-1, 3)
+    is_drawn = solid_triangles(points, corners) & ~repeated(corners)
+    numbers = numbers[is_drawn]
+    arrays = {**field.scalars, **field.parts}
+    nodal = {}
+    on_cells = {}
+    for name, steps in arrays.items():
+        if name in field.on_cells:
+            on_cells[name] = map_steps(steps, partial(_as_row, at=surface.cells_of(numbers)))
+        else:
+            nodal[name] = map_steps(steps, _as_row)
+    faced = type(field).from_triangles(
+        points,
+        corners[is_drawn],
+        map_steps(field.velocity, _as_row),
+        times=field.times,
+        valid=field.valid.ravel(),
+        scalars=nodal,
+        cell_scalars=on_cells,
+    )
+    if not faced.surface.at_edge.any():
+        return field
+    scalars = dict(faced.scalars)
+    parts = {name: scalars.pop(name) for name in field.parts}
+    texts = {name: getattr(field, name) for name in TEXTS}
+    return faced.same_flow(scalars=scalars, parts=parts, **texts)
+
+
+def _as_row(step: Floats, at: Indices | slice = slice(None)) -> Floats:
+    """Return some values of a step (J, I, ...) as a row, (N, ...)."""
+    return step.reshape(-1, *step.shape[2:])[at]
