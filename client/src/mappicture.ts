@@ -5,7 +5,7 @@ import fragmentShader from "../../shaders/webgl2/map_fragment.glsl";
 import vertexShader from "../../shaders/webgl2/map_vertex.glsl";
 import type { BareView } from "./bareview.ts";
 import { projection, type Camera } from "./camera.ts";
-import { placeOn, type FlowLook, type Mercator, type Place } from "./mercator.ts";
+import { mapScale, placeOn, type FlowLook, type Mercator, type Place } from "./mercator.ts";
 import type { Programs } from "./programs.ts";
 import type { Header } from "./protocol.ts";
 import { clamp, subtract, toFrame } from "./vectors.ts";
@@ -16,7 +16,9 @@ const DEEPEST_TILE = 22;
 /** Pixels of the page along a side of the map at zoom 0. */
 const WORLD_PIXELS = 512;
 /** Cells along a side of what is drawn on a globe. */
-const GLOBE_CELLS = 64;
+const GLOBE_CELLS: readonly [least: number, most: number] = [64, 256];
+/** Pixels of the page by which the middle of a cell may lie below the globe. */
+const GLOBE_SAGITTA = 0.25;
 
 /** A picture, and from where it sees the flow. */
 interface Shown {
@@ -114,7 +116,7 @@ export class MapPicture {
     const [x0, y0, x1, y1] = mercator.box;
     const [low, high] = [[x0, y0], [x1, y1]].map((position) => inTile(mercator.placeOf(position)));
     gl.bindVertexArray(frame.array);
-    const cells = globe ? GLOBE_CELLS : 1;
+    const cells = globe ? globeCells(frame, Math.max(x1 - x0, y1 - y0) * Math.abs(mercator.slope[0])) : 1;
     // The world in which the middle of the picture lies next to that of the map.
     const nearest = globe ? 0 : Math.round(placeOn(frame.center)[0] - middle[0]);
     let most = 0;
@@ -141,6 +143,14 @@ export class MapPicture {
     gl.bindVertexArray(null);
     return true;
   }
+}
+
+/** Cells along a share of the map's width, which are flat where the globe is round. */
+function globeCells({ zoom, center }: MapFrame, share: number): number {
+  const around = WORLD_PIXELS * 2 ** zoom * mapScale(center.lat);
+  const radius = around / (2 * Math.PI);
+  const enough = share * Math.PI * Math.sqrt(radius / (2 * GLOBE_SAGITTA));
+  return clamp(Math.ceil(enough), ...GLOBE_CELLS);
 }
 
 /** Matrix from a tile, with so much of the map to a unit, to the picture of a camera. */

@@ -3,6 +3,7 @@
 // Places of the web map are from 0 to 1, from west to east and from north to south.
 
 import type { CameraState } from "./camera.ts";
+import { globeSight, type GlobeCamera, type GlobeSight } from "./globesight.ts";
 import type { Earth, Header, Part } from "./protocol.ts";
 import type { Shown } from "./tilechoice.ts";
 import { clamp, dot, type Vector } from "./vectors.ts";
@@ -44,6 +45,11 @@ export interface FlowLook {
 export function placeOn({ lng, lat }: { lng: number; lat: number }): Place {
   const sine = Math.sin(clamp(lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS);
   return [lng / 360 + 0.5, 0.5 - Math.atanh(sine) / (2 * Math.PI)];
+}
+
+/** How many times as large as at the equator a map shows a latitude, or a globe with the map's scale in its middle. */
+export function mapScale(lat: number): number {
+  return 1 / Math.cos(clamp(lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS);
 }
 
 /** The linear mapping between positions of a flow and places of the web map. */
@@ -106,26 +112,43 @@ export class Mercator {
   look(map: MapLook, z: number): FlowLook[] {
     const unit = 1 / (512 * 2 ** map.zoom * this.slope[0]);
     const [x, y] = this.positionOf(placeOn(map.center));
-    const whole = this.wholeLook(map, unit, [x, y, z]);
-    if (whole) return [whole];
-    const from = (at: number) =>
-      map.globe ? this.globeLook(map, unit, [at, y, z]) : this.flatLook(map, unit, [at, y, z]);
-    const looks = [from(x)];
-    const [inside, reach] = map.globe
-      ? [0.5 * unit * looks[0].width, 0.5 * unit * looks[0].width]
-      : [0.5 * unit * Math.min(map.width, map.height), unit * farthest(map)];
     const [low, , high] = this.box;
     const other = x + (x < 0.5 * (low + high) ? 1 : -1) / this.slope[0];
+    if (map.globe) return this.globeLooks(map, unit, [x, other, z]);
+    const whole = this.wholeLook(map, unit, [x, y, z]);
+    if (whole) return [whole];
+    const looks = [this.flatLook(map, unit, [x, y, z])];
+    const inside = 0.5 * unit * Math.min(map.width, map.height);
     const isWhole = x - inside <= low && x + inside >= high;
-    if (!isWhole && Math.abs(other - clamp(other, low, high)) < reach) looks.push(from(other));
+    const reach = unit * farthest(map);
+    if (!isWhole && Math.abs(other - clamp(other, low, high)) < reach) looks.push(this.flatLook(map, unit, [other, y, z]));
     return looks;
+  }
+
+  /** Whether the data are around the Earth. */
+  private get isAround(): boolean {
+    const [low, , high] = this.box;
+    return Math.abs((high - low) * this.slope[0] - 1) < NEAR;
+  }
+
+  /** What is seen of a globe; all of data around the Earth where that is less than two pictures. */
+  private globeLooks(map: MapLook, unit: number, [x, other, z]: number[]): FlowLook[] {
+    const sight = globeSight(globeCamera(map, 1 / (unit * this.slope[0])));
+    const [low, , high] = this.box;
+    const reach = (0.5 * sight.aside) / (Math.PI * this.slope[0]);
+    const isWhole = x - reach <= low && x + reach >= high;
+    const hasOther = !isWhole && Math.abs(other - clamp(other, low, high)) < reach;
+    if (hasOther && this.isAround && 4 * reach >= high - low) {
+      return [this.globeLook(map, unit, { ...sight, aside: Math.PI }, [0.5 * (low + high), z])];
+    }
+    const middles = hasOther ? [x, other] : [x];
+    return middles.map((middle) => this.globeLook(map, unit, sight, [middle, z]));
   }
 
   /** All of data around the Earth, where a map shows both of their ends and copies beyond; else null. */
   private wholeLook(map: MapLook, unit: number, [x, y, z]: number[]): FlowLook | null {
     const [low, , high] = this.box;
-    const isAround = Math.abs((high - low) * this.slope[0] - 1) < NEAR;
-    if (!isAround || map.globe || map.pitch > 0) return null;
+    if (!this.isAround || map.pitch > 0) return null;
     const reach = unit * farthest(map);
     if (x - reach > low || x + reach < high) return null;
     let { height } = map;
@@ -150,16 +173,11 @@ export class Mercator {
   }
 
   /** The part of the map that is seen of a globe, from straight above and at the scale of its middle. */
-  private globeLook(map: MapLook, unit: number, [x, , z]: number[]): FlowLook {
+  private globeLook(map: MapLook, unit: number, sight: GlobeSight, [x, z]: number[]): FlowLook {
     const world = 1 / (unit * this.slope[0]);
-    const lat = clamp(map.center.lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS;
-    const radius = world / (2 * Math.PI * Math.cos(lat));
-    const seen = Math.asin(Math.min(farthest(map) / radius, 1));
-    const [south, north] = [lat - seen, lat + seen].map((end) => placeOn({ lng: 0, lat: end / RADIANS })[1]);
-    // Around a pole all longitudes are.
-    const aside = Math.abs(lat) + seen <= Math.PI / 2 ? Math.asin(Math.sin(seen) / Math.cos(lat)) : Math.PI;
+    const [south, north] = [sight.south, sight.north].map((end) => placeOn({ lng: 0, lat: end / RADIANS })[1]);
     const y = (0.5 * (south + north) - this.origin[1]) / this.slope[1];
-    const [wide, high] = [aside / Math.PI, south - north];
+    const [wide, high] = [sight.aside / Math.PI, south - north];
     const state = {
       position: [x, y, z + 1 / this.slope[0]],
       focal_point: [x, y, z],
@@ -168,9 +186,21 @@ export class Mercator {
       parallel_scale: (0.5 * high) / this.slope[0],
       view_angle: map.fov,
     };
-    const shownOn = new OnGlobe(this, map.center, seen);
+    const shownOn = new OnGlobe(this, map.center, sight.seen);
     return { state, width: wide * world, height: high * world, shownOn };
   }
+}
+
+/** The camera of a globe, on which a web map of a width in pixels has the scale of its middle. */
+function globeCamera({ center, width, height, bearing, pitch, fov }: MapLook, world: number): GlobeCamera {
+  const radius = (world * mapScale(center.lat)) / (2 * Math.PI);
+  return {
+    latitude: center.lat * RADIANS,
+    bearing: bearing * RADIANS,
+    pitch: pitch * RADIANS,
+    away: (0.5 * height) / Math.tan(0.5 * fov * RADIANS) / radius,
+    half: [(0.5 * width) / radius, (0.5 * height) / radius],
+  };
 }
 
 /** A picture of the map on a globe, whose cells become smaller towards the poles. */
@@ -182,10 +212,9 @@ class OnGlobe implements Shown {
 
   /** The globe shows what is within an angle from its middle. */
   constructor(mercator: Mercator, { lng, lat }: MapLook["center"], seen: number) {
-    const most = clamp(lat, -LAST_LATITUDE, LAST_LATITUDE);
     this.mercator = mercator;
-    this.middle = wayTo(lng, most);
-    this.cosine = Math.cos(most * RADIANS);
+    this.middle = wayTo(lng, lat);
+    this.cosine = 1 / mapScale(lat);
     this.seen = seen;
   }
 

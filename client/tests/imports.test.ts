@@ -9,7 +9,7 @@ const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
   "vectors half ticks dom keyboard lifetime sources/store modules.d app/vue",
-  "camera focus help",
+  "camera focus globesight help",
   "protocol",
   "uniforms quality",
   "poles programs mesh lonlat meshlevels tilechoice arrowseeds player colours ground legend mercator",

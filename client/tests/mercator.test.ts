@@ -81,20 +81,71 @@ test("a flat map is seen as it is, and a tilted one from where its eye is", () =
   assert.equal(state.parallel, false);
 });
 
+/** Longitudes from the middle, and latitudes, of what a window shows of a globe, point by point. */
+function seenOnGlobe({ center, width, height, zoom, bearing, pitch, fov }: MapLook): { aside: number; lats: number[] } {
+  const radius = (512 * 2 ** zoom) / (2 * Math.PI * Math.cos(center.lat * DEGREE));
+  const away = height / 2 / Math.tan((fov / 2) * DEGREE);
+  const lats: number[] = [];
+  let aside = 0;
+  for (let lat = -89.5; lat < 90; lat += 1) {
+    for (let lng = -179.5; lng < 180; lng += 1) {
+      // To the east and north from the middle, and up from there, in pixels.
+      const out = Math.cos(lat * DEGREE) * Math.cos(lng * DEGREE);
+      const [sine, cosine] = [Math.sin(center.lat * DEGREE), Math.cos(center.lat * DEGREE)];
+      const east = radius * Math.cos(lat * DEGREE) * Math.sin(lng * DEGREE);
+      const north = radius * (Math.sin(lat * DEGREE) * cosine - out * sine);
+      const above = radius * (Math.sin(lat * DEGREE) * sine + out * cosine - 1);
+      // Along the window.
+      const right = east * Math.cos(bearing * DEGREE) - north * Math.sin(bearing * DEGREE);
+      const ahead = east * Math.sin(bearing * DEGREE) + north * Math.cos(bearing * DEGREE);
+      const up = ahead * Math.cos(pitch * DEGREE) + above * Math.sin(pitch * DEGREE);
+      const depth = away + ahead * Math.sin(pitch * DEGREE) - above * Math.cos(pitch * DEGREE);
+      const isInside = Math.abs(right) <= (depth / away) * (width / 2) && Math.abs(up) <= (depth / away) * (height / 2);
+      // The eye is above the plane that touches the globe there.
+      const toEye = [-away * Math.sin(pitch * DEGREE) - ahead, away * Math.cos(pitch * DEGREE) - above];
+      const facing = -right * right + toEye[0] * ahead + toEye[1] * (above + radius);
+      if (depth <= 0 || !isInside || facing <= 0) continue;
+      lats.push(lat);
+      aside = Math.max(aside, Math.abs(lng));
+    }
+  }
+  return { aside, lats };
+}
+
 test("a globe is seen as far as the window shows it, at most to its horizon", () => {
   const mercator = new Mercator(...mapAround(0, 180, [-85, 85]));
-  const world = 512 * 8;
-  const radius = world / (2 * Math.PI);
-  const [close] = mercator.look({ ...LOOK, zoom: 3, globe: true }, 0);
-  const seen = Math.asin(Math.hypot(300, 200) / radius);
-  near([close.width / world], [seen / Math.PI], 1e-6);
-  near([close.state.parallel_scale / RADIUS], [Math.asinh(Math.tan(seen))], 1e-4);
-  const [far] = mercator.look({ ...LOOK, zoom: 0, globe: true }, 0);
-  near([far.width, far.height], [256, 512], 1e-3);
-  // Over the pole all longitudes are seen, and tilted the horizon.
-  const [polar] = mercator.look({ ...LOOK, zoom: 1, center: { lng: 0, lat: 80 }, globe: true }, 0);
-  near([polar.width], [1024], 1e-6);
-  assert.ok(mercator.look({ ...LOOK, zoom: 5, pitch: 85, globe: true }, 0)[0].height > 16 * 300);
+  const views: [zoom: number, lat: number, pitch: number, bearing: number][] = [
+    [0, 0, 0, 0], [1, 20, 0, 0], [1.6, 20, 0, 0], [1.6, 20, 50, 30], [3, 40, 0, 0], [3, 40, 60, 0], [3, -30, 40, 120],
+    [4, 0, 80, 0], [2, 75, 0, 0], [1, 80, 45, 0], [2, -60, 60, 200],
+  ];
+  for (const [zoom, lat, pitch, bearing] of views) {
+    const look = { ...LOOK, width: 300, height: 200, center: { lng: 0, lat }, zoom, pitch, bearing, globe: true };
+    const [{ state, width, height }] = mercator.look(look, 0);
+    const middle = placeOn({ lng: 0, lat: mercator.lngLatOf(state.focal_point)[1] })[1];
+    const world = 512 * 2 ** zoom;
+    const [north, south] = [-1, 1].map((side) => middle + (side * height) / (2 * world));
+    const { aside, lats } = seenOnGlobe(look);
+    const [top, bottom] = [Math.max(...lats), Math.min(...lats)].map((at) => placeOn({ lng: 0, lat: at })[1]);
+    const said = `${width} x ${height} at ${zoom}, ${lat}, ${pitch}, ${bearing}`;
+    assert.ok((180 * width) / world >= aside - 0.5 && north <= top && south >= bottom, said);
+    // Not much more, so that pictures are sharp.
+    assert.ok((180 * width) / world <= 1.1 * aside + 2, said);
+    const more = placeOn({ lng: 0, lat: Math.max(...lats) + 4 })[1];
+    assert.ok(north >= more - 1e-9 && south <= placeOn({ lng: 0, lat: Math.min(...lats) - 4 })[1] + 1e-9, said);
+  }
+});
+
+test("the tiles of a globe are those in view, as far as its corners", () => {
+  const mercator = new Mercator(...mapAround(0, 180, [-85, 85]));
+  const look = { ...LOOK, zoom: 1.6, width: 300, height: 200, center: { lng: 0, lat: 20 }, globe: true };
+  const [{ shownOn }] = mercator.look(look, 0);
+  // Its corners are beyond the horizon, which is 62 degrees away.
+  const radius = (512 * 2 ** look.zoom) / (2 * Math.PI * Math.cos(20 * DEGREE));
+  const horizon = Math.acos(radius / (radius + 100 / Math.tan((36.87 / 2) * DEGREE))) / DEGREE;
+  near([horizon], [62], 0.5);
+  const blockAt = (away: number) => [0, northing(20 - away), 0, 0, 1];
+  assert.equal(shownOn?.sees(blockAt(horizon - 0.5)), true);
+  assert.equal(shownOn?.sees(blockAt(horizon + 3)), false);
 });
 
 test("where a map shows both ends of data around the Earth there are two pictures, a world apart", () => {
@@ -106,6 +157,10 @@ test("where a map shows both ends of data around the Earth there are two picture
     near([main.state.focal_point[0], other.state.focal_point[0]], [(175 / 360) * world, (-185 / 360) * world], 100);
     assert.equal(around.look({ ...LOOK, center: { lng: 100, lat: 0 }, zoom: 4, globe }, 0).length, 1);
   }
+  // On a globe of which half a world is seen, all of the data are in one picture.
+  const [globe, ...further] = around.look({ ...LOOK, center: { lng: 120, lat: 20 }, zoom: 1.6, globe: true }, 0);
+  assert.deepEqual(further, []);
+  near([globe.width / 512 / 2 ** 1.6, globe.state.focal_point[0]], [1, 0], 1e-3);
   // All of the data are in one picture, wherever its middle is, or there are none beyond their end.
   const [whole, ...more] = around.look({ ...LOOK, center: { lng: -80, lat: 0 }, zoom: 0, width: 900, bearing: 30 }, 0);
   assert.deepEqual(more, []);

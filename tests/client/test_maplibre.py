@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pages import opened_page, painted
 from PIL import Image
 from range_server import RangeServer, range_server
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import binary_erosion, map_coordinates
 
 import flowtex
 from flowtex.field.earth import EARTH_RADIUS
@@ -467,6 +467,27 @@ def test_streaks_cross_the_ends_of_data_around_the_earth(shown: Shown, name: str
     # From each column to the next the brightness changes no more at the line than elsewhere.
     steps = np.abs(np.diff(around_line.mean(axis=-1), axis=1)).mean(axis=0)
     assert steps[22:28].max() < most * np.delete(steps, range(22, 28)).max()
+
+
+#: Views of a globe with its edge, or a corner near it: where data end at 84 degrees is not seen.
+GLOBES: dict[str, dict[str, Any]] = {
+    "whole": {"center": [0.0, 0.0], "zoom": 0},
+    "edges": {"center": [180.0, 20.0], "zoom": 1.6},
+    "corners": {"center": [0.0, 30.0], "zoom": 2.2},
+    "horizon": {"center": [10.0, 0.0], "zoom": 4, "pitch": 60},
+}
+
+
+@pytest.mark.parametrize("name", GLOBES)
+def test_the_flow_reaches_the_edge_of_a_globe(shown: Shown, name: str) -> None:
+    if shown.scene != "around.json":
+        shown.replace("around.json")
+    shown.project("globe")
+    shown.go(**({"bearing": 0, "pitch": 0} | GLOBES[name]))
+    bare = np.abs(shown.pixels() - GROUND).sum(axis=-1) < 60
+    # Pixels of the edge itself show some of the ground.
+    assert not binary_erosion(bare, np.ones((2, 2), dtype=bool)).any()
+    shown.go(bearing=0, pitch=0)
 
 
 @pytest.mark.parametrize("bearing", [0, 30])
