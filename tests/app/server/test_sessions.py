@@ -336,6 +336,31 @@ def test_sessions_that_end_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
     assert [thread for thread in threading.enumerate() if thread not in threads] == []
 
 
+@pytest.mark.parametrize("idle", [False, True])
+async def test_a_look_for_idle_sessions_holds_none(
+    monkeypatch: pytest.MonkeyPatch, idle: bool
+) -> None:
+    looks: list[float] = []
+
+    def is_idle(_: LocalSession, limit: float) -> bool:
+        looks.append(limit)
+        return idle
+
+    alive: list[bool] = []
+    async with place() as here:
+        token = await here.token()
+        session = weakref.ref(here.site.sessions.get(token))
+        monkeypatch.setattr(LocalSession, "is_idle", is_idle)
+        monkeypatch.setattr(sessions, "give_back", lambda: alive.append(session() is not None))
+        looking = asyncio.create_task(here.site.sessions.sweep(every=0.01))
+        await until(lambda: looks)
+        if not idle:
+            await here.site.sessions.end(token)
+        await until(lambda: alive)
+        assert alive == [False]
+        looking.cancel()
+
+
 def test_what_cannot_be_served_is_told() -> None:
     with pytest.raises(FieldError, match="samples cannot be used with a function"):
         serve(Plain, samples=3)

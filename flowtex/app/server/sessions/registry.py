@@ -232,9 +232,16 @@ class Sessions:
         """End sessions that no page has reopened, as long as the task runs."""
         while True:
             await asyncio.sleep(min(every, max(60 * self.idle / 4, 0.05)))
-            for session in self:
-                if session is not self._ready and session.is_idle(60 * self.idle):
-                    await self.end(session.token)
+            # By tokens: a session that the waiting task held would not be freed when it ends.
+            for token in list(self._by_token):
+                if self._is_abandoned(token):
+                    await self.end(token)
+
+    def _is_abandoned(self, token: str) -> bool:
+        session = self._by_token.get(token)
+        if session is None or session is self._ready:
+            return False
+        return session.is_idle(60 * self.idle)
 
     async def close(self) -> None:
         """End all sessions."""
