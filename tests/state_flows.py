@@ -90,6 +90,19 @@ def steady() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, scalars={"height": height})
 
 
+@cache
+def volume() -> Any:
+    """A mesh of three dimensions, of which planes are shown."""
+    import pyvista as pv
+
+    grid: Any = pv.ImageData(dimensions=(11, 9, 7), spacing=(0.2, 0.25, 0.3), origin=(-1, -1, -0.9))
+    mesh = grid.cast_to_structured_grid()
+    x, y, z = np.asarray(mesh.points).T
+    mesh["wind"] = np.stack([-y + 0.3 * z, x, 0.2 * z], axis=-1)
+    mesh["height"] = x * x + z
+    return mesh
+
+
 FLOWS: dict[str, Any] = {
     "series": series,
     "lazy series": lazy_series,

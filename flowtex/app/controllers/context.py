@@ -110,6 +110,11 @@ class FlowOpener(Controller):
         self._opening: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
 
+    @property
+    def is_opening(self) -> bool:
+        """Whether a flow is being opened."""
+        return self._opening is not None and not self._opening.done()
+
     def _begin(self, request: LoadRequest, *, follows: bool) -> None:
         """Open a flow instead of the one being opened, which may be shown if this one follows.
 

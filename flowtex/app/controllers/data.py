@@ -267,7 +267,7 @@ class FileBeside(FlowOpener):
 
     def cancel(self) -> None:
         """Stop opening; one pane is shown."""
-        if self._opening is not None and not self._opening.done():
+        if self.is_opening:
             self._fail()
 
     def follow(self) -> None:

@@ -140,6 +140,11 @@ class Player:
         """The time shown, or the requested one that is being read."""
         return self._viewport.handle.time if self._requested is None else self._requested
 
+    @property
+    def is_reading(self) -> bool:
+        """Whether a requested time is being read."""
+        return self._reading is not None and not self._reading.done()
+
     def go_to(self, time: float, page: str = "") -> None:
         """Show a time, or the nearest one; lazy steps are first read in a thread."""
         times = self._viewport.field.times
@@ -151,7 +156,7 @@ class Player:
             self._show(nearest)
             return
         self._requested = nearest
-        if self._reading is None or self._reading.done():
+        if not self.is_reading:
             self._reading = asyncio.create_task(self._read())
 
     async def _read(self) -> None:
