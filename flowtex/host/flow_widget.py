@@ -303,7 +303,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
         before, field = self.field.surface, share_field(read_field(mesh, reading))
         for view in self._views:  # all, or none if it does not fit one of them
-            view.scene.showing(field).close()
+            view.scene.showing(field, keep_range=False).close()
         for view in self._views:
             view.show(field)
         self._frame = self._still = None

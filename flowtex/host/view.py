@@ -127,7 +127,7 @@ class WebView:
 
     def show(self, field: FlowField) -> None:
         """Show another flow in the same way; raises what :meth:`Scene.showing` does."""
-        before, self.scene = self.scene, self.scene.showing(field)
+        before, self.scene = self.scene, self.scene.showing(field, keep_range=False)
         self.scene.follow(before)
 
     def recoloured(self, data: ClientData) -> ClientData:
@@ -160,7 +160,7 @@ def colours_of(
         background=background,
         lighting=scene.is_lit,
         opacity=float(look.opacity) if look.visible else 0.0,
-        bar=look.has_bar,
+        bar=scene.has_bar,
         label="" if name is None else scene.whole.label_of(name),
         coastlines=look.coastlines is not False,
         graticule=look.graticule is not False,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from itertools import chain, count
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pyvista as pv
@@ -16,12 +16,15 @@ from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
 
 COMPARED = 64  #: Number of colours by which maps are compared.
 SAME_BYTES = 4  #: Difference of bytes up to which two colours are one.
+#: Ranges that PyVista's meshes have without the flows that share their bar.
+_mesh_ranges: WeakKeyDictionary[Any, tuple[float, float]] = WeakKeyDictionary()
 
 
 class FlowBar:
     """The colour bar of one flow, which others with the same title and colours share.
 
-    All of them have one range, that of all their values, as PyVista's meshes have it.
+    All of them have one range: the limits that some of them choose, or else those of all their
+    values, as PyVista's meshes have it. It does not depend on the order of changes.
     """
 
     def __init__(self, plotter: Any, mapper: FlowMapper, options: Mapping[str, Any]) -> None:
@@ -47,8 +50,9 @@ class FlowBar:
             return
         self.remove()
         self._names = name, title
-        keys = chain([name], (f"{name} {n}" for n in count(2)))
-        self.key = next(key for key in keys if key not in self._bars or self._fits(key, title))
+        self.key = self._find_key(name, title)
+        if self.key in self._bars:
+            _remember_meshes(self._sharing)
         renderers = self._plotter.renderers
         active = renderers.active_index
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
@@ -62,6 +66,15 @@ class FlowBar:
             place_bar(bar, self._renderer, self._options)
         else:
             place_bar(bar, self._renderer, None)
+        self.fit()
+
+    def _find_key(self, name: str, title: str) -> str:
+        """Return the key of the first bar that fits, or else one that no bar has."""
+        numbered = [f"{name} {n}" for n in range(2, len(self._bars) + 2)]
+        keys = [name, *numbered]
+        fitting = [key for key in keys if key in self._bars and self._fits(key, title)]
+        free = [key for key in keys if key not in self._bars]
+        return next(iter([*fitting, *free]))
 
     def _fits(self, key: str, title: str) -> bool:
         """Return whether a bar has the same title and colours, in the same renderer."""
@@ -72,16 +85,12 @@ class FlowBar:
             and all(_same_colours(self._mapper, m) for m in self._bars._scalar_bar_mappers[key])
         )
 
-    def set_range(self, limits: tuple[float, float] | None) -> None:
-        """Give all that share the bar these limits, or those of all of them."""
-        sharing = self._sharing or [self._mapper]
-        if limits is None:
-            lows, highs = zip(*(_ends(mapper).limits for mapper in sharing), strict=True)
-            limits = min(lows), max(highs)
-        for mapper in sharing:
-            mapper.scalar_range = limits
-        if self.key in self._bars:
-            self._bars._scalar_bar_ranges[self.key] = limits
+    def fit(self) -> None:
+        """Give all that share the bar the limits that some choose, or else those of all."""
+        if self._mapper not in self._sharing:
+            self._mapper.scalar_range = self._mapper.ends.limits
+            return
+        _fit_range(self._bars, self.key)
 
     def look(self, colours: Callable[[], Bytes], settings: object) -> None:
         """Follow changes of what shares the bar; ``colours`` are the picture's with settings."""
@@ -90,9 +99,14 @@ class FlowBar:
             self.key = None
             return
         flows = [mapper for mapper in sharing if isinstance(mapper, FlowMapper)]
+        if flows[0] is not self._mapper:
+            return
+        if self._mapper.fitted_with != _identities(sharing):  # a mesh has joined or left
+            self.fit()
+        ends = [_ends(mapper) for mapper in sharing]
         bar, limits = self._bars[self.key], self._mapper.scalar_range
-        shown = (bar.GetLookupTable(), limits, len(sharing), self._mapper.ends, settings)
-        if flows[0] is not self._mapper or shown == self._shown:
+        shown = (bar.GetLookupTable(), limits, ends, settings)
+        if shown == self._shown:
             return
         own = self._mapper.lookup_table
         log_scale, is_mixed = own.log_scale, len(flows) < len(sharing)
@@ -102,13 +116,13 @@ class FlowBar:
             table.scalar_range, table.annotations = (0.0, 1.0), own.marks
         bar.SetLookupTable(table)
         self._shown = (table, *shown[1:])
-        lows, highs = zip(*(_ends(mapper).values for mapper in sharing), strict=True)
-        rounding = ZERO_SHARE * (max(highs) - min(lows))
-        below = limits[0] > min(lows) + rounding or "below_label" in self._options
-        above = limits[1] < max(highs) - rounding or "above_label" in self._options
-        ends = own.below_range_color, own.above_range_color
-        table.below_range_color = (ends[0] or table.values[0]) if below else None
-        table.above_range_color = (ends[1] or table.values[-1]) if above else None
+        least, most = _joined(each.values for each in ends)
+        rounding = ZERO_SHARE * (most - least)
+        below = limits[0] > least + rounding or "below_label" in self._options
+        above = limits[1] < most - rounding or "above_label" in self._options
+        swatches = own.below_range_color, own.above_range_color
+        table.below_range_color = (swatches[0] or table.values[0]) if below else None
+        table.above_range_color = (swatches[1] or table.values[-1]) if above else None
         bar.SetDrawBelowRangeSwatch(below)
         bar.SetDrawAboveRangeSwatch(above)
         # Others are marks without a text; VTK writes them on the side without labels.
@@ -127,12 +141,50 @@ class FlowBar:
             sharing.remove(self._mapper)
         if key in self._bars and not sharing:
             self._plotter.remove_scalar_bar(key, render=False)
+        elif sharing:
+            _fit_range(self._bars, key)
+        self.fit()
+
+
+def _fit_range(bars: Any, key: str | None) -> None:
+    """Give all that share a bar the limits that some choose, or else those of all of them."""
+    sharing = bars._scalar_bar_mappers[key]
+    ends = [_ends(mapper) for mapper in sharing]
+    chosen = [each for each in ends if each.are_chosen]
+    limits = _joined(each.limits for each in chosen or ends)
+    for mapper in sharing:
+        mapper.scalar_range = limits
+        if isinstance(mapper, FlowMapper):
+            mapper.fitted_with = _identities(sharing)
+    bars._scalar_bar_ranges[key] = limits
+
+
+def _identities(mappers: Iterable[Any]) -> tuple[int, ...]:
+    return tuple(map(id, mappers))
+
+
+def _joined(ranges: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return the range of several ranges."""
+    lows, highs = zip(*ranges, strict=True)
+    return min(lows), max(highs)
 
 
 def _ends(mapper: Any) -> Ends:
-    """Return the limits that a flow has without others and the range of its values."""
-    shown = mapper.scalar_range
-    return mapper.ends if isinstance(mapper, FlowMapper) else Ends(shown, shown)
+    """Return the limits that a flow or a mesh has without others and the range of its values."""
+    if isinstance(mapper, FlowMapper):
+        return mapper.ends
+    if mapper not in _mesh_ranges:  # PyVista has joined its range with that of flows
+        shown = mapper.scalar_range
+        low, high = mapper.dataset.get_data_range(mapper.array_name)
+        _mesh_ranges[mapper] = max(shown[0], low), min(shown[1], high)
+    return Ends(_mesh_ranges[mapper], _mesh_ranges[mapper])
+
+
+def _remember_meshes(mappers: Iterable[Any]) -> None:
+    """Remember the ranges of meshes before the first flow shares their bar."""
+    mappers = list(mappers)
+    if not any(isinstance(mapper, FlowMapper) for mapper in mappers):
+        _mesh_ranges.update({mapper: mapper.scalar_range for mapper in mappers})
 
 
 def _same_colours(one: Any, other: Any) -> bool:

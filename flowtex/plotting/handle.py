@@ -174,7 +174,8 @@ class FlowHandle(AppearanceAttributes):
     def set_surface(self, mesh: Any, **options: Any) -> None:
         """Draw the flow on another surface, such as a cutting plane that has moved.
 
-        Settings and appearance stay, and the time if the new flow has it.
+        Settings and appearance stay, and the time if the new flow has it. By default the colours
+        have the range of the new flow, which for a slice is that of its volume.
 
         Parameters
         ----------
@@ -190,7 +191,8 @@ class FlowHandle(AppearanceAttributes):
             nothing is changed then.
         """
         reading = FieldOptions(**options)
-        self.show_scene(self.scene.showing(share_field(read_field(mesh, reading))))
+        field = share_field(read_field(mesh, reading))
+        self.show_scene(self.scene.showing(field, keep_range=False))
         self.follow_mesh(mesh, reading)
 
     def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
@@ -278,6 +280,7 @@ class FlowHandle(AppearanceAttributes):
         else:
             self.surface.set_textures(self.scene.textures, self.scene.pyramid)
             self._map.show(self.scene)
+            self._show_bar()  # which an image has not by default
         self._draw()
 
     def _show_appearance(self, *anew: str) -> None:
@@ -307,10 +310,8 @@ class FlowHandle(AppearanceAttributes):
         if differs("scalars", "cmap", "log_scale", "norm", *COLOURS):
             self.bar.remove()
             self._show_colours()
-            self.actor.mapper.scalar_range = self.actor.mapper.ends.limits
         elif differs("clim") or self.actor.mapper.ends.limits != self.scene.scalar_limits:
             self._show_colours()
-            self.bar.set_range(new.clim if isinstance(new.clim, tuple) else None)
         on_bar = ("scalars", "cmap", "clim", "log_scale", "norm", "visible", "show_scalar_bar")
         if differs(*on_bar, *COLOURS):
             self._show_bar()
@@ -321,7 +322,9 @@ class FlowHandle(AppearanceAttributes):
         if name is None:
             return
         self._table = mapper.lookup_table = lookup_table(self.scene.colour_scale)
-        mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name))
+        are_chosen = isinstance(self.scene.appearance.clim, tuple)
+        mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name), are_chosen)
+        self.bar.fit()
         mapper.SelectColorArray(name)
         self.surface.set_scalars(
             name,
@@ -331,7 +334,7 @@ class FlowHandle(AppearanceAttributes):
 
     def _show_bar(self) -> None:
         name = self.scene.scalar_name
-        if name is None or not self.scene.appearance.has_bar:
+        if name is None or not self.scene.has_bar:
             self.bar.remove()
             return
         title = self.scene.title_of(name)

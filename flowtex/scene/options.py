@@ -215,12 +215,6 @@ class Appearance:
             return self.scalars if isinstance(self.scalars, str) else None
         return component_name(self.scalars, str(self.component))
 
-    @property
-    def has_bar(self) -> bool:
-        """Whether there is a legend."""
-        shown = self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
-        return shown and self.visible
-
 
 #: Fields of the appearance that are attributes; a method changes the image.
 LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")

@@ -176,6 +176,14 @@ class Scene:
         return surface.frame is None and not surface.on_globe
 
     @property
+    def has_bar(self) -> bool:
+        """Whether there is a legend; by default there is, unless an image covers the colours."""
+        shown = self.appearance.show_scalar_bar
+        if shown is None:
+            shown = self.settings.noise != "image"
+        return shown and self.appearance.visible
+
+    @property
     def scalar_name(self) -> str | None:
         """Name of the scalar that colours the surface; ``None`` for a plain one."""
         return self.appearance.scalar_name

@@ -114,8 +114,6 @@ class Shown:
         self.look = Appearance(show_scalar_bar=False)
         self.settings = Settings()
         self.image: Any = None
-        #: Whether the range of the colours is that of flows before it, or of others.
-        self.keeps_range = False
         self.handle = plotter.flowtex.add(FLOWS[name](), show_scalar_bar=False, reset_camera=first)
         self.handle.actor.position = (place, 0, 0)
 
@@ -138,9 +136,6 @@ class Shown:
     def arguments(self) -> dict[str, Any]:
         """Arguments that show the same in a new picture."""
         look = {name: getattr(self.look, name) for name in APPEARANCE}
-        scene = self.handle.scene
-        if self.keeps_range and scene.scalar_name is not None and self.look.norm is None:
-            look["clim"] = tuple(self.handle.actor.mapper.scalar_range)
         if self.settings.noise == "image":
             look["image"] = self.image
         return {**dict(self.settings), **look}
@@ -164,8 +159,6 @@ class AnyOrder(RuleBasedStateMachine):
     def add(self, name: str) -> None:
         place = APART * any(each.place == 0 for each in self.shown)
         self.shown.append(Shown(self.plotter, name, place, first=not self.shown))
-        for each in self.shown:
-            each.keeps_range |= len(self.shown) > 1
 
     @precondition(lambda self: len(self.shown) < MOST_FLOWS)
     @rule(name=pick(sorted(FLOWS)))
@@ -195,9 +188,7 @@ class AnyOrder(RuleBasedStateMachine):
         shown = self.any_shown(which)
         for name, value in changes:
             look = shown.look.changed(**{name: value})
-            done = shown.try_to(partial(setattr, shown.handle, name, value), look=look)
-            if done and name == "clim" and len(self.shown) == 1:
-                shown.keeps_range = False
+            shown.try_to(partial(setattr, shown.handle, name, value), look=look)
 
     @precondition(lambda self: self.shown)
     @rule(which=WHICH)
@@ -213,8 +204,7 @@ class AnyOrder(RuleBasedStateMachine):
     @rule(which=WHICH, name=pick(sorted(FLOWS)))
     def set_surface(self, which: int, name: str) -> None:
         shown = self.any_shown(which)
-        if shown.try_to(partial(shown.handle.set_surface, FLOWS[name]()), name=name):
-            shown.keeps_range = True
+        shown.try_to(partial(shown.handle.set_surface, FLOWS[name]()), name=name)
 
     @precondition(lambda self: self.shown)
     @rule(which=WHICH, clock=pick([0.0, 0.3, 5.0]))

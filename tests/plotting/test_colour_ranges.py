@@ -153,14 +153,16 @@ def test_flows_and_meshes_share_a_range_as_pyvista_meshes_do(window: Any, kinds:
 
 def test_another_colour_map_has_its_own_bar_and_range(window: Any) -> None:
     first, second = (window.flowtex.add(mesh, scalars="p", cmap="magma") for mesh in pair())
+    own = [mesh.get_data_range("p") for mesh in pair()]
     common = first.actor.mapper.scalar_range
+    assert common == (min(own)[0], max(own[0][1], own[1][1]))
     second.cmap = "viridis"
     shot(window)
     bars = window.scalar_bars
     assert [bar.GetTitle() for bar in bars.values()] == ["p", "p"]
     ranges = [bar.GetLookupTable().GetRange() for bar in bars.values()]
-    assert ranges[0] == common
-    assert ranges[1] == second.actor.mapper.scalar_range == pair()[1].get_data_range("p")
+    assert ranges == own
+    assert second.actor.mapper.scalar_range == own[1]
     second.cmap = "magma"
     assert second.actor.mapper.scalar_range == common and len(bars) == 1
 
@@ -183,15 +185,91 @@ def test_limits_of_one_flow_are_those_of_its_bar(window: Any) -> None:
 
 def test_a_flow_that_leaves_its_bar_leaves_it_to_the_others(window: Any) -> None:
     first, second = (window.flowtex.add(mesh, scalars="p") for mesh in pair())
-    common = first.actor.mapper.scalar_range
     first.scalars = "speed"
     assert list(window.scalar_bars.keys()) == ["p", "speed in the surface"]
     first.remove()
     shot(window)
     assert list(window.scalar_bars.keys()) == ["p"]
-    assert window.scalar_bars["p"].GetLookupTable().GetRange() == common
+    own = pair()[1].get_data_range("p")
+    assert window.scalar_bars["p"].GetLookupTable().GetRange() == own
+    assert second.actor.mapper.scalar_range == own
     second.show_scalar_bar = False
     assert not window.scalar_bars
+
+
+HEIGHTS = {"a": 0.1, "b": 0.9, "c": 0.5}
+
+
+def cut_at(letter: str) -> Any:
+    """A slice of the box with a range of p of its own."""
+    return volume().slice("z", origin=(0, 0, HEIGHTS[letter.lower()]))
+
+
+def show_in_turn(window: Any, changes: str, chosen: dict[str, Any]) -> dict[str, Any]:
+    """Add flows (capital letters) and meshes, remove those that are shown; return the ranges."""
+    shown: dict[str, Any] = {}
+    for letter in changes:
+        if letter in shown:
+            window.remove_actor(shown.pop(letter))
+        elif letter.isupper():
+            handle = window.flowtex.add(cut_at(letter), scalars="p", clim=chosen.get(letter))
+            shown[letter] = handle.actor
+        else:
+            shown[letter] = window.add_mesh(cut_at(letter), scalars="p")
+        shot(window)
+    return {letter: actor.mapper.scalar_range for letter, actor in shown.items()}
+
+
+@pytest.mark.parametrize("changes", ["BA", "ACAB", "Abc", "bAc", "ABc", "AbB", "AbAC", "bACA"])
+def test_range_of_a_bar_does_not_depend_on_the_order(window: Any, changes: str) -> None:
+    """Those that were removed have no part in it."""
+    ranges = show_in_turn(window, changes, {})
+    lows, highs = zip(*(cut_at(letter).get_data_range("p") for letter in ranges), strict=True)
+    assert list(ranges.values()) == [(min(lows), max(highs))] * len(ranges)
+
+
+@pytest.mark.parametrize("changes", ["AB", "BA", "ACBC", "BcA", "CBAC"])
+def test_chosen_limits_are_those_of_a_bar_in_any_order(window: Any, changes: str) -> None:
+    ranges = show_in_turn(window, changes, {"B": (0.5, 2.0)})
+    assert list(ranges.values()) == [(0.5, 2.0)] * len(ranges)
+
+
+def test_range_that_is_set_by_pyvista_stays(window: Any) -> None:
+    handles = [window.flowtex.add(mesh, scalars="p") for mesh in pair()]
+    window.update_scalar_bar_range((0, 4), "p")
+    shot(window)
+    assert [handle.actor.mapper.scalar_range for handle in handles] == [(0, 4)] * 2
+
+
+def test_another_surface_has_its_own_range(window: Any) -> None:
+    meshes = [cut_at(letter) for letter in "ab"]
+    handle = window.flowtex.add(meshes[0], scalars="p")
+    handle.set_surface(meshes[1])
+    shot(window)
+    assert handle.actor.mapper.scalar_range == meshes[1].get_data_range("p")
+    handle.clim = (0.5, 2.0)
+    handle.set_surface(meshes[0])
+    assert handle.actor.mapper.scalar_range == (0.5, 2.0)
+
+
+def test_a_flow_joins_a_bar_of_the_same_colours_at_any_place(window: Any) -> None:
+    first, second = (window.flowtex.add(mesh, scalars="p", cmap="magma") for mesh in pair())
+    second.cmap = "viridis"
+    first.cmap = "viridis"
+    shot(window)
+    assert len(window.scalar_bars) == 1
+    assert first.actor.mapper.scalar_range == second.actor.mapper.scalar_range
+
+
+def test_an_image_has_no_bar_by_default(window: Any) -> None:
+    handle = window.flowtex.add(volume(), plane="k=5", scalars="p")
+    handle.set_image(np.eye(8))
+    assert not window.scalar_bars
+    handle.settings.noise = "procedural"
+    assert list(window.scalar_bars.keys()) == ["p"]
+    handle.show_scalar_bar = True
+    handle.settings.noise = "image"
+    assert list(window.scalar_bars.keys()) == ["p"]
 
 
 def test_subplots_have_their_own_bars_and_ranges() -> None:

@@ -56,7 +56,7 @@ class OffscreenPlotter:
         _check_size(size, supersampling)
         require_opengl()
         notify_section(scenes[0].field.section)
-        self._legend = scenes[0].appearance.has_bar
+        self._legend = scenes[0].has_bar
         for scene in scenes:
             if annotations or scene.appearance.show_scalar_bar is None:
                 scene.appearance = replace(scene.appearance, show_scalar_bar=False)

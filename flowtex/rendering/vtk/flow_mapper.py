@@ -73,16 +73,19 @@ def map_attributes(mapper: Any, arrays: Mapping[str, str]) -> None:
 
 
 class Ends(NamedTuple):
-    """The limits of the colours of one actor alone, and the range of its values."""
+    """The limits of the colours of one actor alone, whether they are chosen, and its values."""
 
     limits: tuple[float, float] = (0.0, 1.0)
     values: tuple[float, float] = (0.0, 1.0)
+    are_chosen: bool = False
 
 
 class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
     """``vtkPolyDataMapper``, whose attributes and events PyVista's mapper hides."""
 
     ends = Ends()
+    #: Identities of the mappers to whose common range the colours were last fitted.
+    fitted_with: tuple[int, ...] = ()
 
     def __init__(self, dataset: pv.PolyData, theme: Theme | None = None) -> None:
         super().__init__(theme=theme)
