@@ -61,11 +61,14 @@ def agree(theirs: Bytes, picture: Picture, contrast: float) -> None:
     """Fail unless a picture is that of NumPy, but for pixels at outlines."""
     ours = picture.rgb(COLOUR, background=GROUND)
     inside = inner(picture)
-    off = theirs[inside].astype(float) - ours[inside]
-    if not off.size:
+    off = np.abs(theirs[inside].astype(float) - ours[inside])
+    # Beside a critical point or an edge, rounding decides where a path goes.
+    few = max(int(SHARE * len(off)), 2)
+    usual = np.sort(off.max(axis=-1))[:-few]
+    if not usual.size:
         return
-    assert np.sqrt(np.mean(off**2)) < ROOT * contrast
-    assert (np.abs(off).max(axis=-1) > 8).sum() <= max(SHARE * len(off), 2)
+    assert usual.max() <= 8
+    assert np.sqrt(np.mean(usual**2)) < ROOT * contrast
 
 
 @property_test(12, fuzz=250)
@@ -109,6 +112,14 @@ def exact(flow: Flow, start: Floats, moment: float, length: float, *, series: bo
     return np.concatenate(points)
 
 
+def kink(flow: Flow, place: Floats) -> float:
+    """Return the greatest change, from one interval of a series to the next, of what it adds."""
+    last = len(flow.means) - 1
+    place = np.array([*place, 0.0])
+    steps = [flow.at(place, float(min(max(step, 0), last))) for step in range(-1, last + 2)]
+    return float(np.linalg.norm(np.diff(steps, n=2, axis=0), axis=-1).max())
+
+
 @property_test(10, fuzz=150)
 @given(flows(), st.sampled_from(FLAT), st.integers(0, 2**20), st.floats(0.002, 0.02))
 def test_paths_are_those_of_scipy(flow: Flow, kind: str, seed: int, pixel: float) -> None:
@@ -125,6 +136,8 @@ def test_paths_are_those_of_scipy(flow: Flow, kind: str, seed: int, pixel: float
     found = probe(scene, place, pixel=pixel)
     path = exact(flow, start, scene.time, 40 * pixel, series=series)
     off = np.linalg.norm(found.points[:, None, :2] - path, axis=-1).min(axis=1)
-    # Slices between the nodes are means of paths that may part.
-    assert off[found.weights > 0].max() < 0.5 * CELL
+    # Slices between the nodes are means of paths that may part; so are paths between two steps,
+    # which are off by as much as a line through two points on both sides of a kink.
+    usual = CELL + kink(flow, start) / 2 * 40 * pixel
+    assert off[found.weights > 0].max() < 0.5 * usual
     count_case("random scenes")
