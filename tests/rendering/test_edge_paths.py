@@ -69,3 +69,42 @@ def likeness(name: str, distance: float) -> float:
 )
 def test_streaks_do_not_depend_on_the_face_beyond_an_edge(name: str, distance: float) -> None:
     assert likeness(name, distance) > 0.96
+
+
+def cylinder(divisions: int, ellipse: float) -> Any:
+    """Return a cylinder with a flow around its axis and along it, and so around its discs."""
+    mesh: Any = pv.Cylinder(resolution=60, height=3).triangulate()
+    if divisions:
+        mesh = mesh.subdivide(divisions)
+    mesh.points = np.asarray(mesh.points, float) * [1.0, ellipse, 1.0]
+    around = [-ellipse * mesh.points[:, 2], mesh.points[:, 1] / ellipse]
+    mesh["U"] = np.column_stack([np.ones(mesh.n_points), *around])
+    return mesh
+
+
+def discs_of(mesh: Any) -> Any:
+    """Return both discs of a cylinder, without the side."""
+    is_disc = (np.abs(mesh.points[mesh.regular_faces, 0]) > 1.499).all(axis=1)
+    return mesh.extract_cells(is_disc).extract_surface(algorithm=None)
+
+
+def disc_in(mesh: Any, distance: float, ellipse: float) -> Floats:
+    """Return the brightness of the outer part of the disc at x = -1.5."""
+    view = [(-1.5 - distance, 0, 0), (-1.5, 0, 0), (0, 0, 1)]
+    options: Any = {"size": (160, 160), "camera": view, "scalars": False, "lighting": False}
+    picture = flowtex.render(mesh, **options)[..., :3].mean(axis=-1)
+    place = (np.arange(160) - 79.5) * np.tan(np.radians(15)) * distance / 80
+    radius = np.hypot(place[:, None], place / ellipse)
+    return np.asarray(picture[(radius > 0.3) & (radius < 0.49)])
+
+
+@pytest.mark.parametrize(
+    ("divisions", "ellipse", "distance", "least"),
+    [(0, 1.0, 3.0, 0.99), (2, 1.0, 1.5, 0.98), (2, 1.5, 3.0, 0.96)],
+)
+def test_flow_around_a_disc_stays_in_it(
+    divisions: int, ellipse: float, distance: float, least: float
+) -> None:
+    mesh = cylinder(divisions, ellipse)
+    pictures = [disc_in(part, distance, ellipse) for part in (mesh, discs_of(mesh))]
+    assert np.corrcoef(np.stack(pictures))[0, 1] > least

@@ -49,11 +49,7 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
-    cuts = {"plane": plane, "slice": options.slice, "contour": options.contour}
-    if len(given := [f"{k} is {value!r}" for k, value in cuts.items() if value is not None]) > 1:
-        raise FieldError(f"{' and '.join(given)}; choose one of them")
-    cut: Cut | None = None if options.slice is None else slice_of(options.slice)
-    cut = cut if options.contour is None else contour_of(options.contour)
+    cut = _cut_of(options)
     steps = parts.time_steps(mesh, options.block, cut=cut is not None, record=record)
     first = next(steps)
     on_grid = parts.is_structured(first.grid) and cut is None
@@ -86,6 +82,19 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if chosen is not None:
         return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
     return TriangleArrays(**arrays)
+
+
+def _cut_of(options: FieldOptions) -> Cut | None:
+    """Return the cut of a volume, if there is one."""
+    cuts = {"plane": options.plane, "slice": options.slice, "contour": options.contour}
+    given = [f"{name} is {value!r}" for name, value in cuts.items() if value is not None]
+    if len(given) > 1:
+        raise FieldError(f"{' and '.join(given)}; choose one of them")
+    if options.contour is not None:
+        return contour_of(options.contour)
+    if options.slice is not None:
+        return slice_of(options.slice)
+    return None
 
 
 def choose(

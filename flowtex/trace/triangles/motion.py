@@ -20,6 +20,13 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.integrate import Columns
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
+#: Relative velocity out of a border that counts as zero.
+BORDER_ROUNDING = 1e-6
+#: Relative velocity over a sharp edge up to which a flow goes along it, unless that behind the edge
+#: continues it. So it does around a disc, although the straight sides turn away from it by half the
+#: angle between two.
+GRAZING = 0.15
+AWAY = 0.35  #: Relative velocity away from an edge from which on a flow does not continue another.
 #: Triangles whose geometry is computed at once.
 BLOCK_TRIANGLES = 65536
 #: Columns of the table of a steady motion.
@@ -38,6 +45,9 @@ class TriangleMesh:
     #: For the edge opposite to each corner, (3 M,): the triangle behind it times eight, plus how
     #: its corners are those of this one, an index of :data:`BEHIND`; or -1 where paths end.
     across: Indices
+    #: For each of these edges, the greatest velocity out of the triangle, over the speed, with
+    #: which a particle may slide along it: at borders, and at sharp edges; -1 at others, (3 M,).
+    slip: Floats
     #: Rates at which the second and the third share change, by components of the velocity at each
     #: corner, (M, 12) as (corner, share, component).
     rates: Floats
@@ -68,6 +78,7 @@ class TriangleMesh:
         for start in range(0, count, BLOCK_TRIANGLES):
             block = slice(start, start + BLOCK_TRIANGLES)
             _measure(surface, block, rates[block], metric[block], heights[block], size[block])
+        across = _across(surface)
         shown = np.flatnonzero(surface.cells)
         place, rank = surface.places, np.empty(surface.shape[1], dtype=np.intp)
         # Nodes at one place follow each other.
@@ -80,7 +91,8 @@ class TriangleMesh:
         np.maximum.at(place_last, place, last)
         return cls(
             corners=surface.triangles,
-            across=_across(surface),
+            across=across,
+            slip=_slip(surface, across),
             rates=rates.reshape(count, 12),
             metric=metric,
             heights=heights,
@@ -146,6 +158,20 @@ def _across(surface: TriangleSurface) -> Indices:
         ends = [corners[near, (k + step) % 3] for step in (1, 2)]
         at = [np.argmax(corners[far] == end[:, None], axis=1) for end in ends]
         result[near, k] = 8 * far + 2 * at[0] + ((at[1] - at[0]) % 3 - 1)
+    return result.ravel()
+
+
+def _slip(surface: TriangleSurface, across: Indices) -> Floats:
+    result = np.where(across < 0, BORDER_ROUNDING, -1.0).reshape(-1, 3)
+    if not surface.at_edge.any():
+        return result.ravel()
+    has_edge = surface.at_edge[0, surface.triangles].any(axis=1)
+    for k in range(3):
+        near = np.flatnonzero(has_edge & (across.reshape(-1, 3)[:, k] >= 0))
+        beside = surface.triangles[surface.neighbours[near, k]]
+        ends = [surface.triangles[near, (k + step) % 3] for step in (1, 2)]
+        is_own = [(beside == end[:, None]).any(axis=1) for end in ends]
+        result[near[~(is_own[0] | is_own[1])], k] = GRAZING
     return result.ravel()
 
 

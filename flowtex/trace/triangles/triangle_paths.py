@@ -19,6 +19,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.integrate import MOST_STEPS, Columns
 from flowtex.trace.triangles.motion import (
     AFTER,
+    AWAY,
     BEHIND,
     NEXT,
     Derivatives,
@@ -41,8 +42,6 @@ SHARE_ROUNDING = 1e-12
 EDGE_ROUNDING = 1e-9
 #: Share of a lag by which rounding may miss it.
 LAG_ROUNDING = 1e-12
-#: Relative velocity out of a border that counts as zero.
-BORDER_ROUNDING = 1e-6
 #: Twice what acceleration may move a particle in one step, in sizes of its triangle.
 MOST_TURN = 0.2
 #: Rounds of Newton's method for the place in a step where a path has some length.
@@ -110,27 +109,36 @@ def begin(motion: Motion, nodes: Indices) -> tuple[Indices, Bools]:
     """Return corners to start at, as three times the triangle plus the corner, and which end, (N,).
 
     It is the one around each node (N,), which has at least one, into whose triangle the velocity
-    points most. Where it leads out of a face at a sharp edge, the path begins in another one, if
-    the velocity there leads into that, and else it ends at once.
+    points most. Where it leads out of a face at a sharp edge, and not along that, the path begins
+    in another one, if the velocity there leads into that, and else it ends at once.
     """
     mesh = motion.mesh
-    inwards, sizes = np.empty(mesh.corners.shape), np.empty(mesh.corners.shape)
+    inwards, sizes, speeds, alongs = (np.empty(mesh.corners.shape) for _ in range(4))
+    slip = np.maximum(mesh.slip.reshape(-1, 3), 0.0).T
     with np.errstate(all="ignore"):
         for corner in range(3):
-            inward = _three(motion.at_corner(corner)) * mesh.heights.T
-            beside = inward[corner - 2], inward[corner - 1]
-            inwards[:, corner] = np.nan_to_num(np.minimum(*beside))
+            rate = motion.at_corner(corner)
+            inward = _three(rate) * mesh.heights.T
+            speed = np.sqrt(dot(mesh.metric.T, rate, rate))
+            speeds[:, corner] = speed
+            beside = [corner - 2, corner - 1]
+            inwards[:, corner] = np.nan_to_num(inward[beside].min(axis=0))
+            alongs[:, corner] = np.nan_to_num((inward + slip * speed)[beside].min(axis=0))
             sizes[:, corner] = np.nan_to_num(np.abs(inward).sum(axis=0))
+    least = EDGE_ROUNDING * sizes
     result = _most_inward(mesh, inwards, mesh.first[nodes], mesh.last[nodes])
     first, last = mesh.place_first[nodes], mesh.place_last[nodes]
-    leaves = inwards.take(result) < -EDGE_ROUNDING * sizes.take(result)
+    leaves = inwards.take(result) < -least.take(result)
     out = np.flatnonzero(leaves & (last - first > mesh.last[nodes] - mesh.first[nodes]))
     ended = np.zeros(len(nodes), dtype=bool)
     if len(out):
         other = _most_inward(mesh, inwards, first[out], last[out])
-        leads = inwards.take(other) > EDGE_ROUNDING * sizes.take(other)
-        result[out[leads]] = other[leads]
-        ended[out[~leads]] = True
+        leads = inwards.take(other) > least.take(other)
+        own = _most_inward(mesh, alongs, mesh.first[nodes[out]], mesh.last[nodes[out]])
+        along = alongs.take(own) >= -least.take(own)
+        along &= ~leads | (inwards.take(other) > AWAY * speeds.take(other))
+        result[out] = np.where(along, own, np.where(leads, other, result[out]))
+        ended[out[~along & ~leads]] = True
     return result, ended
 
 
@@ -291,16 +299,20 @@ class _Run:
         if not len(at):
             return
         back = ~_inward(now, at, state.edge[at])
-        code = self.mesh.across[3 * state.triangle[at] + state.edge[at]]
-        border, inner = back & (code < 0), np.flatnonzero(back & (code >= 0))
+        side = 3 * state.triangle[at] + state.edge[at]
+        code = self.mesh.across[side]
+        border = back & (code < 0)
         out = -rate[at] * self.mesh.heights[state.triangle[at], state.edge[at]]
         speed = np.sqrt(dot(now.metric[:, at], now.first[:, at], now.first[:, at]))
-        slides = border & (out <= BORDER_ROUNDING * speed)
+        along = back & (out <= self.mesh.slip[side] * speed)
+        slides = along & border
+        inner = np.flatnonzero(back & (code >= 0))
         if len(inner):
             over = at[inner]
             triangle, edge, shares = self._behind(over, state.edge[over], code[inner])
             behind = self.motion.at(triangle, shares, state.lag[over], state.last[over])
             leads = _inward(behind, np.arange(len(over)), edge)
+            leads &= ~(along[inner] & self._parts(behind, triangle, edge))
             slides[inner[~leads]] = True
             go = over[leads]
             now.put(go, behind.pick(leads))
@@ -324,21 +336,43 @@ class _Run:
     def _cross(self, now: Derivatives, h: Floats, at: Indices, edge: Indices) -> Indices:
         """Move particles over their edges, and return those at a border that they leave."""
         state, edge = self.state, edge[at]
-        code = self.mesh.across[3 * state.triangle[at] + edge]
-        over = code >= 0
-        if over.all():
-            self._place(at, *self._behind(at, edge, code))
-            return at[:0]
+        side = 3 * state.triangle[at] + edge
+        code = self.mesh.across[side]
+        slip = self.mesh.slip[side]
+        slides = np.zeros(len(at), dtype=bool)
+        few = np.flatnonzero(slip >= 0)
+        if len(few):
+            slides[few] = self._slides(now, h, at[few], edge[few], code[few])
+        over = (code >= 0) & ~slides
         crossing = at[over]
         self._place(crossing, *self._behind(crossing, edge[over], code[over]))
-        out, edge = at[~over], edge[~over]
-        rate = now.first[:, out] + h[out] * now.second[:, out]
-        speed = np.sqrt(dot(now.metric[:, out], rate, rate))
-        away = -_three(rate)[edge, np.arange(len(out))]
-        away *= self.mesh.heights[state.triangle[out], edge]
-        on = away <= BORDER_ROUNDING * speed
-        state.edge[out[on]] = edge[on]
-        return np.asarray(out[~on])
+        return np.asarray(at[(code < 0) & ~slides])
+
+    def _slides(
+        self, now: Derivatives, h: Floats, at: Indices, edge: Indices, code: Indices
+    ) -> Bools:
+        """Return which particles slide along the edges that they meet, and note these edges."""
+        state = self.state
+        rate = now.first[:, at] + h[at] * now.second[:, at]
+        speed = np.sqrt(dot(now.metric[:, at], rate, rate))
+        away = -_three(rate)[edge, np.arange(len(at))]
+        away *= self.mesh.heights[state.triangle[at], edge]
+        slides = away <= self.mesh.slip[3 * state.triangle[at] + edge] * speed
+        sharp = np.flatnonzero(slides & (code >= 0))
+        if len(sharp):
+            over = at[sharp]
+            triangle, behind_edge, shares = self._behind(over, edge[sharp], code[sharp])
+            behind = self.motion.at(triangle, shares, state.lag[over], state.last[over])
+            slides[sharp] = self._parts(behind, triangle, behind_edge)
+        state.edge[at[slides]] = edge[slides]
+        return np.asarray(slides)
+
+    def _parts(self, now: Derivatives, triangle: Indices, edge: Indices) -> Bools:
+        """Return whether velocities behind edges do not continue those that lead along them."""
+        count = np.arange(len(triangle))
+        away = _three(now.first)[edge, count] * self.mesh.heights[triangle, edge]
+        speed = np.sqrt(dot(now.metric, now.first, now.first))
+        return np.asarray((away <= 0) | (away > AWAY * speed))
 
     def _place(self, at: Indices, triangle: Indices, edge: Indices, shares: Floats) -> None:
         state = self.state
