@@ -150,6 +150,16 @@ def grib2(points: int) -> bytes:
     return b"GRIB\0\0\0\x02" + struct.pack(">Q", 16 + len(content)) + content
 
 
+def grib2_without_data() -> bytes:
+    """Return messages of which the first has the number of another section on its values."""
+    messages = bytearray(grib(2))
+    place = 16
+    while messages[place + 4] != 7:
+        place += int.from_bytes(messages[place : place + 4], "big")
+    messages[place + 4] = 5
+    return bytes(messages)
+
+
 def grib(
     edition: int, *, packed: int = 12, bits: int | None = None, latitude: float | None = None
 ) -> bytes:

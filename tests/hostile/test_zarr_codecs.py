@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import json
+import logging
 import pickle
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -277,3 +279,23 @@ def test_absurd_attributes_are_an_error_of_ours(
             read(plain)
     finally:
         document.write_text(whole, encoding="utf-8")
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_several_refused_arrays_are_one_error(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, version: int
+) -> None:
+    """Zarr reads them at once, and asyncio prints each error that nobody has taken."""
+    wind = np.ones((ROWS, COLUMNS))
+    root = zarr.open_group(tmp_path / "winds.zarr", mode="w", zarr_format=version)
+    for name in "uvwp":
+        array = root.create_array(name, shape=wind.shape, dtype=float)
+        array[:] = wind
+        document = tmp_path / "winds.zarr" / name / {2: ".zarray", 3: "zarr.json"}[version]
+        values = json.loads(document.read_text())
+        values["filters"] = values["codecs"] = [{"id": "pickle", "name": TOUCHES}]
+        document.write_text(json.dumps(values))
+    with caplog.at_level(logging.ERROR, "asyncio"), pytest.raises(FieldError, match="is refused"):
+        FlowField.from_file(tmp_path / "winds.zarr")
+    gc.collect()
+    assert [record.getMessage() for record in caplog.records] == []

@@ -41,6 +41,11 @@ PARALLEL = (".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 #: Documents of a group, and of all arrays.
 DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
 GRIB_MAGIC = b"GRIB"
+GRIB_END = b"7777"  #: Last bytes of a message.
+#: Sections that may follow one of edition 2; after a last 7 a message repeats some, or ends.
+NEXT_SECTIONS = {"1": "23", "2": "3", "3": "4", "4": "5", "5": "6", "6": "7", "7": "234"}
+#: Least bytes of a section.
+SECTION_BYTES = {"1": 21, "2": 5, "3": 14, "4": 9, "5": 11, "6": 6, "7": 5}
 #: Least value of a GRIB 1 length that counts units of several bytes.
 LONG_MESSAGE = 0x800000
 #: Bytes of such a unit.
@@ -156,7 +161,32 @@ def check_grib(data: Data) -> None:
         check_count(len(data) - at, length, label)
         points = _points(data, at, head[7], at + length, label)
         check_memory(8 * points, f"the grid of {label}")
+        if head[7] == 2:
+            _check_sections(data, at + 16, at + length, label)
         at = data.find(GRIB_MAGIC, at + max(length, 4))
+
+
+def _check_sections(data: Data, place: int, end: int, label: str) -> None:
+    """Raise a FieldError unless the sections of a message are whole and follow one another.
+
+    ecCodes ends the process, or reads for ever, where they do not.
+    """
+    allowed = "1"
+    while place + 5 <= end and data[place : place + 4] != GRIB_END:
+        length = int.from_bytes(data[place : place + 4], "big")
+        section = str(data[place + 4])
+        if section not in allowed:
+            raise FieldError(
+                f"{label} has section {section} where {' or '.join(allowed)} was expected; the "
+                "file is corrupt, write or copy it again"
+            )
+        if not SECTION_BYTES[section] <= length <= end - place:
+            break
+        allowed = NEXT_SECTIONS[section]
+        place += length
+    is_complete = allowed == NEXT_SECTIONS["7"]
+    if place + 4 != end or data[place:end] != GRIB_END or not is_complete:
+        raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
 
 
 def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
@@ -206,9 +236,6 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
             case 7 if count:
                 _check_packed(length - 5, count, bits, label)
         place += length
-    # ecCodes reads for ever where sections do not lead to the end.
-    if place + 4 != end or data[place:end] != b"7777":
-        raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
     return most
 
 
