@@ -5,6 +5,7 @@ import { dot } from "./vectors.ts";
 
 /** Parts with the cells of a field that have no data: land, and what lacks them at sea. */
 export const GROUND = ["land", "missing"];
+const LAND = "land";
 /** Luminance from which black has more contrast than white. */
 const LIGHT_FROM = 0.18;
 
@@ -16,10 +17,10 @@ export function missingColour({ background, earth }: Header): number[] {
   return ground.map((value) => value * (1 - share) + ink * share);
 }
 
-/** Land and places without data, in their colours, where a view has both or the latter. */
-export function groundKinds(header: Header, has: (part: string) => boolean): StructureHeader["kinds"] {
+/** Land and places without data, in their colours, where some are drawn. */
+export function groundKinds(header: Header): StructureHeader["kinds"] {
   const { earth } = header;
-  if (!earth?.land || !has("missing")) return [];
-  const missing = { name: "no data", color: missingColour(header) };
-  return has("land") ? [{ name: "land", color: earth.land }, missing] : [missing];
+  const land = earth?.land;
+  if (!land) return [];
+  return earth.kinds.map((name) => ({ name, color: name === LAND ? land : missingColour(header), isGround: true }));
 }

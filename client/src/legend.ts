@@ -58,10 +58,10 @@ export class Legend {
     this.shownKinds = names;
     this.kinds.hidden = !names;
     this.kinds.replaceChildren(
-      ...kinds.map(({ name, color, turns, isLine }) => {
+      ...kinds.map(({ name, color, turns, isLine, isGround }) => {
         const mark = dom("i", { class: turns ? "turns" : isLine ? "line" : "" });
         mark.style.background = `rgb(${color.map((c) => Math.round(255 * c)).join(" ")})`;
-        return dom("span", {}, [mark, name]);
+        return dom("span", { class: isGround ? "ground" : "" }, [mark, name]);
       }),
     );
   }

@@ -259,8 +259,8 @@ export class Panel {
 
   /** Show which kinds of critical points are marked. */
   showKinds(kinds: StructureHeader["kinds"]): void {
-    const { header, parts } = this.viewer;
-    const ground = header ? groundKinds(header, (name) => parts.has(name)) : [];
+    const { header } = this.viewer;
+    const ground = header ? groundKinds(header) : [];
     this.legend.showKinds([...kinds, ...ground]);
   }
 

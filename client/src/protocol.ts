@@ -125,6 +125,8 @@ export interface Earth extends Record<EarthLines, boolean> {
   land: number[] | null;
   /** Share of black or white in the colour of places without data at sea; the rest is the background. */
   missingShare: number;
+  /** What the legend says of places without data, "land" and "no data". */
+  kinds: string[];
   /** Height of a view in which lines have their width, and how that changes with it at most. */
   usualHeight: number;
   widthRange: [number, number];
@@ -164,7 +166,7 @@ export interface StructureHeader {
   /** Kinds of parts that can be had. */
   parts: string[];
   /** In the order of a legend; the number in a part is that of its kind here. */
-  kinds: { name: string; color: number[]; turns?: boolean; isLine?: boolean }[];
+  kinds: { name: string; color: number[]; turns?: boolean; isLine?: boolean; isGround?: boolean }[];
   /** Colours of lines by what they are. */
   lines: Record<string, number[]>;
   /** Lines along which a component is zero, by its number. */

@@ -14,10 +14,14 @@ test("places without data are darker on white, and lighter on black", () => {
 });
 
 test("the legend names what is there", () => {
-  const names = (parts: string[], land?: null) =>
-    groundKinds(header([1, 1, 1], land), (part) => parts.includes(part)).map(({ name }) => name);
-  assert.deepEqual(names(["land", "missing"]), ["land", "no data"]);
-  assert.deepEqual(names(["missing"]), ["no data"]);
-  assert.deepEqual(names(["land"]), []);
-  assert.deepEqual(names(["land", "missing"], null), []);
+  const names = (kinds: string[], land?: null) => {
+    const whole = header([1, 1, 1], land);
+    Object.assign(whole.earth ?? {}, { kinds });
+    return groundKinds(whole).map(({ name, color }) => [name, color]);
+  };
+  const lacking = ["no data", [0.9, 0.9, 0.9]];
+  assert.deepEqual(names(["land", "no data"]), [["land", [1, 0, 0]], lacking]);
+  assert.deepEqual(names(["no data"]), [lacking]);
+  assert.deepEqual(names([]), []);
+  assert.deepEqual(names(["land", "no data"], null), []);
 });

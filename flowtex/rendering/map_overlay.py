@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -13,10 +13,11 @@ import scipy
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import bounds, norm
 from flowtex._util.cache import WeakCache
-from flowtex._util.colours import is_light
+from flowtex._util.colours import is_light, rgb
 from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field.earth.on_land import on_land
+from flowtex.field.validation import NO_DATA
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +47,7 @@ WIDER = 1e-3  #: Share of the extent by which the box of a map is wider than its
 MISSING_SHARE = 0.1
 MOST_ASKED = 200_000  #: Most cells of a grid that are looked up on the coasts.
 FRINGE = 2  #: Cells across up to which a strip beside land is land.
+LAND = "land"  #: What a legend says of land without data.
 LOWER = 1e-5  #: Distance of the globe below the surface and the sagitta of its cells, in radii.
 
 
@@ -94,6 +96,33 @@ def missing_colour(background: Sequence[float]) -> Floats:
     """Return the colour of places without data at sea, near that of the background (3,)."""
     ink = 1.0 - float(is_light(background))
     return np.asarray(background, dtype=float) * (1 - MISSING_SHARE) + (ink * MISSING_SHARE)
+
+
+def ground_kinds(field: FlowField) -> tuple[str, ...]:
+    """Return what a legend says of places without data: ``LAND`` and ``NO_DATA``, or nothing.
+
+    Land alone needs no legend. The globe around a field that covers a part of it has no data.
+    """
+    if field.projection is None:
+        return ()
+    ground = ground_cells(field)
+    has_globe = globe_radius(field) is not None
+    if not has_globe and not ground.missing.any():
+        return ()
+    if ground.land.any():
+        return LAND, NO_DATA
+    return (NO_DATA,)
+
+
+def ground_colours(field: FlowField, land: Any, background: Any) -> dict[str, Floats]:
+    """Return the kinds of places without data, with their colours from 0 to 1.
+
+    ``land`` and ``background`` are colours; without land nothing is drawn there.
+    """
+    if land is None:
+        return {}
+    colours = {LAND: np.asarray(rgb(land)), NO_DATA: missing_colour(rgb(background))}
+    return {kind: colours[kind] for kind in ground_kinds(field)}
 
 
 def _ground_of(field: FlowField, *, tiled: bool) -> Ground:

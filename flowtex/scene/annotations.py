@@ -22,6 +22,7 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import ColourScale, distinct_texts, is_light, rgb
 from flowtex.field.dates import time_text
 from flowtex.rendering.camera import Camera
+from flowtex.rendering.map_overlay import ground_colours
 from flowtex.rendering.webgl.marks import (
     KIND_MARKS,
     LINE_COLORS,
@@ -31,6 +32,8 @@ from flowtex.rendering.webgl.marks import (
     KindMark,
 )
 from flowtex.scene.scene import Scene
+
+Marks = list[tuple[str, Any]]  #: Characters on top of each other, with their colours.
 
 TEXT_SHARE = 1 / 30  #: Height of the text as a share of the picture's height.
 WIDEST_ASPECT = 1.6  #: Greatest ratio of width to height at which the text follows the height.
@@ -206,7 +209,8 @@ class _Writer:
         self._line = sum(self.font.getmetrics())
         self._thin, closer = self._px(LINE), CLOSER if self.small else 1.0
         self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
-        light = is_light(rgb(background))
+        self._background = rgb(background)
+        light = is_light(self._background)
         self._plate, self.ink = ("white", "black") if light else ("black", "white")
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
@@ -267,36 +271,47 @@ class _Writer:
                 yield image
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield legends of critical points and lines, in columns."""
+        """Yield legends of critical points, lines and places without data, in columns."""
         structure, settings, step = scene.structure, scene.settings, scene.step
         count, saddles = settings.critical_points, settings.separatrices
         points = structure.points(step)[:count] if count else ()
-        rows: dict[str, KindMark | str] = {
-            kind: mark
-            for kind, mark in KIND_MARKS.items()
-            if any(point.kind == kind for point in points)
-        }
+        found = {point.kind for point in points}
+        rows: dict[str, Marks] = {}
+        for kind, mark in KIND_MARKS.items():
+            if kind in found:
+                rows[kind] = _dot_marks(mark)
         paths = structure.paths(step, saddles) if saddles else {}
-        rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
-        rows |= NULLCLINE_COLORS if settings.nullclines else {}
+        lines_drawn = {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
+        if settings.nullclines:
+            lines_drawn |= NULLCLINE_COLORS
+        rows |= {name: [("━", color)] for name, color in lines_drawn.items()}
+        rows |= self._ground(scene)
         width = max(map(self._width, rows), default=0) + self._line
         forms = (2, 3, len(rows)) if self.small else (len(rows), 2, 1)
         for lines in dict.fromkeys(min(form, len(rows)) for form in forms if rows):
             wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
             image, draw = self._blank(wide, lines * self._line)
-            for n, (name, look) in enumerate(rows.items()):
+            for n, (name, marks) in enumerate(rows.items()):
                 x, y = (width + self._line) * (n // lines), self._line * (n % lines)
                 self._write(draw, x + self._line, y, name)
-                if isinstance(look, str):
-                    marks = [("━", look)]
-                else:
-                    marks = [("●", look.color), ("·", MIDDLE_COLOR)][: 1 + look.turns]
                 left, top = self._pad + x + 0.4 * self._line, self._pad + y + self._line / 2
                 for rim, (mark, color) in zip((RIM_COLOR, MIDDLE_COLOR), marks, strict=False):
                     stroke: Any = {"stroke_width": self._thin, "stroke_fill": rim}
                     draw.text((left, top), mark, color, self.font, "mm", **stroke)
                     top += self._thin / 2  # the middle of a large dot is lower
             yield image
+
+    def _ground(self, scene: Scene) -> dict[str, Marks]:
+        """Return land and places without data, where they are drawn."""
+        appearance = scene.appearance
+        if not appearance.visible:
+            return {}
+        colours = ground_colours(scene.field, appearance.land, self._background)
+        rows: dict[str, Marks] = {}
+        for name, colour in colours.items():
+            red, green, blue = np.rint(255 * colour).astype(int).tolist()
+            rows[name] = [("■", (red, green, blue))]
+        return rows
 
     def _legend(
         self, title: str, table: Bytes, marks: list[tuple[float, str]], beyond: tuple[bool, bool]
@@ -361,6 +376,14 @@ def _font(height: int) -> ImageFont.FreeTypeFont:
     path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
     # Every Pillow has the basic layout.
     return ImageFont.truetype(path, height, layout_engine=ImageFont.Layout.BASIC)
+
+
+def _dot_marks(mark: KindMark) -> Marks:
+    """Return the dot of a kind of critical points, with a middle where the flow turns around it."""
+    marks: Marks = [("●", mark.color)]
+    if mark.turns:
+        marks.append(("·", MIDDLE_COLOR))
+    return marks
 
 
 def _printable(text: str) -> str:

@@ -124,6 +124,29 @@ def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
     assert not (picture[..., 0].astype(int) - picture[..., 1] > 100).any()
 
 
+@pytest.mark.parametrize("width", [300, 700])
+def test_the_legend_names_places_without_data(client: ClientPage, width: int) -> None:
+    projection = Projection("globe")
+    lon, lat = np.meshgrid(np.linspace(-40, -30, 11), np.linspace(20, 30, 11))
+    east = np.where(lon < -35, np.nan, 1.0)
+    field = FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, 0 * lon),
+        projection=projection,
+    )
+    made = scene(field, camera_of(field, 1), color="red", land="blue")
+    number = client.mount(made, (width, 300), smooth=True)
+    client.sharp(number)
+    kinds = client.page.locator(".kinds .ground")
+    lacking = kinds.filter(has_text="no data")
+    assert lacking.is_visible()
+    box = lacking.bounding_box()
+    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width
+    colour = lacking.locator("i").evaluate("(mark) => getComputedStyle(mark).backgroundColor")
+    red, green, blue = np.rint(255 * missing_colour((1.0, 1.0, 1.0))).astype(int)
+    assert colour == f"rgb({red}, {green}, {blue})"
+
+
 @pytest.mark.parametrize("name", ["globe", "mercator"])
 def test_land_is_where_there_are_no_data(client: ClientPage, name: str) -> None:
     field = earth(name)

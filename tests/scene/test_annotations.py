@@ -18,9 +18,12 @@ from flowtex import FlowField
 from flowtex._util.colours import colour_table, rgb
 from flowtex.errors import Notice
 from flowtex.field.dates import time_text
+from flowtex.field.earth import Projection
+from flowtex.field.earth.on_land import on_land
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.map_overlay import missing_colour
 from flowtex.rendering.webgl.marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COLORS
 from flowtex.scene.annotations import (
     Plate,
@@ -315,6 +318,38 @@ def test_lines_of_the_structure_are_named(texts: list[str]) -> None:
     for name in names:
         color = np.rint(255 * np.array(rgb({**LINE_COLORS, **NULLCLINE_COLORS}[name])))
         assert (np.abs(pixels - color).max(axis=-1) <= 1).sum() > 5
+
+
+def gappy_ocean(name: str = "platecarree") -> FlowField:
+    """Currents around Iberia, which is land, and none in a strip of the Atlantic."""
+    projection = Projection(name)
+    lon, lat = np.meshgrid(np.linspace(-60.0, 10.0, 71), np.linspace(36.0, 44.0, 17))
+    lacking = ((lon > -40) & (lon < -20)) | on_land(lon, lat)
+    east = np.where(lacking, np.nan, 1.0)
+    return FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, 0 * lon),
+        length_unit="m",
+        time_unit="s",
+        projection=projection,
+    )
+
+
+@pytest.mark.parametrize("background", ["white", "black"])
+@pytest.mark.parametrize("projection", ["platecarree", "globe"])
+def test_places_without_data_are_named(texts: list[str], projection: str, background: str) -> None:
+    field = gappy_ocean(projection)
+    plate = written(Scene.of(field, land="red"), (800, 600), background=background)["structure"]
+    assert [text for text in texts if text in ("land", "no data")] == ["land", "no data"]
+    pixels = np.asarray(plate.image)[..., :3]
+    for colour in (rgb("red"), missing_colour(rgb(background))):
+        assert (pixels == np.rint(255 * np.asarray(colour))).all(axis=-1).sum() > 20
+    for hidden in ({"land": None}, {"visible": False}):
+        assert "structure" not in written(Scene.of(field, **hidden), (800, 600))
+
+
+def test_land_alone_needs_no_legend() -> None:
+    assert "structure" not in written(Scene(winds("robinson")), (800, 600))
 
 
 def test_a_legend_of_one_value_has_it_once(texts: list[str]) -> None:

@@ -1122,10 +1122,10 @@ data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,ty
 corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,pieces,3)),paints=buffer(atEnds(colours,pieces,
 4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return gl.bindVertexArray(null),{faces,
 pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};function css([r,g,b,opacity=1]){return`rgb(${[
-r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var GROUND=["land","missing"],LIGHT_FROM=.18;function missingColour({background,earth}){let ground=background??[1,1,1],share=earth?.
-missingShare??0,ink=dot2(ground.map(value=>value**2.2),[.2126,.7152,.0722])>=LIGHT_FROM?0:1;return ground.map(value=>value*
-(1-share)+ink*share)}function groundKinds(header,has){let{earth}=header;if(!earth?.land||!has("missing"))return[];let missing={
-name:"no data",color:missingColour(header)};return has("land")?[{name:"land",color:earth.land},missing]:[missing]}var BREAK=1e30,STEPS2=65535,GROUP=256;function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.
+r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var GROUND=["land","missing"],LAND="land",LIGHT_FROM=.18;function missingColour({background,earth}){let ground=background??
+[1,1,1],share=earth?.missingShare??0,ink=dot2(ground.map(value=>value**2.2),[.2126,.7152,.0722])>=LIGHT_FROM?0:1;return ground.
+map(value=>value*(1-share)+ink*share)}function groundKinds(header){let{earth}=header,land=earth?.land;return land?earth.
+kinds.map(name=>({name,color:name===LAND?land:missingColour(header),isGround:!0})):[]}var BREAK=1e30,STEPS2=65535,GROUP=256;function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.
 length;n+=4){steps[n+3]&&lines.push([]);let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&STEPS2,low[k]+place[k]/
 STEPS2*size[k]));lines[lines.length-1].push(point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(
 line=>{let along2=0,kept=line.filter((point,n)=>{let before=along2;return n&&(along2+=Math.hypot(...point.map((x,k)=>x-line[n-
@@ -1647,12 +1647,12 @@ place(value),0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)
 `translateX(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit3?`${label} (${unit3}\
 )`:label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name,color})=>`${name} ${color}`).
 join();names!==this.shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(
-({name,color,turns,isLine})=>{let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb\
-(${color.map(c=>Math.round(255*c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=
-!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.place(value),0,1)}\
-%`)}};function legendTicks({scalars}){if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(scalars),ticks=[
-5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,0);return ticks.
-find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+({name,color,turns,isLine,isGround})=>{let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=
+`rgb(${color.map(c=>Math.round(255*c)).join(" ")})`,dom("span",{class:isGround?"ground":""},[mark,name])})))}point(header,value=NaN){
+this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(this.
+place(value),0,1)}%`)}};function legendTicks({scalars}){if(scalars.ticks.length)return scalars.ticks;let[low,high]=legendLimits(
+scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,
+0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -2026,7 +2026,15 @@ p: 5px; }
   .head > * { max-width: 100%; padding-right: 2px; overflow: hidden; text-overflow: ellipsis; }
   :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 56px; margin-right: 8px; }
 }
-@container (max-width: 420px) { :host(:not(.flowtex-framed)) .kinds, .top:not(:has(.row)) .kinds { display: none; } }
+/* Of a narrow view the legend names what has no data, in one column, and no kinds of marks. */
+@container (max-width: 420px) {
+  :host(:not(.flowtex-framed)) .kinds:not(:has(.ground)), .top:not(:has(.row)) .kinds:not(:has(.ground)) { display: none\
+; }
+  :host(:not(.flowtex-framed)) .kinds span:not(.ground), .top:not(:has(.row)) .kinds span:not(.ground) { display: none; \
+}
+  :host(:not(.flowtex-framed)) .kinds, .top:not(:has(.row)) .kinds { grid-template-columns: auto; gap: 0; padding: 4px 6\
+px; }
+}
 @container (max-width: 220px) { :host(:not(.flowtex-tiny)) .top:has(.row) .legend, .top:not(:has(.row)) .head { display:\
  none; } }
 :host(.flowtex-tiny) :is(.head, .kinds), :host(.flowtex-small:not(.flowtex-framed)) :is(.kinds, .legend) { display: none\
@@ -2116,15 +2124,15 @@ this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(thi
 let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){
 return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level}\
  ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.
-colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}showKinds(kinds){let{header,parts}=this.
-viewer,ground=header?groundKinds(header,name=>parts.has(name)):[];this.legend.showKinds([...kinds,...ground])}read(point,ground=null){
-let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
-!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
-!point)return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit3}=header.scalars,value=point.
-values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.
-legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){
-this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){
-let{header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null}chooseAxes(kind){
+colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}showKinds(kinds){let{header}=this.viewer,
+ground=header?groundKinds(header):[];this.legend.showKinds([...kinds,...ground])}read(point,ground=null){let{header}=this.
+viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
+return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
+return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit3}=header.scalars,value=point.values[name??
+""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit3)])),this.legend.point(
+header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=
+shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{
+header,options}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null}chooseAxes(kind){
 this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
 axesKind??header?.axes??usual,{clientHeight}=this.viewer.root,shown=this.isFramed&&clientHeight>=SMALL_PX?kind:"none";this.
 axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,

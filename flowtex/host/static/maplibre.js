@@ -646,8 +646,8 @@ y,b,r.STATIC_DRAW),x},u=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[o,4,r.UNSIGNED_BYTE]]
 v),r.vertexAttribPointer(v,y,x,x!==r.FLOAT,0,0),w});p.push(h(i,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ve(n,c,3)),g=h(Ve(
 o,c,4));for(let b=0;b<4;b+=1)r.enableVertexAttribArray(b),r.vertexAttribDivisor(b,1);return r.bindVertexArray(null),{faces:u,
 pieces:f,ends:d,colours:g,buffers:[...p,d,g]}}};function Ds([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}var Lt=["land","missing"],Oi=.18;function Bs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=T(t.map(s=>s**
-2.2),[.2126,.7152,.0722])>=Oi?0:1;return t.map(s=>s*(1-r)+n*r)}var $s=1e30,Hs=65535,zs=256;function Fi(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
+join(" ")} / ${r})`}var Lt=["land","missing"];var Oi=.18;function Bs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=T(t.map(s=>s**2.2),[.2126,.7152,.0722])>=
+Oi?0:1;return t.map(s=>s*(1-r)+n*r)}var $s=1e30,Hs=65535,zs=256;function Fi(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
 []);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Hs,e[c]+n[c]/Hs*t[c]));r[r.length-1].push(o)}return r}function Ni(a,e){return e?
 a.flatMap(t=>{let r=0,n=t.filter((s,o)=>{let i=r;return o&&(r+=Math.hypot(...s.map((l,h)=>l-t[o-1][h]))),Math.floor(r/e)>
 Math.floor(i/e)||o===0||o===t.length-1});return r<e?[]:[n]}):a}function Ii(a,e){let t=a.reduce((s,o)=>s+o.length+1,0),r=new Float32Array(

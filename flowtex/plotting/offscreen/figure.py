@@ -14,6 +14,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.patches import Polygon
 from matplotlib.transforms import Affine2D
 from PIL import Image
 
@@ -38,6 +39,7 @@ from flowtex.plotting.offscreen.axes_kinds import (
 from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.map_overlay import ground_colours
 from flowtex.scene.fields import is_stored, read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
@@ -52,6 +54,7 @@ LINEAR = ("rectilinear", "linear", "linear")
 USUAL_DPI = 100.0  #: Dots per inch at which a grain has the pixels of the settings.
 #: Longest side of the drawn picture where the scales of the axes differ, in pixels.
 LONGEST_SIDE_PX = 8192
+EDGE_COLOR = "0.3"  #: Colour of the border of a legend's patches.
 FIRST_SIZE = (600, 400)  #: Width and height of a plot whose size is not known yet, in pixels.
 
 
@@ -149,7 +152,9 @@ def axes(
     Returns
     -------
     FlowImage
-        The image on the axes, which ``plt.colorbar`` accepts.
+        The image on the axes, which ``plt.colorbar`` accepts. Where data of the Earth are missing
+        at sea, the axes get a legend with the entries ``land`` and ``no data``, unless they have
+        one; ``ax.legend()`` includes these entries.
 
     Raises
     ------
@@ -397,6 +402,7 @@ class FlowImage(AxesImage):
         """Set title, aspect and ticks of the axes."""
         ax: Any = self.axes
         self._update_title()
+        self._add_ground_legend()
         if (section := self._flow.section) is not None:  # with its top above
             ax.set_aspect("auto")
             if section.downward and not ax.yaxis_inverted():
@@ -408,6 +414,22 @@ class FlowImage(AxesImage):
         ax.set_aspect(up / across)
         if self._projection is not None:
             label_degrees(ax, self._projection)
+
+    def _add_ground_legend(self) -> None:
+        """Name land and places without data in a legend, where some are drawn.
+
+        Its entries are also in a legend that is made later.
+        """
+        ax = self.axes
+        look = self._scene.appearance
+        has_ground = False
+        for name, colour in ground_colours(self._flow, look.land, ax.get_facecolor()).items():
+            handle = Polygon(np.full((3, 2), np.nan), label=name)
+            handle.set(facecolor=tuple(colour), edgecolor=EDGE_COLOR)
+            ax.add_artist(handle)
+            has_ground = True
+        if has_ground and ax.get_legend() is None:
+            ax.legend(loc="upper right", fontsize="small")
 
     def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""

@@ -22,6 +22,7 @@ from flowtex.rendering.map_overlay import (
     WIDTH_RANGE,
     globe_radius,
     ground_cells,
+    ground_kinds,
     map_box,
     map_lines,
 )
@@ -60,6 +61,7 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
         "usualHeight": USUAL_HEIGHT_PX,
         "widthRange": WIDTH_RANGE,
         "missingShare": MISSING_SHARE,
+        "kinds": ground_kinds(field),
         "spacings": SPACINGS,
         "spacingPixels": SPACING_PX,
         "strokes": [

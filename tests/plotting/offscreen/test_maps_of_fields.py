@@ -23,6 +23,7 @@ from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.field.earth import Projection
 from flowtex.plotting.offscreen.figure import FlowImage
+from flowtex.rendering.map_overlay import missing_colour
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -193,3 +194,27 @@ def test_stores_are_drawn_on_their_own_map(stores: Path) -> None:
 def test_small_stores_are_drawn_on_every_map(stores: Path) -> None:
     for name in ("polar", "PlateCarree around 180"):
         assert_right(*shown(AXES[name], stores / "small_flat.zarr"))
+
+
+@pytest.mark.parametrize("name", ["PlateCarree", "Robinson", "usual"])
+def test_a_legend_names_places_without_data(name: str) -> None:
+    projection = Projection("platecarree")
+    lon, lat = np.meshgrid(np.linspace(-40, -20, 11), np.linspace(20, 40, 11))
+    east = np.where(lon < -32, np.nan, 1.0)
+    field = FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, 0 * lon),
+        projection=projection,
+    )
+    figure = Figure()
+    ax = figure.add_subplot(projection=AXES.get(name), facecolor="black")
+    flowtex.axes(ax, field, samples=3)
+    (handle,), labels = ax.get_legend_handles_labels()
+    assert labels == ["no data"]
+    assert ax.get_legend() is not None
+    np.testing.assert_allclose(handle.get_facecolor()[:3], missing_colour((0.0, 0.0, 0.0)))
+    # A complete field has none, and neither has one whose gaps are not drawn.
+    for flow, look in ((from_arrays(), {}), (field, {"land": None})):
+        other = figure.add_subplot(projection=AXES.get(name))
+        flowtex.axes(other, flow, samples=3, **look)
+        assert other.get_legend() is None
