@@ -164,6 +164,18 @@ def screw() -> FlowField:
     return FlowField.from_triangles(points, triangles, velocity)
 
 
+def fan() -> FlowField:
+    """A vortex beside the middle of a disc, on triangles that are long and thin."""
+    corners = polygon(40, 1)
+    points = np.concatenate([corners[:1] + share * (corners - corners[0]) for share in (0.5, 1)])
+    inner = np.arange(1, 39)
+    faces = [np.stack([0 * inner, inner, inner + 1], axis=-1)]
+    faces += [np.stack([inner, inner + 40, inner + 41], axis=-1)]
+    faces += [np.stack([inner, inner + 41, inner + 1], axis=-1)]
+    velocity = np.column_stack([0.1 - points[:, 1], points[:, 0]])
+    return FlowField.from_triangles(points, np.concatenate(faces), velocity)
+
+
 def arched() -> FlowField:
     """A uniform flow with noise against a half cylinder, whose middle it crosses."""
     turn, height = np.meshgrid(np.linspace(-np.pi / 2, np.pi / 2, 61), np.linspace(-1, 1, 31))

@@ -64,6 +64,19 @@ struct FlowtexCell
 
 FlowtexCell flowtexCell;
 
+#ifdef FLOWTEX_TRIANGLES
+// Inverse of the longest side of the triangle times the sine of the angle opposite.
+float flowtexSliver()
+{
+  vec3 one = vec3(flowtexBy[0].x, flowtexBy[1].x, flowtexBy[2].x);
+  vec3 two = vec3(flowtexBy[0].y, flowtexBy[1].y, flowtexBy[2].y);
+  // Heights, over the area, are as the sides.
+  vec3 sides = vec3(length(one), length(two), length(one + two));
+  float longest = max(max(sides.x, sides.y), sides.z);
+  return sides.x * sides.y * sides.z / (longest * longest);
+}
+#endif
+
 // Sets the cell of a fragment whose path is so long to each side; returns whether it has a share.
 bool flowtexEnterCell(vec2 coordinate, float reach)
 {
@@ -119,6 +132,9 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   flowtexCell.velocity = velocity * about;
   flowtexCell.rate = rate * about;
   float agreed = length(flowtexCell.velocity[0]);
+#ifdef FLOWTEX_TRIANGLES
+  lengths.y = min(lengths.y, FLOWTEX_SLIVER_CELLS * lengths.x * flowtexSliver());
+#endif
   float cells = reach * lengths.y / lengths.x;
   float edge = smoothstep(FLOWTEX_ALONG_PLANE, FLOWTEX_OFF_PLANE, off);
   cells /= mix(1.0, FLOWTEX_EDGE_CELLS, edge);

@@ -24,6 +24,7 @@ const float FLOWTEX_PARTING = 0.95;
 const float FLOWTEX_AGREED = 0.99;
 const float FLOWTEX_NEAR_CELLS = 2.0;
 const float FLOWTEX_FAR_CELLS = 4.0;
+const float FLOWTEX_SLIVER_CELLS = 2.0; // that a path as long as a triangle counts as, at most, where it crosses thin ones
 // At a sharp edge slices leave the surface: sines of the angles of nodes' velocities and paths to a
 // triangle between which paths in it take their place, over so many times as many cells.
 const float FLOWTEX_ALONG_PLANE = 0.3;

@@ -8,10 +8,11 @@ from itertools import product
 
 import numpy as np
 import pytest
+import pyvista as pv
 from flows import across, gyre, lines, scattered_gyre, swinging
 from matrix import SIZE, straight
 from scipy.linalg import expm
-from triangle_meshes import random_plane, soup
+from triangle_meshes import polygon, random_plane, soup
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -102,6 +103,30 @@ def test_a_path_longer_than_the_cell_of_a_critical_point_is_exact(
         points = (found.points[:, :2] / CELL - POINT) / cells
         off = np.linalg.norm(points[:, None] - exact(name, start, 30.0), axis=-1).min(axis=1)
         assert off.max() < 0.3
+
+
+def fan(name: str) -> FlowField:
+    """The same about the middle of a disc in triangles that are long and thin."""
+    corners = polygon(60, 1)
+    faces = [(0, first, first + 1) for first in range(1, 59)]
+    points = np.column_stack([corners, np.zeros(60)])
+    disc = pv.PolyData.from_regular_faces(points, faces).subdivide(2)
+    velocity = disc.points[:, :2] @ np.transpose(FLOWS[name])
+    return FlowField.from_triangles(disc.points[:, :2], disc.regular_faces, velocity)
+
+
+@pytest.mark.parametrize(("name", "parameter"), [("saddle", "time"), ("centre", "arclength")])
+def test_a_path_across_thin_triangles_beside_a_critical_point_is_exact(
+    name: str, parameter: str
+) -> None:
+    scene = Scene(fan(name), Settings(parameter=parameter))
+    pixel = 1 / 300  # a triangle is 6 pixels wide and 75 long
+    for start in np.array([[3.0, 2.0], [-4.0, 3.0], [5.0, -1.0]]):
+        place = locate(scene.field, [*(pixel * start), 0.0])
+        assert place is not None
+        points = probe(scene, place, pixel=pixel).points[:, :2] / pixel
+        off = np.linalg.norm(points[:, None] - exact(name, start, 30.0), axis=-1).min(axis=1)
+        assert off.max() < 0.5
 
 
 def test_a_path_ends_in_a_node() -> None:

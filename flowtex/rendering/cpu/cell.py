@@ -32,6 +32,8 @@ class CellPath:
             rate += weights[0] * lengths[1]
             sine_off = np.maximum(sine_off, sine)
         speed = np.maximum(speed, const.LEAST_SPEED)
+        if isinstance(coordinate, TrianglePlaces):
+            rate = np.minimum(rate, const.SLIVER_CELLS * speed * _sliver(coordinate))
         agreed = np.linalg.norm(coefficients[:, :3, 0], axis=1) / speed
         edge = smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
@@ -79,6 +81,15 @@ class CellPath:
         x, y = at[:, 3:].T
         factors = np.stack([np.ones_like(x), x, y, x * y])[: self._coefficients.shape[2]]
         return np.asarray(np.einsum("nck,kn->nc", self._coefficients, factors))
+
+
+def _sliver(places: TrianglePlaces) -> Floats:
+    """Return inverses of the longest sides of triangles times the sines of the angles opposite."""
+    one = places.by[:, 0]
+    two = places.by[:, 1]
+    # Heights, over the area, are as the sides.
+    sides = np.linalg.norm(np.stack([one, two, one + two]), axis=-1)
+    return np.asarray(sides.prod(axis=0) / np.square(sides.max(axis=0)))
 
 
 #: A node's velocity in space, (N, 3), in cells, (N, 2), its lengths in both, (N,) each, and the
