@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Callable
 from types import TracebackType
-from typing import Protocol
+from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
 
@@ -45,18 +45,13 @@ def call_at_fork(
         _after.append(after)
 
 
-class ProcessLock:
-    """A re-entrant lock for the threads of one process.
+class _Guard:
+    """What the threads of one process hold during a block; a forked process makes it anew."""
 
-    A forked process finds it free, unless the thread that forked holds it.
-    """
-
-    def __init__(self) -> None:
-        self._lock = threading.RLock()
-        renew_after_fork(self)
+    _held: Any  # a lock or a semaphore of threading
 
     def __enter__(self) -> None:
-        self._lock.acquire()
+        self._held.acquire()
 
     def __exit__(
         self,
@@ -64,25 +59,37 @@ class ProcessLock:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._lock.release()
+        self._held.release()
+
+
+class ProcessLock(_Guard):
+    """A re-entrant lock for the threads of one process.
+
+    A forked process finds it free, unless the thread that forked holds it.
+    """
+
+    def __init__(self) -> None:
+        self._held = threading.RLock()
+        renew_after_fork(self)
 
     def acquire(self, timeout: float) -> bool:
         """Wait for the lock for at most ``timeout`` seconds; return whether it was free."""
-        return self._lock.acquire(timeout=timeout)
+        is_free: bool = self._held.acquire(timeout=timeout)
+        return is_free
 
     def release(self) -> None:
         """Release the lock."""
-        self._lock.release()
+        self._held.release()
 
     def renew(self) -> None:
         """Replace a lock that a thread held which no longer exists."""
-        if self._lock.acquire(blocking=False):
-            self._lock.release()
+        if self._held.acquire(blocking=False):
+            self._held.release()
         else:
-            self._lock = threading.RLock()
+            self._held = threading.RLock()
 
 
-class ProcessSemaphore:
+class ProcessSemaphore(_Guard):
     """Turns for the threads of one process, ``count`` at once; a forked process has all of them."""
 
     def __init__(self, count: int) -> None:
@@ -90,20 +97,9 @@ class ProcessSemaphore:
         self.renew()
         renew_after_fork(self)
 
-    def __enter__(self) -> None:
-        self._turns.acquire()
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._turns.release()
-
     def renew(self) -> None:
         """Give back the turns of threads that no longer exist."""
-        self._turns = threading.Semaphore(self._count)
+        self._held = threading.Semaphore(self._count)
 
 
 def _call_before() -> None:

@@ -18,7 +18,6 @@ from flowtex._util.arguments import checked_count, is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, notify
 from flowtex.field.constructors import FieldConstructors
-from flowtex.field.derived import magnitude_label
 from flowtex.field.earth import Projection
 from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.finer import FINEST
@@ -32,7 +31,6 @@ from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
 from flowtex.field.triangles.triangle_arguments import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
-from flowtex.field.units import factor, speed_unit
 from flowtex.field.validation import ALL_AT_REST, prepared
 
 #: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
@@ -390,28 +388,6 @@ class FlowField(FieldConstructors, FieldQuantities):
             notify(ALL_AT_REST, UserWarning)
         return cls(velocity=velocity, times=times, **arrays)
 
-    def _with_speed_on_earth(self) -> FlowField:
-        """Return a field on a flat map with the speed on the Earth, which the map distorts."""
-        projection = self.projection
-        if projection is None or projection.is_globe:
-            return self
-        lon, lat = projection.lonlat(self.points)
-        on_map = self.scalars.get("speed")  # missing where only some steps have no data
-
-        def read(number: int) -> Floats:
-            east, north = projection.components(lon, lat, self.velocity[number])
-            speed = np.hypot(east, north) * self.speed_scale
-            if on_map is not None:
-                speed[np.isnan(on_map[number])] = np.nan
-            return speed
-
-        steps: Steps = LazySteps(len(self.velocity), read)
-        if not isinstance(self.velocity, LazySteps):
-            steps = np.asarray(steps)
-        scalars = {**self.scalars, "speed": steps}
-        units = {**self.units, "speed": self.speed_unit}
-        return self.same_flow(scalars=scalars, units=units)
-
     @property
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
@@ -482,26 +458,6 @@ class FlowField(FieldConstructors, FieldQuantities):
         return steps if isinstance(self.velocity, LazySteps) else np.asarray(steps)
 
     @property
-    def _on_flat_map(self) -> bool:
-        """Whether the speed is a scalar, as a flat map distorts that along the surface."""
-        flat = self.projection is not None and not self.projection.is_globe
-        return flat and "speed" in self.scalars and "speed" in self.units
-
-    @property
-    def speed_unit(self) -> str:
-        """Unit of the velocity of the data; empty if unknown."""
-        if self._on_flat_map:
-            return self.units["speed"]
-        return self.velocity_unit or speed_unit(self.length_unit, self.time_unit)
-
-    @cached_property
-    def speed_scale(self) -> float:
-        """Factor from units of length per unit of time to :attr:`speed_unit`."""
-        own = speed_unit(self.length_unit, self.time_unit)
-        same = not own or self.speed_unit in ("", own)
-        return 1.0 if same else factor(own, self.speed_unit) or 1.0
-
-    @property
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
         frame = self.surface.frame
@@ -517,24 +473,6 @@ class FlowField(FieldConstructors, FieldQuantities):
     def leaves_surface(self) -> bool:
         """Whether a notable part of the flow is normal to the surface; see :attr:`speed_label`."""
         return self.normal_share > NOTABLE_SHARE
-
-    @property
-    def speed_label(self) -> str:
-        """Text for :attr:`speed`, which off maps differs from a scalar of that name."""
-        apart = self.leaves_surface or ("speed" in self.scalars and self.projection is None)
-        return magnitude_label(self.vectors, self.velocity_unit) + " in the surface" * apart
-
-    def label_of(self, name: str) -> str:
-        """Return the text for a scalar, or for the speed, in a legend."""
-        if name == "speed" and name not in self.scalars:
-            return self.speed_label
-        return self.long_names.get(name, name)
-
-    def unit_of(self, name: str) -> str:
-        """Return the unit of a scalar, or of the speed; empty if unknown."""
-        if name in self.units or name != "speed" or name in self.scalars:
-            return self.units.get(name, "")
-        return self.speed_unit
 
     def same_flow(self, **changes: Any) -> FlowField:
         """Return the field with other scalars or texts; positions and velocity stay."""

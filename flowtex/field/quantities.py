@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Self
 
 import numpy as np
@@ -15,7 +15,14 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
-from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
+from flowtex.field.derived import (
+    FOLLOWED,
+    LONG_NAMES,
+    derived_steps,
+    derived_unit,
+    followed_steps,
+    magnitude_label,
+)
 from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth import Projection
 from flowtex.field.finer import check_derivable, finest_of
@@ -34,7 +41,8 @@ from flowtex.field.locate import (
     value_point,
 )
 from flowtex.field.scalars import Scalars
-from flowtex.field.steps import Steps
+from flowtex.field.steps import LazySteps, Steps
+from flowtex.field.units import factor, speed_unit
 
 #: Share of the way to the middle of a cell by which its corners are moved to one side of a map.
 INWARD = 1e-6
@@ -244,6 +252,75 @@ def _on_earth(
 
 class FieldQuantities:
     """Quantities that are computed from the arrays of a field, which inherits this class."""
+
+    @property
+    def _on_flat_map(self) -> bool:
+        """Whether the speed is a scalar, as a flat map distorts that along the surface."""
+        field: Any = self
+        flat = field.projection is not None and not field.projection.is_globe
+        return flat and "speed" in field.scalars and "speed" in field.units
+
+    @property
+    def speed_unit(self) -> str:
+        """Unit of the velocity of the data; empty if unknown."""
+        field: Any = self
+        if self._on_flat_map:
+            return str(field.units["speed"])
+        return field.velocity_unit or speed_unit(field.length_unit, field.time_unit)
+
+    @cached_property
+    def speed_scale(self) -> float:
+        """Factor from units of length per unit of time to :attr:`speed_unit`."""
+        field: Any = self
+        own = speed_unit(field.length_unit, field.time_unit)
+        if not own or self.speed_unit in ("", own):
+            return 1.0
+        return factor(own, self.speed_unit) or 1.0
+
+    @property
+    def speed_label(self) -> str:
+        """Text for ``speed``, which off maps differs from a scalar of that name."""
+        field: Any = self
+        apart = field.leaves_surface or ("speed" in field.scalars and field.projection is None)
+        return magnitude_label(field.vectors, field.velocity_unit) + " in the surface" * apart
+
+    def label_of(self, name: str) -> str:
+        """Return the text for a scalar, or for the speed, in a legend."""
+        field: Any = self
+        if name == "speed" and name not in field.scalars:
+            return self.speed_label
+        return str(field.long_names.get(name, name))
+
+    def unit_of(self, name: str) -> str:
+        """Return the unit of a scalar, or of the speed; empty if unknown."""
+        field: Any = self
+        if name in field.units or name != "speed" or name in field.scalars:
+            return str(field.units.get(name, ""))
+        return self.speed_unit
+
+    def _with_speed_on_earth(self) -> Self:
+        """Return a field on a flat map with the speed on the Earth, which the map distorts."""
+        field: Any = self
+        projection = field.projection
+        if projection is None or projection.is_globe:
+            return self
+        lon, lat = projection.lonlat(field.points)
+        on_map = field.scalars.get("speed")  # missing where only some steps have no data
+
+        def read(number: int) -> Floats:
+            east, north = projection.components(lon, lat, field.velocity[number])
+            speed: Floats = np.hypot(east, north) * self.speed_scale
+            if on_map is not None:
+                speed[np.isnan(on_map[number])] = np.nan
+            return speed
+
+        steps: Steps = LazySteps(len(field.velocity), read)
+        if not isinstance(field.velocity, LazySteps):
+            steps = np.asarray(steps)
+        scalars = {**field.scalars, "speed": steps}
+        units = {**field.units, "speed": self.speed_unit}
+        result: Self = field.same_flow(scalars=scalars, units=units)
+        return result
 
     def derive(self, name: str, *, horizon: float | None = None) -> Steps:
         """Compute a scalar from the velocity and its gradient along the surface.
