@@ -54,9 +54,9 @@ def stripes() -> FlowField:
 
 def earth(name: str) -> Callable[[], FlowField]:
     def made() -> FlowField:
-        lon, lat = np.arange(-180.0, 180.0, 5.0), np.linspace(-90.0, 90.0, 49)
+        lon, lat = np.arange(-180.0, 180.0, 7.5), np.linspace(-90.0, 90.0, 33)
         data = winds(lon, lat)
-        sign = xr.DataArray((-1.0) ** np.arange(49), dims="lat")
+        sign = xr.DataArray((-1.0) ** np.arange(33), dims="lat")
         for key in "uv":
             data[key] = (data[key] * sign).assign_attrs(data[key].attrs)
         data["height"] = (data["u"] * 0 + data["lat"] * sign).assign_attrs(
