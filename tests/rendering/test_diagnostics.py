@@ -6,6 +6,7 @@ import re
 import sys
 
 import pytest
+from waiting import PATIENCE_S
 
 from flowtex.rendering import diagnostics
 
@@ -35,21 +36,26 @@ def test_the_trial_drew_a_picture(opengl: diagnostics.OpenGLReport) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "failure"),
+    ("command", "timeout", "failure"),
     [
         (
             "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)",
+            PATIENCE_S,
             "Segmentation fault ended the test",
         ),
-        ("import threading; threading.Event().wait()", "timed out after 2 seconds"),
-        ("raise SystemExit('\\033[31mbad\\033[0m')", "process ended with code 1; .* message: bad"),
-        ("""print('{"usable": false, "failure": "it is black"}')""", "it is black"),
+        ("import threading; threading.Event().wait()", 0.2, r"timed out after 0\.2 seconds"),
+        (
+            "raise SystemExit('\\033[31mbad\\033[0m')",
+            PATIENCE_S,
+            "process ended with code 1; .* message: bad",
+        ),
+        ("""print('{"usable": false, "failure": "it is black"}')""", PATIENCE_S, "it is black"),
     ],
 )
 def test_trial_that_fails_is_reported(
-    machine: pytest.MonkeyPatch, command: str, failure: str
+    machine: pytest.MonkeyPatch, command: str, timeout: float, failure: str
 ) -> None:
-    found = diagnostics.run_trial((sys.executable, "-c", command), timeout=2)
+    found = diagnostics.run_trial((sys.executable, "-c", command), timeout)
     assert not found.usable and re.search(failure, found.failure)
     words = "apt-get install --no-install-recommends libegl1 libgl1-mesa-dri"
     assert found.remedy == f"sudo apt-get update && sudo {words}"
