@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import warnings
 from contextlib import closing
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,15 +33,18 @@ from flowtex.app.streaming.stream import ViewPainter
 from flowtex.sources.open_source import MeshSource
 
 #: Flows that a page may open, and a mesh of which it shows planes.
-OPENERS = {name: lambda flow=flow: MeshSource(flow()) for name, flow in FLOWS.items()}
-OPENERS["volume"] = lambda: MeshSource(volume())
-NAMES = st.sampled_from(sorted(OPENERS))
+SHOWN = {**FLOWS, "volume": volume}
+NAMES = st.sampled_from(sorted(SHOWN))
 #: A comparison is one of those that the page offers for the flow.
 COMPARISON = st.one_of(st.just(0), st.integers(0, 40))
 SIZES = [(96, 64), (60, 60)]
 ROUNDING = 2  #: Greatest difference of a pixel, by rounding in another order of operations.
 #: Values in the header of a scene that belong to one page.
 OWN = ("generation", "place")
+
+
+def source_of(name: str) -> MeshSource:
+    return MeshSource(SHOWN[name]())
 
 
 class AnyPage(RuleBasedStateMachine):
@@ -61,7 +65,7 @@ class AnyPage(RuleBasedStateMachine):
 
     def page(self, name: str, **options: Any) -> Any:
         """Return a page that opens a flow first."""
-        openers = {name: OPENERS[name], **OPENERS}
+        openers = {each: partial(source_of, each) for each in [name, *SHOWN]}
         app = small_page(Library(openers), 9, *self.size, show_scalar_bar=False, **options)
         app.server.state.ready()  # so that it listens
         return app

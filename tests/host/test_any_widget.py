@@ -130,7 +130,6 @@ class AnyWidget(RuleBasedStateMachine):
         def show() -> None:
             self.widget.field = FLOWS[name]()
             self.name = name
-            self.widget.clim = None  # else colours keep their range
 
         self.change(show)
 

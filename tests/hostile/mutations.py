@@ -1,4 +1,4 @@
-"""Small files of every format of meshes, of which bytes, counts and numbers are changed.
+"""Small files of every format of meshes and of GRIB, of which bytes and numbers are changed.
 
 ``python mutations.py FOLDER SEED COUNT`` reads ``COUNT`` changed files. It prints each change
 before it reads the file, so the last line names the file that ended the process.
@@ -10,12 +10,14 @@ import re
 import sys
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import pyvista as pv
 from cfd_files import CGNS, box, write_ensight, write_exodus, write_foam
+from lying_files import grib
 from vtkmodules.vtkCommonCore import vtkIdList
 
 from flowtex import FlowField
@@ -199,7 +201,14 @@ def formats() -> dict[str, Write]:
     found["flow.case"] = ensight
     found["flow.ex2"] = exodus
     found["flow.foam"] = write_foam
+    for edition in (1, 2):
+        found[f"winds-{edition}.grib"] = partial(winds, edition)
     return found
+
+
+def winds(edition: int, path: Path) -> None:
+    """Write messages of GRIB."""
+    path.write_bytes(grib(edition))
 
 
 def changed(data: bytes, rng: np.random.Generator) -> tuple[bytes, str]:
